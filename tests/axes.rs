@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::dynamics::flow::RigidBody;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::spacecraft::flow::RigidBody;
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;
@@ -103,7 +103,7 @@ fn of_three(scenario: &Scenario, times: &[f64]) -> Vec<([f64; 3], [f64; 3])> {
     let mut simulation = Simulation::new(scenario, 0);
     let at = |time: &f64| {
         simulation.run_until(after(*time), &mut ()).expect("a run");
-        let state = simulation.spatial_state().expect("three axes");
+        let state = simulation.three_axis_state().expect("three axes");
         let mut angles = [0, 1, 2].map(|axis| 2.0 * state.turn.attitude.vector()[axis]);
         for ((.., rotation, about), mode) in MODES.iter().zip(&state.modes) {
             angles[*about] += rotation * mode.displacement;

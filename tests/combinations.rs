@@ -141,9 +141,9 @@ fn run(scenario: &Scenario, body: &Body, law: &str, actuator: &str) -> Result<()
     let whole = Flown::new(scenario, &[]);
     pieces_give_the_whole(scenario, &whole)?;
     metrics_are_numbers(&whole)?;
-    if let Some(of) = scenario.model.spatial() {
+    if let Some(of) = scenario.model.three_axis() {
         let jets = jet_torques(body.centre);
-        let start = of.inertia_tensor() * vector(&of.rate) + Vector::from(body.driven);
+        let start = of.inertia * vector(&of.rate) + Vector::from(body.driven);
         // Without samples and a period of the law, pulses of jets begin between the rows of cycles.
         let has_cycles = scenario.study.law_period.or(scenario.study.sample_period).is_some();
         let external = external(actuator, law, &jets);
@@ -152,8 +152,8 @@ fn run(scenario: &Scenario, body: &Body, law: &str, actuator: &str) -> Result<()
         }
         if body.driven == [0.0; 3] {
             // On a spacecraft, modes change the inertia: by 4e-5 of the momentum at most.
-            let tolerance = if scenario.model.flexible().is_some() { 1e-3 } else { 1e-11 };
-            momentum_is_that_of_rates_and_rotors(&whole, &of.inertia_tensor(), tolerance)?;
+            let tolerance = if scenario.model.is_two_way() { 1e-3 } else { 1e-11 };
+            momentum_is_that_of_rates_and_rotors(&whole, &of.inertia, tolerance)?;
         }
     } else {
         torque_changes_the_rate(&whole, 100.0, body.tolerance)?;

@@ -47,7 +47,7 @@ pub fn reference(set: &[(&str, &str)]) -> Result<Scenario, ScenarioError> {
 }
 
 pub fn craft(scenario: &Scenario) -> &AssembledSpacecraft {
-    scenario.model.craft().expect("a spacecraft")
+    scenario.model.spacecraft().expect("a spacecraft")
 }
 
 /// The four wheels of the oracle, a pyramid of 35 degrees.
@@ -94,10 +94,11 @@ fn free_modes_agree_with_the_whole_problem() {
     let scenario = reference(&[]).expect("valid");
     for (wheels, craft) in [("open", &open()), ("locked", craft(&scenario))] {
         let rows = golden(wheels);
-        assert_eq!(craft.flexible.modes.len(), 8);
+        let flexible = craft.model.flexible().expect("two-way");
+        assert_eq!(flexible.modes.len(), 8);
         let mut worst = [0.0_f64; 3];
         for (index, row) in rows.iter().enumerate() {
-            let (mode, shown) = (&craft.flexible.modes[index], &craft.spatial.modes[index]);
+            let (mode, shown) = (&flexible.modes[index], &craft.model.modes[index]);
             worst[0] = worst[0].max((mode.frequency / row["frequency"] - 1.0).abs());
             worst[1] = worst[1].max((mode.rotation - three(row, "phi")).norm());
             assert_eq!((shown.frequency.get(), shown.damping.get()), (mode.frequency, mode.damping));
@@ -108,7 +109,7 @@ fn free_modes_agree_with_the_whole_problem() {
                     near(mode.moments[(at, column)], exact, 1e-12 * exact.abs().max(1.0));
                 }
             }
-            let shapes = |point: &str| craft.spatial.shapes(point)[index];
+            let shapes = |point: &str| craft.model.shapes(point)[index];
             for (found, exact) in [
                 (shapes("jet").0, three(row, "hub")),
                 (shapes("jet").1, three(row, "phi")),
@@ -120,7 +121,7 @@ fn free_modes_agree_with_the_whole_problem() {
         }
         assert!(worst.iter().all(|error| *error < 1e-12), "{wheels}: {worst:?}");
         near(craft.damping_coupling / rows[0]["kappa"], 1.0, 1e-9);
-        assert!(craft.flexible.damping.is_none(), "1.7e-3 is small");
+        assert!(flexible.damping.is_none(), "1.7e-3 is small");
     }
 }
 
@@ -149,7 +150,7 @@ fn the_parts_come_to_the_right_sums() {
     near(craft.mass, 660.0, 0.0);
     let centre = vector![0.0454545454545, -0.0181818181818, 0.1090909090909];
     near((craft.centre - centre).norm(), 0.0, 1e-12);
-    let inertia = craft.flexible.inertia;
+    let inertia = craft.model.inertia;
     let exact = matrix![
         1112.5229116171, 6.0545454545, 0.5817272652715;
         6.0545454545, 311.87813737609, 4.8909090909;
@@ -201,15 +202,15 @@ fn the_parts_come_to_the_right_sums() {
 #[test]
 fn free_modes_lead_back_to_clamped_ones() {
     let craft = open();
-    let at = craft.spatial.point("jet").expect("a point");
-    let modes = craft.spatial.shapes("jet");
+    let at = craft.model.point("jet").expect("a point");
+    let modes = craft.model.shapes("jet");
     let order = modes.len();
     let (phi, u): (Vec<_>, Vec<_>) = modes.iter().map(|(f, phi)| (*phi, f - phi.cross(&at))).unzip();
     let matrix = DMatrix::from_fn(order, order, |row, column| {
         let own = if row == column { 1.0 } else { 0.0 };
         let sum =
-            own + phi[row].dot(&(craft.flexible.inertia * phi[column])) + craft.mass * u[row].dot(&u[column]);
-        sum / (craft.flexible.modes[row].frequency * craft.flexible.modes[column].frequency)
+            own + phi[row].dot(&(craft.model.inertia * phi[column])) + craft.mass * u[row].dot(&u[column]);
+        sum / (craft.model.modes[row].frequency.get() * craft.model.modes[column].frequency.get())
     });
     let mut clamped: Vec<f64> = craft.parts.iter().map(|part| part.frequency).collect();
     clamped.sort_by(f64::total_cmp);
@@ -227,7 +228,8 @@ fn one_mode_is_solved_by_hand() {
     let inertia = 300.0 + 30.0 + 400.0 * centre * centre + 20.0 * (3.0 - centre) * (3.0 - centre);
     let delta: f64 = 9.0 + (1.0 - centre) * 3.5;
     let s = 1.0 - 3.5 * 3.5 / mass - delta * delta / inertia;
-    let mode = &craft.flexible.modes[0];
+    let flexible = craft.model.flexible().expect("two-way");
+    let mode = &flexible.modes[0];
     near(mode.frequency, 2.0 / s.sqrt(), 1e-14 * mode.frequency);
     near(mode.damping, 0.01 / s.sqrt(), 1e-15);
     near(mode.rotation.x, -delta / inertia / s.sqrt(), 1e-15);
@@ -246,7 +248,7 @@ fn a_sloshing_mass_is_an_appendage() {
                 { frequency = 3.0, translation = [0, 7.0710678118654755, 0] }]\n[law.pd]\nk_p = 1\nk_d = 20\nperiod = 0.5\n";
     let scenario = Scenario::parse("slosh.toml", text).expect("valid");
     let craft = craft(&scenario);
-    let modes = &craft.flexible.modes;
+    let modes = craft.model.flexible().expect("two-way").modes;
     let along = 3.0 * (450.0_f64 / 400.0).sqrt();
     near(modes[0].frequency, along, 1e-13);
     // Across, the hub turns too: 1/m_hub + 1/m_mass + b²/J_hub, the mass at b from the hub's own centre.
@@ -312,19 +314,20 @@ fn order_origin_and_axes_do_not_matter() {
         ("moved", craft(&moved), Matrix3::identity()),
         ("turned", &put(&turned), back),
     ] {
-        for (index, (mode, exact)) in pairs(&again.flexible.modes, &exact.flexible.modes).enumerate() {
+        let [modes, exact_modes] = [again, exact].map(|craft| craft.model.flexible().expect("two-way").modes);
+        for (index, (mode, exact)) in pairs(&modes, &exact_modes).enumerate() {
             near(mode.frequency / exact.frequency, 1.0, 2e-13);
             near(mode.damping / exact.damping, 1.0, 2e-12);
             near((back * mode.rotation - exact.rotation).norm(), 0.0, 1e-13);
             near((back * mode.moments * back.transpose() - exact.moments).norm(), 0.0, 1e-11);
             for point in ["jet", "tip"] {
-                let of = |craft: &AssembledSpacecraft| craft.spatial.shapes(point)[index];
+                let of = |craft: &AssembledSpacecraft| craft.model.shapes(point)[index];
                 let ((f, phi), (exact_f, exact_phi)) = (of(again), of(self::craft(&scenario)));
                 near((back * f - exact_f).norm() + (back * phi - exact_phi).norm(), 0.0, 1e-12);
             }
         }
-        near((back * again.flexible.inertia * back.transpose() - exact.flexible.inertia).norm(), 0.0, 1e-11);
-        assert_eq!(again.flexible.modes.len(), 8, "{name}");
+        near((back * again.model.inertia * back.transpose() - exact.model.inertia).norm(), 0.0, 1e-11);
+        assert_eq!(modes.len(), 8, "{name}");
     }
 }
 
@@ -339,11 +342,11 @@ fn clamped_starts_become_free_ones() {
     ])
     .expect("valid");
     let craft = craft(&scenario);
-    let tip = craft.spatial.point("tip").expect("a point");
-    let hub = craft.spatial.point("jet").expect("a point");
+    let tip = craft.model.point("tip").expect("a point");
+    let hub = craft.model.point("jet").expect("a point");
     let (mut bent, mut moving) = (Vector::zeros(), Vector::zeros());
-    for (index, mode) in craft.spatial.modes.iter().enumerate() {
-        let ((end, _), (jet, phi)) = (craft.spatial.shapes("tip")[index], craft.spatial.shapes("jet")[index]);
+    for (index, mode) in craft.model.modes.iter().enumerate() {
+        let ((end, _), (jet, phi)) = (craft.model.shapes("tip")[index], craft.model.shapes("jet")[index]);
         let against_hub = end - jet - phi.cross(&(tip - hub));
         bent += against_hub * mode.displacement.get();
         moving += against_hub * mode.rate.get();
@@ -360,7 +363,7 @@ fn damping_that_couples_modes_is_kept_whole() {
     let near_modes =
         [("appendage[1].modes[1].frequency", "4.301"), ("appendage[1].modes[1].damping", "0.05")];
     let scenario = reference(&near_modes).expect("valid");
-    let flexible = scenario.model.flexible().expect("a spacecraft");
+    let flexible = craft(&scenario).model.flexible().expect("two-way");
     let damping = flexible.damping.as_ref().expect("coupled");
     assert!(craft(&scenario).damping_coupling > 0.05);
     for (index, mode) in flexible.modes.iter().enumerate() {

@@ -74,7 +74,7 @@ fn appendages_may_be_rigid() {
     let scenario = reference(&rigid).expect("valid");
     assert_eq!(scenario.mode_count(), 0);
     near(
-        (craft(&scenario).flexible.inertia - craft(&reference(&[]).expect("valid")).flexible.inertia).norm(),
+        (craft(&scenario).model.inertia - craft(&reference(&[]).expect("valid")).model.inertia).norm(),
         0.0,
         0.0,
     );

@@ -6,11 +6,11 @@ use std::convert::Infallible;
 
 use flexsc_core::dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_core::dynamics::crossing::{Crossing, first_crossing};
+use flexsc_core::dynamics::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::dynamics::{AxisState, ModeState};
 use flexsc_core::numerics::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::numerics::time::Span;
-use flexsc_core::spacecraft::flow::{SegmentInput, UncoupledSegment};
 use proptest::array::uniform4;
 use proptest::collection::vec;
 use proptest::prelude::*;

@@ -50,7 +50,7 @@ fn without_weak_torque_a_body_crosses_the_dead_zone_at_a_constant_rate() {
     for (weak, tolerance) in [("0.0", 1e-13), ("1e-300", 1e-13), ("1e-12", 1e-6)] {
         let case = scenario("relay-fixed", &[("body.planar.modes", "[]"), ("law.relay.weak", weak)]);
         let LawKind::Relay(law) = &case.law else { panic!("a relay") };
-        let body = case.model.planar().expect("one axis");
+        let body = case.model.one_axis().expect("one axis");
         let all = cycles(law, body, 0.31);
         let [cycle] = &all[..] else { panic!("{all:?}") };
         assert_eq!(cycle.sides, RelaySides::Two);

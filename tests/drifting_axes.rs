@@ -41,7 +41,7 @@ fn modes_that_drift_move_as_a_general_integrator_finds() {
         let mut simulation = Simulation::new(&study, 0);
         simulation.run_until(Instant::START + Span::from_seconds(time), &mut ()).expect("a run");
         let mode = mode as usize;
-        let found = simulation.spatial_state().expect("three axes").modes[mode];
+        let found = simulation.three_axis_state().expect("three axes").modes[mode];
         assert!((found.displacement - displacement).abs() < 3e-15, "{time} {mode}: {found:?}");
         assert!((frequencies[mode] * found.quadrature - rate).abs() < 3e-15, "{time} {mode}: {found:?}");
     }

@@ -5,10 +5,10 @@ use std::convert::Infallible;
 use flexsc_core::control::law::{Command, DecisionCause, Setpoint};
 use flexsc_core::control::state_estimate::StateEstimate;
 use flexsc_core::dynamics::crossing::first_crossing;
+use flexsc_core::dynamics::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::spacecraft::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
 use crate::util::SCENARIOS;

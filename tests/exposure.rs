@@ -42,9 +42,9 @@ impl Looked {
             let of = fields.iter().enumerate().filter(|(_, field)| field.name == name).nth(nth);
             widths(&fields[..of.expect("a field").0])
         };
-        let body = scenario.model.spatial().expect("three axes");
+        let body = scenario.model.three_axis().expect("three axes");
         // Modes that act back turn the hub too, and the attitude is that of the hub.
-        let hub = body.shapes(if scenario.model.flexible().is_some() { &body.points[0].name } else { "" });
+        let hub = body.shapes(if scenario.model.is_two_way() { &body.points[0].name } else { "" });
         let beyond = |(there, hub): (&(Vector, Vector), &(Vector, Vector))| there.1 - hub.1;
         Self {
             turns: body.shapes(point).iter().zip(&hub).map(beyond).collect(),
@@ -66,7 +66,7 @@ impl Looked {
 
     /// Returns the true attitude of the tracker.
     fn attitude(&self) -> Quaternion<f64> {
-        let modes = &self.run.spatial_state().expect("three axes").modes;
+        let modes = &self.run.three_axis_state().expect("three axes").modes;
         let moved = modes.iter().zip(&self.turns).map(|(phase, turns)| turns * phase.displacement);
         self.hub() * rotation(&moved.sum())
     }
@@ -201,7 +201,7 @@ fn what_a_tracker_gathers_changes_nothing() {
             let scenario = changed(format!("{body}{steps}"), &[]);
             let mut run = Simulation::new(&scenario, 0);
             run.run(&mut ()).expect("a run");
-            run.spatial_state().cloned()
+            run.three_axis_state().cloned()
         };
         assert!(end(&steps) == end(&steps.replace("exposure = 1.5\n", "")), "{point}");
         let scenario = changed(format!("{body}{steps}"), &[]);

@@ -49,19 +49,21 @@ fn craft(imbalance: &str) -> (FlexibleBody, Vec<Bearing>, Vec<Vector>) {
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
     );
     let scenario = Scenario::parse("craft", &text).expect("valid");
-    let craft = scenario.model.craft().expect("valid");
-    let mut flexible = craft.flexible.clone();
+    let craft = scenario.model.spacecraft().expect("valid");
+    let mut model = craft.model.clone();
+    let coupling = model.coupling.as_mut().expect("two-way");
     let rows = rows(MODES);
     // The table's modes may have other signs.
     let sign = |mode: usize| {
         let there = Vector::from_row_slice(&rows[mode + 1][1..4]);
-        there.dot(&flexible.modes[mode].rotation).signum()
+        there.dot(&coupling.rotations[mode]).signum()
     };
     let damping = DMatrix::from_fn(8, 8, |row, column| rows[row + 1][17 + column] * sign(row) * sign(column));
-    flexible.damping = Some(damping);
-    flexible.modes.iter_mut().for_each(|mode| mode.moments = Matrix3::zeros());
+    coupling.damping = Some(damping);
+    coupling.moments.fill(Matrix3::zeros());
+    let flexible = model.flexible().expect("two-way");
     let wheels = wheels(imbalance);
-    let bearings = wheels.bearings((&craft.spatial, &flexible)).expect("valid");
+    let bearings = wheels.bearings(&model).expect("valid");
     (flexible, bearings, wheels.rotors().expect("valid").iter().map(|rotor| rotor.axis).collect())
 }
 
@@ -209,13 +211,9 @@ fn steady_at(
 
 #[test]
 fn what_does_not_fit_is_refused_with_its_key() {
-    let (flexible, spatial) = {
-        let scenario = Scenario::parse("craft", CRAFT).expect("valid");
-        let craft = scenario.model.craft().expect("valid");
-        (craft.flexible.clone(), craft.spatial.clone())
-    };
-    let found =
-        wheels("static = 1e-6, point = \"nowhere\"").bearings((&spatial, &flexible)).expect_err("refused");
+    let scenario = Scenario::parse("craft", CRAFT).expect("valid");
+    let model = &scenario.model.spacecraft().expect("valid").model;
+    let found = wheels("static = 1e-6, point = \"nowhere\"").bearings(model).expect_err("refused");
     assert_eq!(found.key, "imbalance.point");
     for (keys, key) in [
         ("static = [1e-6, 2e-6]", "imbalance.static"),

@@ -16,21 +16,21 @@ fn shipped(name: &str) -> Scenario {
 
 fn kind(model: &BodyModel) -> &'static str {
     match model {
-        BodyModel::Planar(_) => "planar",
+        BodyModel::OneAxis(_) => "planar",
         BodyModel::Chain(..) => "chain",
-        BodyModel::Spatial(_) => "spatial",
-        BodyModel::Craft(_) => "craft",
+        BodyModel::ThreeAxis(_) => "spatial",
+        BodyModel::Spacecraft(_) => "craft",
     }
 }
 
 /// Returns true if two models are one in memory.
 fn are_one(a: &BodyModel, b: &BodyModel) -> bool {
     match (a, b) {
-        (BodyModel::Planar(a), BodyModel::Planar(b)) => Arc::ptr_eq(a, b),
+        (BodyModel::OneAxis(a), BodyModel::OneAxis(b)) => Arc::ptr_eq(a, b),
         (BodyModel::Chain(a, chain), BodyModel::Chain(b, other)) => {
             Arc::ptr_eq(a, b) && Arc::ptr_eq(chain, other)
         }
-        (BodyModel::Spatial(a), BodyModel::Spatial(b)) => Arc::ptr_eq(a, b),
+        (BodyModel::ThreeAxis(a), BodyModel::ThreeAxis(b)) => Arc::ptr_eq(a, b),
         _ => false,
     }
 }
@@ -55,9 +55,13 @@ fn every_way_of_writing_a_body_comes_to_a_model() {
         };
         assert_eq!(found, (axes, modes), "{name}");
         assert_eq!((scenario.axis_count(), scenario.mode_count()), found, "{name}");
-        assert_eq!((model.planar().is_some(), model.spatial().is_some()), (axes == 1, axes == 3), "{name}");
         assert_eq!(
-            (model.chain().is_some(), model.craft().is_some()),
+            (model.one_axis().is_some(), model.three_axis().is_some()),
+            (axes == 1, axes == 3),
+            "{name}"
+        );
+        assert_eq!(
+            (model.chain().is_some(), model.spacecraft().is_some()),
             (expected == "chain", expected == "craft")
         );
         let frequencies: Vec<f64> = model.frequencies().collect();

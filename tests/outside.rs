@@ -48,7 +48,7 @@ fn rodrigues(trace: &Trace, row: usize) -> [f64; 3] {
 
 /// Translation and rotation of a point against the hub, for modes with these numbers.
 fn against_hub(scenario: &Scenario, point: &str, modes: &[f64]) -> [f64; 6] {
-    let body = scenario.model.spatial().expect("three axes");
+    let body = scenario.model.three_axis().expect("three axes");
     let (there, hub) = (body.shapes(point), body.shapes("hub"));
     let mut sum = [0.0; 6];
     for ((there, hub), q) in there.iter().zip(hub).zip(modes) {
@@ -167,7 +167,7 @@ fn a_boom_has_the_frequencies_of_its_equation() {
 #[test]
 fn clamped_frequencies_are_not_those_of_the_whole() {
     let scenario = Scenario::load(format!("{SCENARIOS}/half-turn.toml").as_ref()).expect("a scenario");
-    let modes = &scenario.model.spatial().expect("three axes").modes;
+    let modes = &scenario.model.three_axis().expect("three axes").modes;
     let printed = [0.402_619_33, 0.428_596_00, 1.308_649_82, 1.506_435_24];
     for (mode, hertz) in pairs(modes.iter(), printed) {
         near(mode.frequency.get() / std::f64::consts::TAU, hertz, 2e-8);
@@ -215,7 +215,7 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
     };
     let (scenario, metrics, trace) = flight("30.0");
     assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
-    let slosh = scenario.model.spatial().expect("three axes").modes[2].frequency.get();
+    let slosh = scenario.model.three_axis().expect("three axes").modes[2].frequency.get();
     assert!((std::f64::consts::TAU / slosh - 29.96).abs() < 0.005);
     // 20 pulses of 10 s and 20.1 N on two tonnes.
     let last = trace.topic("/position").expect("positions").len() - 1;

@@ -140,7 +140,7 @@ fn points_move_as_the_shapes_say() {
     let frames = Frames::from_log(&log);
     let scenario =
         flexsc_core::Scenario::load(format!("{SCENARIOS}/iss-ringdown-off.toml").as_ref()).expect("shipped");
-    let body = scenario.model.spatial().expect("three axes");
+    let body = scenario.model.three_axis().expect("three axes");
     let (pointing, vibrations) =
         (log.columns("/pointing").expect("a motion"), log.columns("/vibrations").expect("modes"));
     let (counts, modes) = rows(&vibrations, "modes");

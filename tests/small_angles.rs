@@ -242,14 +242,14 @@ from = 5.0
 to = 25.0
 ";
     let scenario = Scenario::parse("balance.toml", text).expect("valid");
-    let body = scenario.model.spatial().expect("three axes");
+    let body = scenario.model.three_axis().expect("three axes");
     let mut run = Simulation::new(&scenario, 0);
     run.run_until(Instant::END, &mut ()).expect("a run");
     let row = observed(&scenario, &mut run);
     let (rates, q, v) = (Vector::new(row[10], row[11], row[12]), row[13], row[14]);
-    let start = body.inertia_tensor() * Vector::new(1e-4, 2e-4, -1e-4);
+    let start = body.inertia * Vector::new(1e-4, 2e-4, -1e-4);
     let impulse = Vector::new(20.0 * 1e-3 + 20.0 * 2e-3, 0.0, 50.0 * 1e-4);
-    let error = body.inertia_tensor() * rates - start - impulse;
+    let error = body.inertia * rates - start - impulse;
     assert!(error.norm() < 1e-15, "{error}");
     // Undamped: the mode rings by the pushes at their beginnings and ends, each with f/w² (1 - cos w (t - t')).
     let w = 1.7;

@@ -2,11 +2,10 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
+use flexsc_core::dynamics::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
+use flexsc_core::dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_core::numerics::attitude::Vector;
-use flexsc_core::numerics::quantity::Finite;
 use flexsc_core::record::Detail;
-use flexsc_core::spacecraft::body::spatial::Spatial;
-use flexsc_core::spacecraft::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};
@@ -92,8 +91,8 @@ fn pointing_errors_are_rotation_vectors() {
 }
 
 /// Returns the body of a scenario.
-pub fn body(scenario: &Scenario) -> &Spatial {
-    scenario.model.spatial().expect("three axes")
+pub fn body(scenario: &Scenario) -> &ThreeAxisModel {
+    scenario.model.three_axis().expect("three axes")
 }
 
 /// Callback that never stops these motions.
@@ -253,9 +252,9 @@ fn columns_of_a_file_of_modes_may_stand_in_any_order() {
     let csv = "hub.rz,rate,hub.tz,frequency,displacement\n3,4,5,6,7\n";
     let read = Scenario::load(&in_a_file(csv).path("free.toml")).expect("valid");
     let mode = &body(&read).modes[0];
-    let shape = mode.shapes["hub"];
-    assert_eq!(shape.translation.map(Finite::get), [0.0, 0.0, 5.0]);
-    assert_eq!(shape.rotation.map(Finite::get), [0.0, 0.0, 3.0]);
+    let (translation, rotation) = body(&read).shapes("hub")[0];
+    assert_eq!(translation, Vector::new(0.0, 0.0, 5.0));
+    assert_eq!(rotation, Vector::new(0.0, 0.0, 3.0));
     let numbers = (mode.frequency.get(), mode.damping.get(), mode.displacement.get(), mode.rate.get());
     assert_eq!(numbers, (6.0, 0.0, 7.0, 4.0));
 }

@@ -2,10 +2,10 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, a loop of its own by Runge-Kutta steps.
 
+use flexsc_core::dynamics::flow::ElasticModes;
 use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::spacecraft::flow::ElasticModes;
 use flexsc_core::{Scenario, Simulation};
 
 use crate::spatial::{body, free};
@@ -30,7 +30,7 @@ fn the_energy_at_the_gyro_is_reported_apart() {
     let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
     let full = traced(&study);
     let shapes =
-        study.model.spatial().map(|body| body.shapes(&study.study.sensor_points[0])).expect("three axes");
+        study.model.three_axis().map(|body| body.shapes(&study.study.sensor_points[0])).expect("three axes");
     let energies = within(&full, "/vibrations", "modes", "energy_j");
     // Modes 1 to 3, of 0.0978, 0.1063 and 0.2368 Hz, turn it by less than a tenth of what mode 5 does.
     let most = shapes.iter().map(|(_, rotation)| rotation.norm()).fold(0.0, f64::max);

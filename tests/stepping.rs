@@ -102,7 +102,7 @@ fn what_a_law_would_command_may_come_from_outside() {
         steered.run_up_to(at(f64::from(second)), &mut ()).expect("a step");
     }
     whole.run(&mut ()).expect("a run");
-    let (one, other) = (whole.spatial_state().expect("axes"), steered.spatial_state().expect("axes"));
+    let (one, other) = (whole.three_axis_state().expect("axes"), steered.three_axis_state().expect("axes"));
     let off = (one.turn.attitude - other.turn.attitude).norm();
     assert!(off < 1e-10, "{off:e}");
     for (one, other) in pairs(one.modes.iter(), &other.modes) {

@@ -1,9 +1,9 @@
 //! Records do not change a run, and a copy of a run continues as the run itself, with every kind of parts.
 
+use flexsc_core::dynamics::flow::ThreeAxisState;
 use flexsc_core::dynamics::{AxisState, MotionPiece};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, PieceDemand, Record, RecordError, Sample, SceneSource, Trace};
-use flexsc_core::spacecraft::flow::ThreeAxisState;
 use flexsc_core::{Document, Scenario, Simulation};
 use flexsc_view::scene::Scene;
 
@@ -65,7 +65,7 @@ fn runs() -> Vec<(&'static str, Scenario)> {
 type Reached = (Option<AxisState>, Option<ThreeAxisState>);
 
 fn reached(simulation: &Simulation) -> Reached {
-    (simulation.state().cloned(), simulation.spatial_state().cloned())
+    (simulation.state().cloned(), simulation.three_axis_state().cloned())
 }
 
 fn end(mut simulation: Simulation, record: &mut impl Record) -> Reached {

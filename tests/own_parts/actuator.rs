@@ -7,9 +7,9 @@ use flexsc_core::control::actuator::{
 };
 use flexsc_core::control::custom::Custom;
 use flexsc_core::control::part::{Occasion, Part, ReportContext};
+use flexsc_core::dynamics::wrench::Wrench;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{CustomField, CustomTopic, Report};
-use flexsc_core::spacecraft::wrench::Wrench;
 
 /// Servo with its largest torque and its step (N m).
 #[derive(Clone, Debug)]

@@ -78,7 +78,7 @@ fn parts_from_outside_hold_three_axes() {
     let study = of_own_parts(THREE_AXES);
     let mut simulation = Simulation::new(&study, 0);
     simulation.run(&mut ()).expect("a run");
-    let state = simulation.spatial_state().expect("three axes");
+    let state = simulation.three_axis_state().expect("three axes");
     let off = state.turn.attitude.vector().norm();
     assert!(off < 1e-5, "{off}");
 }

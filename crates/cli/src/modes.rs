@@ -45,7 +45,7 @@ struct Style {
 }
 
 /// Modes of a single-axis body.
-struct Planar {
+struct OneAxisTable {
     /// Name of the scenario.
     name: String,
     modal: OneAxisModes,
@@ -53,7 +53,7 @@ struct Planar {
 }
 
 /// Modes of a three-axis body, and the influence of its actuator on them.
-struct Spatial {
+struct ThreeAxisTable {
     /// Name of the scenario.
     name: String,
     modes: ModeInfluences,
@@ -66,16 +66,16 @@ struct Spatial {
 pub fn results(scenario: &Scenario, args: &ModesArgs) -> Box<dyn Results> {
     let name = scenario.name.clone();
     let style = Style { units: args.units.units, all: args.all };
-    if let Some(craft) = scenario.model.craft() {
+    if let Some(craft) = scenario.model.spacecraft() {
         let (parts, jets) = (SpacecraftModes::from_scenario(scenario, craft), scenario.study.jet_only_axes);
         return Box::new(spacecraft::Spacecraft { name, parts, jets, style });
     }
     match scenario.model.axes() {
         BodyAxes::Three(body) => {
             let (modes, jets) = (ModeInfluences::from_scenario(scenario, body), scenario.study.jet_only_axes);
-            Box::new(Spatial { name, modes, jets, style })
+            Box::new(ThreeAxisTable { name, modes, jets, style })
         }
-        BodyAxes::One(body) => Box::new(Planar { name, modal: OneAxisModes::from_body(body), style }),
+        BodyAxes::One(body) => Box::new(OneAxisTable { name, modal: OneAxisModes::from_body(body), style }),
     }
 }
 
@@ -127,7 +127,7 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
     print_table(&rows, 0);
 }
 
-impl Results for Spatial {
+impl Results for ThreeAxisTable {
     fn json(&self) -> Vec<Json> {
         vec![with_scenario_name(&self.name, json!(self.modes))]
     }
@@ -140,7 +140,7 @@ impl Results for Spatial {
     }
 }
 
-impl Results for Planar {
+impl Results for OneAxisTable {
     fn json(&self) -> Vec<Json> {
         vec![with_scenario_name(&self.name, json!(self.modal))]
     }

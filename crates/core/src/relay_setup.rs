@@ -21,7 +21,7 @@ pub use flexsc_relay_kernel::{
 
 /// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.
 pub fn is_supported(scenario: &Scenario) -> Option<(&AxisModel, &Relay)> {
-    let (Some(body), Some(law)) = (scenario.model.planar(), scenario.law.relay()) else { return None };
+    let (Some(body), Some(law)) = (scenario.model.one_axis(), scenario.law.relay()) else { return None };
     suits(scenario, body, law).then_some((body, law))
 }
 
@@ -38,7 +38,7 @@ pub fn envelope_modes(scenario: &Scenario) -> Cow<'_, [AxisMode]> {
 
 /// Returns the modes of the one-axis body.
 fn body_modes(scenario: &Scenario) -> &[AxisMode] {
-    scenario.model.planar().map_or(&[], |body| &body.modes)
+    scenario.model.one_axis().map_or(&[], |body| &body.modes)
 }
 
 /// Returns true if the relay law alone moves the body, all modes are below critical damping, and nothing but the

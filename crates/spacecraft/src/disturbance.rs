@@ -1,5 +1,8 @@
 //! Disturbances from one time to another: torques, constant and random, and forces at a point, steady or in pulses.
 
+use flexsc_dynamics::sine::SineTorque;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::{ForceEffect, Wrench};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Time};
@@ -9,9 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
-use crate::body::Spatial;
 use crate::sine::Sine;
-use crate::wrench::{ForceEffect, Wrench};
 
 /// A disturbance: a torque about an axis, or a force at a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,7 +67,7 @@ impl Disturbance {
     }
 
     /// Returns the effect of the force on a body; `None` for a torque.
-    pub fn force_effect(&self, body: &Spatial) -> Option<ForceEffect> {
+    pub fn force_effect(&self, body: &ThreeAxisModel) -> Option<ForceEffect> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
         let mut push = ForceEffect::default();
@@ -144,6 +145,7 @@ impl Disturbance {
 #[derive(Clone, Debug)]
 pub struct DisturbanceState {
     disturbance: Disturbance,
+    sines: Vec<SineTorque>,
     push: Option<ForceEffect>,
     /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
@@ -155,12 +157,13 @@ pub struct DisturbanceState {
 
 impl DisturbanceState {
     /// Creates a disturbance before its start, with a random stream of its own; `body` is given if it has three axes.
-    pub fn new(disturbance: &Disturbance, body: Option<&Spatial>, draws: Stream) -> Self {
+    pub fn new(disturbance: &Disturbance, body: Option<&ThreeAxisModel>, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         Self {
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
             push: body.and_then(|body| disturbance.force_effect(body)),
+            sines: disturbance.sines.iter().map(Into::into).collect(),
             disturbance: disturbance.clone(),
             draws,
             drawn: 0.0,
@@ -210,7 +213,7 @@ impl DisturbanceState {
     /// Returns the torque of the sine terms about an axis at an instant (N m).
     fn sine_torque(&self, now: Instant, axis: usize) -> f64 {
         let own = self.disturbance.about.map_or(0, Axis::index) == axis && self.acts(now);
-        let sines = self.disturbance.sines.iter().filter(|_| own);
+        let sines = self.sines.iter().filter(|_| own);
         sines.map(|sine| sine.at(now.seconds())).sum()
     }
 
@@ -224,10 +227,10 @@ impl DisturbanceState {
 
     /// Adds the effect of a force, or the sine terms of a torque, to `onto` from `now` on.
     pub fn force_effect(&self, now: Instant, onto: &mut Wrench) {
-        if !self.disturbance.sines.is_empty() && self.acts(now) {
+        if !self.sines.is_empty() && self.acts(now) {
             let axis = self.disturbance.about.map_or(0, Axis::index);
             let direction = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-            onto.sines.extend(self.disturbance.sines.iter().map(|sine| (direction, *sine)));
+            onto.sines.extend(self.sines.iter().map(|sine| (direction, *sine)));
         }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
             onto.add_force_effect(push);

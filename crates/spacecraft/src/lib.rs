@@ -1,8 +1,6 @@
 //! Flexible spacecraft and their environment, as a scenario describes them.
 //!
 //! - [`body`]: one-axis and three-axis bodies, chains of panels; modes, appendages, drives;
-//! - [`flow`]: motion between events, about one axis and of modes that do not act back on the body;
-//! - [`wrench`]: torques, forces and rotors that act on a body;
 //! - [`environment`], [`disturbance`]: orbits, fields, pressure; external torques and forces;
 //! - [`manoeuvre`]: planned rotations, and the alternatives compared with them.
 //!
@@ -12,7 +10,5 @@ pub mod axes;
 pub mod body;
 pub mod disturbance;
 pub mod environment;
-pub mod flow;
 pub mod manoeuvre;
 pub mod sine;
-pub mod wrench;

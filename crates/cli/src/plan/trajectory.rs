@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
 use flexsc_core::dynamics::axis_model::{AxisModel, CommandedQuantity};
+use flexsc_core::dynamics::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
 use flexsc_core::dynamics::{AngleObservation, AxisState};
-use flexsc_core::spacecraft::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
 use flexsc_core::spacecraft::manoeuvre::Plan;
 
 use crate::number_table::NumberTable;

@@ -6,7 +6,7 @@ use flexsc_core::record::Vibrations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;
-use super::spatial::CycleData;
+use super::three_axis::CycleData;
 use super::{time, title};
 
 /// Largest number of points with a panel each.
@@ -20,7 +20,7 @@ const ROUNDING: f64 = 1e-9;
 /// Returns the points that modes move relative to the first, each with its displacement for a unit of each mode
 /// (1/sqrt(kg)). Empty if drives or hinges turn the appendages, since modes then have no fixed shapes.
 fn points(story: &RunEvents) -> Vec<(&str, Vec<Vector>)> {
-    let Some(body) = story.scenario.model.spatial() else { return Vec::new() };
+    let Some(body) = story.scenario.model.three_axis() else { return Vec::new() };
     if story.scenario.study.drives.is_some() {
         return Vec::new();
     }

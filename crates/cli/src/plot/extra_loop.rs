@@ -36,8 +36,8 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
 
 /// Returns the natural frequency of the dominant mode (rad/s) that an ideal observer gives the law at time `t` (s).
 fn frequency(scenario: &Scenario, t: f64) -> f64 {
-    let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
-    let modes = scenario.model.planar().into_iter().flat_map(|body| &body.modes).enumerate();
+    let ratio = |mode: usize| scenario.study.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+    let modes = scenario.model.one_axis().into_iter().flat_map(|body| &body.modes).enumerate();
     let now = modes.map(|(index, mode)| {
         let ratio = ratio(index);
         (mode.frequency.get() * ratio, mode.excitability().abs() / (ratio * ratio))

@@ -7,7 +7,7 @@ use flexsc_figure::Figure;
 
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::spatial::{self, CycleData};
+use super::three_axis::{self, CycleData};
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drives, envelope, estimate,
     extra_loop, flywheel, frequency, gain, gimbals, hinges, identified_frequencies, magnetorquers,
@@ -91,38 +91,42 @@ impl FigureKind {
 
     /// Returns true if a log has the data of the figure.
     fn is_in(self, story: &RunEvents) -> bool {
-        let spatial = story.scenario.axis_count() == 3;
+        let is_three_axis = story.scenario.axis_count() == 3;
         match self {
-            Self::PhasePlane => story.switches() && !spatial,
-            Self::Torque | Self::Angle => !spatial,
-            Self::Torques => spatial && torques::applies_to(story),
+            Self::PhasePlane => story.switches() && !is_three_axis,
+            Self::Torque | Self::Angle => !is_three_axis,
+            Self::Torques => is_three_axis && torques::applies_to(story),
             Self::Deflection => deflection::applies_to(story),
             Self::Outputs => !story.scenario.model.outputs().is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
             }
             Self::Gain => !story.steps.is_empty(),
-            Self::Modes => !spatial && story.scenario.mode_count() > 0,
-            Self::Pointing | Self::Rates | Self::Energy => spatial,
+            Self::Modes => !is_three_axis && story.scenario.mode_count() > 0,
+            Self::Pointing | Self::Rates | Self::Energy => is_three_axis,
             Self::Position => story.scenario.study.translation.is_some(),
             Self::Jets => story.scenario.study.fires(),
-            Self::Tracking => story.scenario.study.adaptive.is_some() && spatial,
+            Self::Tracking => story.scenario.study.adaptive.is_some() && is_three_axis,
             Self::Damping => {
-                spatial && story.scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0)
+                is_three_axis
+                    && story.scenario.study.authorities.iter().any(|authority| authority.threshold > 0.0)
             }
-            Self::Wheel => flywheel::rotor(story).is_some() && !spatial || wheels::wheels(story).is_some(),
-            Self::Orbit => spatial && orbit::applies_to(story),
+            Self::Wheel => {
+                flywheel::rotor(story).is_some() && !is_three_axis || wheels::wheels(story).is_some()
+            }
+            Self::Orbit => is_three_axis && orbit::applies_to(story),
             Self::Gimbals => gimbals::applies_to(story),
             Self::Magnetorquers => magnetorquers::applies_to(story),
             Self::Drives => story.scenario.study.articulation().is_some(),
             Self::Hinges => story.scenario.study.hinges() > 0,
             Self::Accelerations => accelerations::applies_to(story),
-            Self::Consistency if spatial => {
+            Self::Consistency if is_three_axis => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
             }
-            Self::Frequency if spatial => identified_frequencies::applies_to(story),
+            Self::Frequency if is_three_axis => identified_frequencies::applies_to(story),
             Self::Frequency | Self::Estimate | Self::Consistency => {
-                !spatial && story.scenario.estimator.as_ref().is_some_and(EstimatorKind::filters_measurements)
+                !is_three_axis
+                    && story.scenario.estimator.as_ref().is_some_and(EstimatorKind::filters_measurements)
             }
             Self::Extra => extra_loop::extra(story).is_some(),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => false,
@@ -143,14 +147,14 @@ impl FigureKind {
             Self::Gain => gain::figure(story),
             Self::Modes => modes::figure(story, motion),
             Self::Pointing => pointing::figure(story, cycles),
-            Self::Rates => spatial::rates(story, cycles),
+            Self::Rates => three_axis::rates(story, cycles),
             Self::Torques => torques::figure(story, cycles),
             Self::Deflection => deflection::figure(story, cycles),
-            Self::Energy => spatial::energy(story, cycles),
-            Self::Position => spatial::position(story, cycles),
-            Self::Jets => spatial::jets(story, cycles),
-            Self::Tracking => spatial::tracking(story, cycles),
-            Self::Damping => spatial::damping(story, cycles),
+            Self::Energy => three_axis::energy(story, cycles),
+            Self::Position => three_axis::position(story, cycles),
+            Self::Jets => three_axis::jets(story, cycles),
+            Self::Tracking => three_axis::tracking(story, cycles),
+            Self::Damping => three_axis::damping(story, cycles),
             Self::Wheel if wheels::wheels(story).is_some() => wheels::figure(story, cycles),
             Self::Wheel => flywheel::figure(story, motion),
             Self::Orbit => orbit::figure(story, cycles),

@@ -5,7 +5,7 @@ use flexsc_core::record::{Magnetorquers, StoredMomentum};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
-use super::spatial::CycleData;
+use super::three_axis::CycleData;
 use super::{time, title};
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =

@@ -33,8 +33,8 @@ mod overlay;
 mod phase_plane;
 mod pointing;
 mod run_events;
-mod spatial;
 mod stale_check;
+mod three_axis;
 mod time_range;
 mod title;
 mod topic;
@@ -56,7 +56,7 @@ pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use motion::MotionData;
 use run_events::RunEvents;
-use spatial::CycleData;
+use three_axis::CycleData;
 pub use title::readable;
 use title::{short, title};
 
@@ -241,9 +241,9 @@ fn drawn_over(
         FigureKind::Consistency,
         FigureKind::Extra,
     ]);
-    let is_spatial = story.scenario.axis_count() == 3;
-    let cycles = if is_spatial { CycleData::read(&story, log, path)? } else { CycleData::default() };
-    let motion = if is_spatial {
+    let is_three_axis = story.scenario.axis_count() == 3;
+    let cycles = if is_three_axis { CycleData::read(&story, log, path)? } else { CycleData::default() };
+    let motion = if is_three_axis {
         MotionData::default()
     } else if all || !story.switches() {
         story.motion(log, path, 0.0, 0.0)?

@@ -3,7 +3,7 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::run_events::RunEvents;
-use super::spatial::{CycleData, panels};
+use super::three_axis::{CycleData, panels};
 use super::{time, title};
 
 /// Ratio of a band to the errors above which the band does not determine the height of a panel.

@@ -6,7 +6,7 @@ use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;
-use super::spatial::{CycleData, panels};
+use super::three_axis::{CycleData, panels};
 use super::{time, title};
 
 /// Colours of the axes.

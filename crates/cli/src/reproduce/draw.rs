@@ -25,8 +25,9 @@ impl PageCommand {
     /// does.
     fn plot(&self, args: &simulate::SimulateArgs, kind: &str) -> Result<(Figure, String), CliError> {
         let (scenario, path) = self.simulated(args)?;
-        let spatial = scenario.axis_count() == 3;
-        let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
+        let is_three_axis = scenario.axis_count() == 3;
+        let (detail, option) =
+            if is_three_axis { (Detail::Full, " --log full") } else { (Detail::Events, "") };
         let figure = plot::figure_of(&self.log(detail)?, path, kind)?;
         let (text, name) = (&self.text, &scenario.name);
         Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {kind}")))

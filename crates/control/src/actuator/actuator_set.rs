@@ -1,9 +1,9 @@
 //! Several actuators in one: each executes its share of the demand about each axis, or unloads the wheels or gyros.
 
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Report};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::unloading::UnloaderState;
 use super::{

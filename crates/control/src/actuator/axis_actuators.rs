@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::flow::ActiveWaveform;
+use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::waveform::Waveform;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
-use flexsc_spacecraft::flow::ActiveWaveform;
-use flexsc_spacecraft::sine::Sine;
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::failure::FailureScope;
 use super::faulty::FaultyActuator;
@@ -91,7 +91,7 @@ pub struct AxisWaves<'a> {
     /// Waveform, on a one-axis body.
     pub waveform: Option<ActiveWaveform>,
     /// Sines of time, on a three-axis body.
-    pub sines: &'a [Sine],
+    pub sines: &'a [SineTorque],
 }
 
 /// Run-time state of a single-axis actuator.

@@ -5,11 +5,11 @@
 //! laws are not informed of failures.
 
 use flexsc_dynamics::three_axis::Gimbal;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{self, Report, SteeringRecord};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::ActiveFailures;

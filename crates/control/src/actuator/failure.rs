@@ -2,6 +2,7 @@
 
 use std::num::NonZeroU32;
 
+use flexsc_dynamics::sine::SineTorque;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Time};
 use flexsc_numerics::time::Instant;
@@ -223,7 +224,7 @@ pub(super) struct ActiveFailures {
     fixed: Option<f64>,
     /// Constant added to the value.
     added: f64,
-    sines: Vec<Sine>,
+    sines: Vec<SineTorque>,
 }
 
 impl ActiveFailures {
@@ -275,7 +276,7 @@ impl ActiveFailures {
                 }
                 Failure::Added(failure) => {
                     self.added += failure.constant.get();
-                    self.sines.extend_from_slice(&failure.sines);
+                    self.sines.extend(failure.sines.iter().map(SineTorque::from));
                 }
             }
         }
@@ -296,15 +297,15 @@ impl ActiveFailures {
     }
 
     /// Returns the sines that are added now.
-    pub fn sines(&self) -> &[Sine] {
+    pub fn sines(&self) -> &[SineTorque] {
         &self.sines
     }
 
     /// Returns all sines of the failures, each with its interval.
-    pub fn scheduled_sines(&self) -> impl Iterator<Item = (Sine, Interval)> + '_ {
+    pub fn scheduled_sines(&self) -> impl Iterator<Item = (SineTorque, Interval)> + '_ {
         let term_of = |(failure, _): &'_ (Failure, Option<f64>)| {
             let interval = failure.scope().interval;
-            failure.sines().iter().map(move |sine| (*sine, interval)).collect::<Vec<_>>()
+            failure.sines().iter().map(move |sine| (sine.into(), interval)).collect::<Vec<_>>()
         };
         self.failures.iter().flat_map(term_of)
     }

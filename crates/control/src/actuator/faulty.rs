@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::flow::ActiveWaveform;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::quantity::Time;
 use flexsc_numerics::time::Instant;
 use flexsc_record::Report;
-use flexsc_spacecraft::flow::ActiveWaveform;
 
 use super::failure::{ActiveFailures, Failure, FailureScope};
 use super::{AxisActuator, AxisProperties, AxisResponse, AxisTorques, AxisWaves};

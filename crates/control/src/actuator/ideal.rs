@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::flow::ActiveWaveform;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::flow::ActiveWaveform;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

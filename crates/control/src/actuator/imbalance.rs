@@ -1,11 +1,11 @@
 //! Imbalance of wheels: forces and torques that rotate with them, and their harmonics.
 
-use flexsc_dynamics::three_axis::{FlexibleBody, HarmonicLine};
+use flexsc_dynamics::three_axis::HarmonicLine;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
-use flexsc_spacecraft::body::Spatial;
 use flexsc_spacecraft::body::craft::HubRotor;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -84,7 +84,7 @@ impl Imbalance {
         &self,
         wheel: usize,
         rotor: &HubRotor,
-        (body, flexible): (&Spatial, &FlexibleBody),
+        body: &ThreeAxisModel,
     ) -> Result<Vec<HarmonicLine>, ConfigError> {
         let first = body.points.first().map_or("", |point| point.name.as_str());
         let name = self.point.as_deref().unwrap_or(first);
@@ -97,20 +97,16 @@ impl Imbalance {
         };
         let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
         let shapes = body.shapes(name);
+        let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
         let line = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
             // Moments about the mounting point, then about the centre of mass.
             let moment = [0, 1].map(|part| moment[part] + offset.cross(&force[part]));
             let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
             let beyond = |part: usize| -> Vec<f64> {
-                let modes = shapes.iter().zip(&flexible.modes);
-                let effect_of = |((translation, rotation), mode): (
-                    &(Vector, Vector),
-                    &flexsc_dynamics::three_axis::FreeMode,
-                )| {
-                    translation.dot(&force[part]) + rotation.dot(&moment[part])
-                        - mode.rotation.dot(&torque[part])
+                let effect_of = |((translation, rotation), hub): (&(Vector, Vector), &Vector)| {
+                    translation.dot(&force[part]) + rotation.dot(&moment[part]) - hub.dot(&torque[part])
                 };
-                modes.map(effect_of).collect()
+                shapes.iter().zip(hub).map(effect_of).collect()
             };
             HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
         };

@@ -5,12 +5,12 @@
 //! where the columns of B are the torques of the thrusters, and also their forces if these must cancel. An impulse
 //! beyond the capability is scaled down to the largest one in its direction.
 
+use flexsc_dynamics::wrench::{ForceEffect, Wrench};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::simplex::LinearProgramme;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
-use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
 
 use super::valves::Valves;
 use super::{

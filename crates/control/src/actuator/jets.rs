@@ -1,11 +1,11 @@
 //! Jets: thrusters at points of a three-axis body, fired in groups about the axes or individually.
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::ForceEffect;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::time::Span;
-use flexsc_spacecraft::body::spatial::Spatial;
-use flexsc_spacecraft::wrench::ForceEffect;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -205,7 +205,7 @@ impl Jets {
     }
 
     /// Returns the effect of each thruster on a body that has the thrusters' points.
-    pub fn thruster_effects(&self, body: &Spatial) -> Vec<ThrusterEffect> {
+    pub fn thruster_effects(&self, body: &ThreeAxisModel) -> Vec<ThrusterEffect> {
         let nozzle = |thruster: &Thruster| {
             let thrust = thruster.thrust.get();
             let mut effect = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
@@ -238,7 +238,7 @@ impl Jets {
     /// A `ConfigError` with a key within the jets and the reason.
     pub fn group_effects(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         acts: [bool; 3],
     ) -> Result<[[GroupEffect; 2]; 3], ConfigError> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
@@ -265,7 +265,7 @@ impl Jets {
                 let why = "apply only to `allocation = \"groups\"`: leave them out";
                 return Err(ConfigError::new("groups", why));
             }
-            let tensor = body.inertia_tensor();
+            let tensor = body.inertia;
             let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
             return jet_allocation::largest_torques(self, &self.thruster_effects(body), inertia, acts);
         }
@@ -303,7 +303,7 @@ impl Jets {
 
     fn group(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         axis: usize,
         sign: &str,
         sense: f64,
@@ -328,7 +328,7 @@ impl Jets {
             let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
             return Err(ConfigError::new(key, why));
         }
-        let acceleration = torque[axis].abs() / body.inertia_tensor()[(axis, axis)];
+        let acceleration = torque[axis].abs() / body.inertia[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
         Ok(GroupEffect { push: effect, flow, acceleration })
     }

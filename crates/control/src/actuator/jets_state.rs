@@ -1,9 +1,9 @@
 //! Run-time state of jets in groups: demands, queued pulses, current pulses, and propellant.
 
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::valves::Valves;
 use super::{

@@ -3,12 +3,12 @@
 //! A demanded torque T gives the moment B x T/B², whose torque m x B is the part of T perpendicular to the field
 //! (\[Wertz78\]).
 
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Report};
 use flexsc_spacecraft::axes::PerAxis;
-use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

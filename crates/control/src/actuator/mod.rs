@@ -35,9 +35,9 @@ mod zero_order_hold;
 
 use std::any::Any;
 
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::quantity::{Share, Time};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,8 @@
 //! Valves of jets: which thrusters are open, their failures, and the propellant flow.
 
+use flexsc_dynamics::wrench::{ForceEffect, Wrench};
 use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
 
 use super::failure::{ActiveFailures, Added, Failure, FailureScope};
 use super::{Jets, Thruster, ThrusterEffect};

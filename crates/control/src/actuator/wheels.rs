@@ -1,11 +1,11 @@
 //! Reaction wheels about their own axes, which together give a torque about three axes and store its momentum.
 
-use flexsc_dynamics::three_axis::{Bearing, FlexibleBody};
+use flexsc_dynamics::three_axis::Bearing;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
-use flexsc_spacecraft::body::Spatial;
 use flexsc_spacecraft::body::craft::HubRotor;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -235,7 +235,7 @@ impl Wheels {
     ///
     /// # Errors
     /// A `ConfigError` with a key within the wheels and the reason.
-    pub fn bearings(&self, body: (&Spatial, &FlexibleBody)) -> Result<Vec<Bearing>, ConfigError> {
+    pub fn bearings(&self, body: &ThreeAxisModel) -> Result<Vec<Bearing>, ConfigError> {
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {

@@ -5,11 +5,11 @@
 //! with it the time at which it reaches its limit. The speed Omega also depends on the body's rate.
 
 use flexsc_dynamics::three_axis::{Rotor, RotorObservation};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::failure::ActiveFailures;
 use super::wheel_allocation::Allocation;

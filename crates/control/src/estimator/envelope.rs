@@ -11,6 +11,7 @@ use crate::offers::{BodyOffers, Offers};
 use crate::requirement::{Requirements, Rule};
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisMode;
+use flexsc_dynamics::three_axis_model::ThreeAxisMode;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::{Complex, Phasor, abs, polar};
 use flexsc_numerics::quantity::Finite;
@@ -18,7 +19,6 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_numerics::trig::sincos_any;
 use flexsc_numerics::{swing_damped, swing_integral};
 use flexsc_spacecraft::body::Mode;
-use flexsc_spacecraft::body::spatial::ThreeAxisMode;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -2,9 +2,9 @@
 
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::three_axis_model::ThreeAxisMode;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{self, ModeEnvelope, WindowMean};
-use flexsc_spacecraft::body::spatial::ThreeAxisMode;
 
 use super::{AdaptationRun, Envelope, EnvelopeMonitor};
 

@@ -20,10 +20,11 @@ use std::borrow::Cow;
 
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::{Drift, Mode};
+use flexsc_spacecraft::body::Mode;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -102,7 +103,7 @@ pub struct EstimatorContext<'a> {
     /// one.
     pub back_emf: (f64, bool),
     /// Drift of the natural frequencies.
-    pub drift: Option<&'a Drift>,
+    pub drift: Option<&'a FrequencyDrift>,
     /// Sampling period; `None` without sampling.
     pub sampling: Option<Span>,
     /// Standard deviation of the sensor's angle (rad).

@@ -1,10 +1,10 @@
 //! Estimators of single axes that act at each sample: ideal observers and Kalman filters.
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Estimates, ModeEstimate, Report};
-use flexsc_spacecraft::body::Drift;
 
 use super::kalman::{FilterContext, Innovation, KalmanFilter, Prediction};
 use super::{BatchEstimator, EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
@@ -24,7 +24,7 @@ struct AxisEstimator {
     /// modes.
     frequencies: Vec<f64>,
     excitability: Vec<f64>,
-    drift: Option<Drift>,
+    drift: Option<FrequencyDrift>,
     /// Reduced moment (rad/s²) that acts from `since` on, and its integral (rad/s) from the last sample until `since`.
     moment: f64,
     since: Instant,
@@ -230,8 +230,8 @@ impl AxisEstimator {
     fn ideal(&self, t: f64, state: &AxisState) -> DominantMode {
         let all = match &self.drift {
             None => Some(1.0),
-            Some(Drift::Common(profile)) => Some(profile.ratio(t)),
-            Some(Drift::Each(_)) => None,
+            Some(FrequencyDrift::Common(profile)) => Some(profile.ratio(t)),
+            Some(FrequencyDrift::Each(_)) => None,
         };
         let own = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let ratio = |mode: usize| all.unwrap_or_else(|| own(mode));

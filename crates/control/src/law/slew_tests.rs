@@ -4,10 +4,10 @@
 use flexsc_dynamics::three_axis::{
     Bearing, FlexibleBody, FreeMode, SegmentLoads, SlipDirection, ThreeAxisMotion,
 };
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::manoeuvre::{Slew, SlewProfile};
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
 use super::{

@@ -7,10 +7,10 @@
 
 use flexsc_control::law::Phase;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::{SegmentInput, UncoupledSegment};
 use flexsc_dynamics::{self, AxisState};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Command, Record, RecordError, Sample, Trigger};
-use flexsc_spacecraft::flow::{SegmentInput, UncoupledSegment};
 use nalgebra::{DMatrix, RowDVector, Schur};
 
 /// Largest number of pushes per cycle that the detector considers.

@@ -43,7 +43,7 @@ impl LinearAttitudeFilter {
             return Err(ConfigError::new("elastic", "is not supported in linear loops: leave it out"));
         }
         let settings = &scenario.study;
-        let (Some(setting), Some(body)) = (&settings.attitude, scenario.model.spatial()) else {
+        let (Some(setting), Some(body)) = (&settings.attitude, scenario.model.three_axis()) else {
             return Err(ConfigError::new("", "needs a body with three axes"));
         };
         let mounted = |index: usize, latency: f64| {

@@ -5,12 +5,14 @@
 //! (\[Likins70\]). Environment torques are left out.
 
 use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
+use flexsc_dynamics::flow::CoupledMatrices;
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, Vector};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::{BodyAxes, Drift, Spatial};
-use flexsc_spacecraft::flow::CoupledMatrices;
+use flexsc_spacecraft::body::BodyAxes;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
@@ -67,7 +69,9 @@ impl LinearModel {
     }
 
     fn for_one_axis(scenario: &Scenario, body: &AxisModel, time: f64) -> Self {
-        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, time));
+        let ratio = |mode| {
+            scenario.study.drift.as_ref().map_or(1.0, |drift: &FrequencyDrift| drift.ratio(mode, time))
+        };
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);
         let coupled = CoupledMatrices::new(body, back_emf, total, &ratios);
@@ -97,17 +101,16 @@ impl LinearModel {
         Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], outputs)
     }
 
-    fn for_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
+    fn for_three_axes(scenario: &Scenario, body: &ThreeAxisModel) -> Self {
         let (settings, modes) = (&scenario.study, body.modes.len());
-        let flexible = scenario.model.flexible();
-        let inertia = flexible.map_or_else(|| body.inertia_tensor(), |flexible| flexible.inertia);
+        let (inertia, coupling) = (body.inertia, body.coupling.as_ref());
         // The tensor was checked, so it has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
         let stored =
             Vector::from(settings.actuator(scenario, seed).capabilities().stored_momentum(Instant::START));
         let measured = settings.measured_rates(body);
-        let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
+        let hub = |mode: usize| coupling.map_or_else(Vector::zeros, |coupling| coupling.rotations[mode]);
         let order = 6 + 2 * modes;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
         // Response of rates and modes to a torque at the hub.
@@ -119,8 +122,8 @@ impl LinearModel {
         for axis in 0..3 {
             let input = &measured.inputs[axis];
             let rigid = Vector::from_fn(|row, _| input.turning[row] * input.acceleration);
-            let unit = 1.0 / (body.inertia_tensor() * rigid)[axis];
-            let torque = body.inertia_tensor() * rigid * unit;
+            let unit = 1.0 / (inertia * rigid)[axis];
+            let torque = inertia * rigid * unit;
             b.view_mut((3, axis), (3, 1)).copy_from(&(inverse * torque));
             for mode in 0..modes {
                 b[(7 + 2 * mode, axis)] = input.forces[mode] * unit;
@@ -139,8 +142,7 @@ impl LinearModel {
             let (q, w) = (6 + 2 * index, mode.frequency.get());
             a[(q, q + 1)] = 1.0;
             a[(q + 1, q)] -= w * w;
-            let coupled = flexible.and_then(|flexible| flexible.damping.as_ref());
-            match coupled {
+            match coupling.and_then(|coupling| coupling.damping.as_ref()) {
                 Some(damping) => {
                     for other in 0..modes {
                         a[(q + 1, 7 + 2 * other)] -= damping[(index, other)];

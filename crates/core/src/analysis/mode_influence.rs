@@ -1,6 +1,6 @@
 //! Modes of a three-axis body as a table: excitation by the jets, and the response that a gyro measures.
 
-use flexsc_spacecraft::body::Spatial;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use serde::Serialize;
 
 use crate::scenario::Scenario;
@@ -26,7 +26,7 @@ pub struct ModeInfluences {
 
 impl ModeInfluences {
     /// Returns the modes of a scenario's three-axis body. Actuators other than jets count as a torque of 1 N m.
-    pub fn from_scenario(scenario: &Scenario, body: &Spatial) -> Self {
+    pub fn from_scenario(scenario: &Scenario, body: &ThreeAxisModel) -> Self {
         let settings = &scenario.study;
         let measured = settings.measured_rates(body);
         let per_axis = |value_of: &dyn Fn(usize, usize, f64) -> f64| {

@@ -2,7 +2,7 @@
 //! torque on the hub.
 
 use flexsc_dynamics::three_axis::DriveAngles;
-use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::attitude::Vector;
 use flexsc_spacecraft::body::craft::AssembledSpacecraft;
 use serde::Serialize;
 
@@ -92,28 +92,26 @@ impl SpacecraftModes {
                 effective_inertia_kg_m2: three(&rotation.component_mul(&rotation)),
                 first_moments: part.knows_moments,
             });
-        let inertia = &craft.flexible.inertia;
+        let inertia = &craft.model.inertia;
+        let rotations = craft.model.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
         let on = |name: &str| {
             let mut appendages = scenario.appendage.iter();
             appendages.find(|appendage| appendage.points.iter().any(|point| point.name == name))
         };
-        let points = craft.spatial.points.iter().map(|point| {
-            let shapes = craft.spatial.shapes(&point.name);
+        let points = craft.model.points.iter().map(|point| {
             let participation_about = |axis: usize| {
-                let modes = shapes.iter().zip(&craft.flexible.modes);
-                modes
-                    .map(|((_, rotation), mode)| rotation[axis] * mode.rotation[axis] * inertia[(axis, axis)])
-                    .collect()
+                let modes = point.shapes.iter().zip(rotations);
+                modes.map(|((_, rotation), hub)| rotation[axis] * hub[axis] * inertia[(axis, axis)]).collect()
             };
             PointResponse {
                 point: point.name.clone(),
                 appendage: on(&point.name).map(|appendage| appendage.name.clone()),
-                position_m: three(&vector(&point.position)),
+                position_m: three(&point.position),
                 influences: [0, 1, 2].map(participation_about),
             }
         });
         Self {
-            free: ModeInfluences::from_scenario(scenario, &craft.spatial),
+            free: ModeInfluences::from_scenario(scenario, &craft.model),
             mass_kg: craft.mass,
             centre_m: three(&craft.centre),
             inertia_kg_m2: [0, 1, 2].map(|row| three(&inertia.row(row).transpose())),

@@ -7,12 +7,12 @@ use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::law::Phase;
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{SegmentInput, UncoupledSegment};
 use flexsc_dynamics::guard::Guard;
 use flexsc_numerics::lanes::Processor;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{self, Command, PieceDemand, Record, Sample, Trigger};
-use flexsc_spacecraft::flow::{SegmentInput, UncoupledSegment};
 
 use super::{BatchJob, BatchKernel};
 use crate::metrics::{Metrics, MetricsCollector};

@@ -6,10 +6,10 @@
 mod filters;
 mod motions;
 
+use flexsc_dynamics::flow::ExternalMotion;
 use flexsc_numerics::lanes::{LaneFloat, Mask, Processor, SimdTask};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{PieceDemand, Record};
-use flexsc_spacecraft::flow::ExternalMotion;
 
 use super::{BatchJob, BatchKernel};
 use crate::metrics::{LaneManoeuvreMetrics, LanePiece, Metrics, MetricsCollector};

@@ -248,7 +248,7 @@ enum RunKind {
     /// Collector for a rotation of a one-axis body, under a manoeuvre or a law without switchings.
     Rotation(Box<ManoeuvreMetrics>),
     /// Collector for a three-axis body.
-    Spatial(Box<ThreeAxisMetrics>),
+    ThreeAxis(Box<ThreeAxisMetrics>),
 }
 
 impl MetricsCollector {
@@ -260,7 +260,7 @@ impl MetricsCollector {
     /// Creates an empty collector of the selected metrics; values that no selected metric needs are not computed.
     pub fn for_selection(scenario: &Scenario, selection: &Selection) -> Self {
         let kind = match scenario.model.axes() {
-            BodyAxes::Three(_) => RunKind::Spatial(Box::new(ThreeAxisMetrics::new(scenario))),
+            BodyAxes::Three(_) => RunKind::ThreeAxis(Box::new(ThreeAxisMetrics::new(scenario))),
             BodyAxes::One(body) if scenario.law.is_switching() => {
                 RunKind::Switchings(Box::new(RelayMetrics::new(scenario, body, selection)))
             }
@@ -297,7 +297,7 @@ impl MetricsCollector {
         let mut metrics = match self.kind {
             RunKind::Switchings(switchings) => switchings.finish(scenario),
             RunKind::Rotation(rotation) => rotation.finish(),
-            RunKind::Spatial(spatial) => spatial.finish(),
+            RunKind::ThreeAxis(rotation) => rotation.finish(),
         };
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
@@ -316,7 +316,7 @@ impl Record for MetricsCollector {
     fn wants_switchings(&self) -> bool {
         match &self.kind {
             RunKind::Switchings(switchings) => switchings.wants_switchings(),
-            RunKind::Rotation(_) | RunKind::Spatial(_) => true,
+            RunKind::Rotation(_) | RunKind::ThreeAxis(_) => true,
         }
     }
 
@@ -324,7 +324,7 @@ impl Record for MetricsCollector {
         match &self.kind {
             RunKind::Switchings(switchings) => switchings.piece_demand(),
             RunKind::Rotation(rotation) => rotation.piece_demand(),
-            RunKind::Spatial(_) => flexsc_record::PieceDemand::None,
+            RunKind::ThreeAxis(_) => flexsc_record::PieceDemand::None,
         }
     }
 
@@ -332,7 +332,7 @@ impl Record for MetricsCollector {
         match &mut self.kind {
             RunKind::Switchings(switchings) => switchings.piece(now, piece),
             RunKind::Rotation(rotation) => rotation.piece(now, piece),
-            RunKind::Spatial(_) => Ok(()),
+            RunKind::ThreeAxis(_) => Ok(()),
         }
     }
 
@@ -360,12 +360,12 @@ impl Record for MetricsCollector {
         match &mut self.kind {
             RunKind::Switchings(switchings) => switchings.record(now, sample),
             RunKind::Rotation(rotation) => rotation.record(now, sample),
-            RunKind::Spatial(spatial) => {
+            RunKind::ThreeAxis(rotation) => {
                 if let Sample::Report(report) = sample {
-                    spatial.observe_cycle(now, report);
+                    rotation.observe_cycle(now, report);
                 } else {
-                    sample.get().into_iter().for_each(|event| spatial.observe_bearing_event(event));
-                    sample.get().into_iter().for_each(|row| spatial.observe_acceleration(row));
+                    sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
+                    sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
                 }
                 sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
                 Ok(())

@@ -103,10 +103,10 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
     let end = scenario.duration.seconds();
     let modes = 0..sampled.body.modes.len();
     let ratios = |t: f64| {
-        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+        let ratio = |mode| scenario.study.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         modes.clone().map(ratio).collect()
     };
-    let drifting = scenario.drift.iter().flat_map(|drift| {
+    let drifting = scenario.study.drift.iter().flat_map(|drift| {
         let even = (0..DRIFTING).map(|index| end * f64::from(index) / f64::from(DRIFTING));
         drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
     });

@@ -208,7 +208,9 @@ impl ScenarioSpec {
 
     /// Returns all drives of the run; `None` if no appendage rotates.
     pub(super) fn drives(&self, model: &BodyModel) -> Result<Option<AppendageDrives>, ConfigError> {
-        let Some(driven) = model.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
+        let Some(driven) = model.three_axis().and_then(|body| body.articulation.clone()) else {
+            return Ok(None);
+        };
         let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);
         let end = Instant::START + self.duration;
         for index in 0..self.appendage.len() {

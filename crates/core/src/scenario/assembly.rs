@@ -54,7 +54,7 @@ impl ScenarioSpec {
             Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
             None => Vec::new(),
         };
-        Ok(BodyModel::Craft(Arc::new(AssembledSpacecraft::assemble(
+        Ok(BodyModel::Spacecraft(Arc::new(AssembledSpacecraft::assemble(
             spacecraft,
             &self.appendage,
             &angles,

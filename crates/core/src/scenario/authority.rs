@@ -4,11 +4,11 @@ use flexsc_control::actuator::{ActuatorAuthority, ActuatorKind, ActuatorPlacemen
 use flexsc_control::estimator::adaptive;
 use flexsc_control::law::{ActiveDamping, Authority, ErrorBand};
 use flexsc_control::sensor::Tachometer;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::rotation_vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::Spatial;
 
 use super::ScenarioSpec;
 use super::resolved::ResolvedScenario;
@@ -82,7 +82,7 @@ impl ResolvedScenario {
     pub(super) fn error_band(
         &self,
         written: &ScenarioSpec,
-        body: Option<&Spatial>,
+        body: Option<&ThreeAxisModel>,
         axis: usize,
     ) -> Option<f64> {
         let law = written.law.about(axis);

@@ -43,8 +43,8 @@ impl ScenarioSpec {
     }
 
     fn body_offers(&self, model: &BodyModel) -> BodyOffers {
-        let planar = model.planar();
-        let turns_appendages = model.craft().is_some_and(|craft| craft.driven.is_some());
+        let one_axis = model.one_axis();
+        let turns_appendages = model.three_axis().is_some_and(|body| body.articulation.is_some());
         let hub_points = match &self.spacecraft {
             Some(craft) if turns_appendages && craft.points.is_empty() => vec!["hub".to_owned()],
             Some(craft) if turns_appendages => craft.points.iter().map(|point| point.name.clone()).collect(),
@@ -54,13 +54,13 @@ impl ScenarioSpec {
             axes: self.axis_count(),
             kind: self.body_kind(),
             is_spacecraft: self.spacecraft.is_some(),
-            is_two_way: model.flexible().is_some(),
-            has_small_angles: model.spatial().is_some_and(|body| body.small_angles.is_some()),
+            is_two_way: model.is_two_way(),
+            has_small_angles: model.three_axis().is_some_and(|body| body.small_angles.is_some()),
             modes: model.mode_count(),
             overdamped: self.overdamped_mode(model),
             is_chain: model.chain().is_some(),
-            follows_motion: planar.is_some_and(|body| body.drive == CommandedQuantity::Motion),
-            damping_matrix: planar.filter(|body| body.is_coupled()).map(|_| self.damping_key()),
+            follows_motion: one_axis.is_some_and(|body| body.drive == CommandedQuantity::Motion),
+            damping_matrix: one_axis.filter(|body| body.is_coupled()).map(|_| self.damping_key()),
             drifts: self.drift.is_some(),
             turns_appendages,
             hub_points,

@@ -4,11 +4,12 @@ use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
-use flexsc_spacecraft::body::{BodyAxes, Spatial};
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
@@ -54,8 +55,8 @@ impl Scenario {
         }
         // The compatibility of three-axis parts was checked before.
         let parts = match self.model.axes() {
-            BodyAxes::One(body) => self.planar_inconsistency(body, offers, unmet),
-            BodyAxes::Three(body) => self.spatial_inconsistency(body, offers, unmet),
+            BodyAxes::One(body) => self.one_axis_inconsistency(body, offers, unmet),
+            BodyAxes::Three(body) => self.three_axis_inconsistency(body, offers, unmet),
         };
         parts.or_else(|| {
             if self.uncertain.is_empty() && self.correlated.is_empty() {
@@ -97,9 +98,9 @@ impl Scenario {
         })
     }
 
-    fn spatial_inconsistency(
+    fn three_axis_inconsistency(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         offers: &Offers,
         unmet: &Requirements,
     ) -> Option<ConfigError> {
@@ -115,9 +116,9 @@ impl Scenario {
 
     /// Checks that a spacecraft does not rotate faster than the limit of its modal model.
     fn rate_inconsistency(&self) -> Option<ConfigError> {
-        let craft = self.model.craft()?;
+        let craft = self.model.spacecraft()?;
         let RateLimit { rate: limit, why } = craft.rate_limit()?;
-        let start = vector(&craft.spatial.rate).norm();
+        let start = vector(&craft.model.rate).norm();
         if start > limit {
             let why = format!("must be below {limit:.3e} rad/s together, {why}, got {start:.3e}");
             return Some(ConfigError::new("spacecraft.rate", why));
@@ -134,7 +135,7 @@ impl Scenario {
         self.targets().iter().enumerate().find_map(fast)
     }
 
-    fn planar_inconsistency(
+    fn one_axis_inconsistency(
         &self,
         body: &AxisModel,
         offers: &Offers,

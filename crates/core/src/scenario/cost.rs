@@ -5,16 +5,16 @@ use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::AttitudeTarget;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::LONGEST_TURN;
+use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::NonNegative;
 use flexsc_numerics::time::Span;
 use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
-use flexsc_spacecraft::body::Spatial;
-use flexsc_spacecraft::body::spatial::PeriodicTorque;
-use flexsc_spacecraft::flow::LONGEST_TURN;
 
 use super::Scenario;
 use super::pace::{STEP, SWITCHES, TURNS};
@@ -298,10 +298,10 @@ impl Scenario {
         if !(is_sampled || switchings.is_empty()) {
             steps.push((SWITCHES.to_owned(), width * switchings.iter().sum::<f64>()));
         }
-        if let Some(body) = self.model.spatial().filter(|body| body.small_angles.is_none()) {
+        if let Some(body) = self.model.three_axis().filter(|body| body.small_angles.is_none()) {
             let rate = self.largest_expected_rate(body);
             let turn = LONGEST_TURN / rate;
-            let step = self.model.flexible().map_or(turn, |flexible| flexible.step(rate));
+            let step = body.flexible().map_or(turn, |flexible| flexible.step(rate));
             let step = step.min(self.rotor_step());
             if step.is_finite() {
                 let count = if self.is_quiet(rate) {
@@ -319,7 +319,7 @@ impl Scenario {
 
     /// Returns the body about each axis about which its motion has a closed form, as if that axis were alone.
     fn closed_form_axes(&self) -> &[AxisModel] {
-        let has_closed_form = self.model.spatial().is_none_or(|body| body.small_angles.is_some());
+        let has_closed_form = self.model.three_axis().is_none_or(|body| body.small_angles.is_some());
         if has_closed_form { &self.study.axes } else { &[] }
     }
 
@@ -356,7 +356,7 @@ impl Scenario {
     }
 
     /// Returns the expected largest frequency (rad/s) of the rotation and loads of a three-axis body.
-    fn largest_expected_rate(&self, body: &Spatial) -> f64 {
+    fn largest_expected_rate(&self, body: &ThreeAxisModel) -> f64 {
         let start = vector(&body.rate).norm();
         let limits = self.targets().iter().filter_map(AttitudeTarget::fastest).map(|(_, rate)| rate);
         let around = self.study.surroundings.as_ref().map_or(0.0, Surroundings::frequency);

@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::{CoupledFlow, CoupledMatrices};
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::TOO_FAR_APART;
-use flexsc_spacecraft::flow::{CoupledFlow, CoupledMatrices};
 
 use super::Scenario;
 
@@ -21,8 +21,8 @@ impl Scenario {
         if let Some(flow) = &self.linear {
             return Some(CoupledFlow::by_poles(body, flow, back_emf, total));
         }
-        (self.actuator.flywheel().is_some() || self.drift.is_some())
-            .then(|| CoupledFlow::new(body, self.drift.as_ref(), back_emf, total))
+        (self.actuator.flywheel().is_some() || self.study.drift.is_some())
+            .then(|| CoupledFlow::new(body, self.study.drift.as_ref(), back_emf, total))
     }
 
     /// Returns the damping rate by a wheel's back-EMF (1/s), and whether it acts on the rate of the elastic body.
@@ -34,7 +34,7 @@ impl Scenario {
     /// Computes the flow by poles of a body with a damping matrix, or with a wheel under a law that switches at
     /// crossings.
     pub(super) fn linear_flow(&self) -> Result<Option<Arc<LinearFlow>>, ConfigError> {
-        let Some(body) = self.model.planar() else { return Ok(None) };
+        let Some(body) = self.model.one_axis() else { return Ok(None) };
         let wheel = self.actuator.flywheel().map(|(_, key)| key);
         let crosses = self.law.is_switching() && self.study.sample_period.is_none();
         let damped = body.is_coupled();

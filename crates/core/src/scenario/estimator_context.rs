@@ -18,7 +18,7 @@ impl Scenario {
             estimator: self.estimator.as_ref(),
             axes: &study.axes,
             back_emf: study.back_emf,
-            drift: self.drift.as_ref(),
+            drift: study.drift.as_ref(),
             sampling: study.sample_period,
             angle_noise: self.sensor.angle_noise(),
             rate_noise: axes.clone().map(|axis| self.sensor.rate_noise(axis)).collect(),

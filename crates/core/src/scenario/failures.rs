@@ -95,7 +95,7 @@ impl Scenario {
                 "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
             _ if self.drift.is_some() => "have no closed form for modes that drift",
-            _ if self.model.planar().is_some_and(AxisModel::is_coupled) => {
+            _ if self.model.one_axis().is_some_and(AxisModel::is_coupled) => {
                 "have no closed form for modes that a damping matrix couples"
             }
             law if self.sensor.period(law.period()).is_none()

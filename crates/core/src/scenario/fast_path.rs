@@ -8,7 +8,7 @@ use super::Scenario;
 impl Scenario {
     /// Returns true if only the law moves a one-axis body, in closed form, and its angle is measured at every instant.
     pub fn has_fast_path(&self) -> bool {
-        matches!(self.model, BodyModel::Planar(_))
+        matches!(self.model, BodyModel::OneAxis(_))
             && self.linear.is_none()
             && self.drift.is_none()
             && self.plan.is_none()

@@ -145,7 +145,7 @@ impl Scenario {
     /// # Errors
     /// Fails for a three-axis body.
     pub fn one_angle(&self) -> Result<&AxisModel, ScenarioError> {
-        self.model.planar().ok_or_else(|| ScenarioError::Key {
+        self.model.one_axis().ok_or_else(|| ScenarioError::Key {
             origin: self.name.clone(),
             key: self.body_key(),
             why: "turns about three axes, and this is done for bodies with one angle".to_owned(),
@@ -159,7 +159,7 @@ impl Scenario {
 
     /// Plans the manoeuvre, if there is one.
     fn planned(&self) -> Result<Option<Plan>, ConfigError> {
-        let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.planar()) else { return Ok(None) };
+        let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.one_axis()) else { return Ok(None) };
         let body = manoeuvre.planned_for(own);
         if body.drive != own.drive {
             let why = "must be the same as the body's".to_owned();
@@ -175,7 +175,7 @@ impl Scenario {
 
     /// Returns the setpoint of a one-axis body: the end of the manoeuvre, or angle 0 from the start on.
     pub fn goal(&self) -> Setpoint {
-        let planned = self.plan.as_ref().zip(self.model.planar());
+        let planned = self.plan.as_ref().zip(self.model.one_axis());
         planned.map_or_else(Setpoint::default, |(plan, body)| Setpoint {
             from: Instant::START + Span::from_seconds(plan.time),
             angle: body.angle.get() + plan.angle,
@@ -202,7 +202,7 @@ impl Scenario {
     pub fn self_contained(&self) -> ScenarioSpec {
         let mut written = self.written.clone();
         written.inline_files();
-        if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.planar()) {
+        if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.one_axis()) {
             written.body = Some(Body::Planar(body.into()));
             let of_matrices = |key: &String| key.starts_with("body.matrices");
             written.uncertain.retain(|key, _| !of_matrices(key));

@@ -9,14 +9,16 @@ use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
+use flexsc_dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, rotation_vector, tensor};
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{HubRotor, Translation};
-use flexsc_spacecraft::body::{BodyAxes, BodyModel, Spatial};
+use flexsc_spacecraft::body::{BodyAxes, BodyModel};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
@@ -32,6 +34,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct ResolvedScenario {
     /// One-axis model of the body about each of its axes, as if that axis were alone.
     pub axes: Vec<AxisModel>,
+    /// Drift of the natural frequencies.
+    pub drift: Option<FrequencyDrift>,
     /// Authority of the actuators about each axis.
     pub authorities: Vec<Authority>,
     /// Period of the law, if it has one.
@@ -93,6 +97,7 @@ impl ResolvedScenario {
         let cycle = written.law.period();
         let mut study = Self {
             law_period: cycle,
+            drift: written.drift.as_ref().map(Into::into),
             sample_period: written.sample_period(),
             profile: AttitudeProfile::new(
                 written.targets(),
@@ -128,7 +133,7 @@ impl ResolvedScenario {
         }
         if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::attitude) {
             let jets = study.groups.is_some();
-            let mounted = model.spatial().map(|body| (body, &study.sensor_points[..], jets));
+            let mounted = model.three_axis().map(|body| (body, &study.sensor_points[..], jets));
             let setting = spec.setup(&written.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
@@ -139,7 +144,7 @@ impl ResolvedScenario {
             study.authorities[axis].threshold = study.damping_threshold(written, axis)?;
         }
         study.expected_bands =
-            (0..study.axes.len()).map(|axis| study.error_band(written, model.spatial(), axis)).collect();
+            (0..study.axes.len()).map(|axis| study.error_band(written, model.three_axis(), axis)).collect();
         Ok(study)
     }
 
@@ -148,7 +153,7 @@ impl ResolvedScenario {
         &mut self,
         written: &ScenarioSpec,
         model: &BodyModel,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         unmet: &Requirements,
     ) -> Result<(), ConfigError> {
         let first = body.points.first().map_or(String::new(), |point| point.name.clone());
@@ -182,8 +187,8 @@ impl ResolvedScenario {
                 return Err(fault);
             }
             let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
-            if let Some(flexible) = model.flexible().filter(|_| is_observed) {
-                let bearings = wheels.bearings((body, flexible));
+            if model.is_two_way() && is_observed {
+                let bearings = wheels.bearings(body);
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
@@ -199,12 +204,12 @@ impl ResolvedScenario {
             named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
         }
         let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
-        let craft = model.craft().filter(|_| pushed);
+        let craft = model.spacecraft().filter(|_| pushed);
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));
         let measured = self.measured_rates(body);
         let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.visibilities).enumerate() {
-            let mode = |(index, mode): (usize, &flexsc_spacecraft::body::spatial::ThreeAxisMode)| {
+            let mode = |(index, mode): (usize, &ThreeAxisMode)| {
                 let shape = seen[index];
                 let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
                 let gain = shape * input.forces[index] / input.acceleration;
@@ -215,7 +220,7 @@ impl ResolvedScenario {
                 }
             };
             self.axes.push(AxisModel {
-                inertia: Positive::new(body.inertia_tensor()[(axis, axis)]).unwrap_or(Positive::ONE),
+                inertia: Positive::new(body.inertia[(axis, axis)]).unwrap_or(Positive::ONE),
                 angle: Finite::new(angles[axis]).unwrap_or_default(),
                 rate: body.rate[axis],
                 modes: body.modes.iter().enumerate().map(mode).collect(),
@@ -226,9 +231,9 @@ impl ResolvedScenario {
     }
 
     /// Returns the measured modal rates of a three-axis body, and the effect of its actuators on them.
-    pub fn measured_rates(&self, body: &Spatial) -> adaptive::RateMeasurement {
+    pub fn measured_rates(&self, body: &ThreeAxisModel) -> adaptive::RateMeasurement {
         let (seen, hub) = (rotations(body, &self.sensor_points[0]), rotations(body, &self.torque_point));
-        let tensor = body.inertia_tensor();
+        let tensor = body.inertia;
         let input = |axis: usize| {
             let jets = self.groups.as_ref().filter(|_| self.jet_only_axes[axis]);
             let (forces, torque, acceleration) = if let Some(groups) = jets {
@@ -260,7 +265,7 @@ impl ResolvedScenario {
         match scenario.model.axes() {
             BodyAxes::One(body) => TorqueDistribution::for_one_axis(body.commanded_inertia()),
             BodyAxes::Three(body) => TorqueDistribution::for_three_axes(
-                scenario.law.inertia().map_or_else(|| body.inertia_tensor(), tensor),
+                scenario.law.inertia().map_or_else(|| body.inertia, tensor),
             ),
         }
     }
@@ -305,9 +310,9 @@ impl ResolvedScenario {
 fn surroundings(
     written: &ScenarioSpec,
     model: &BodyModel,
-    body: &Spatial,
+    body: &ThreeAxisModel,
 ) -> Result<Option<SurroundingsState>, ConfigError> {
-    let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
+    let bendings = model.spacecraft().map_or(&[][..], |craft| &craft.bendings);
     let sunny =
         written.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
     if !bendings.is_empty() && !sunny {
@@ -321,18 +326,14 @@ fn surroundings(
         None => Vec::new(),
     };
     let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
-    let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
-    let around = SurroundingsState::new(
-        environment,
-        written.orbit_environment(),
-        [body.inertia_tensor(), spinning],
-        &centre,
-    );
+    let centre = model.spacecraft().map_or_else(Vector::zeros, |craft| craft.centre);
+    let around =
+        SurroundingsState::new(environment, written.orbit_environment(), [body.inertia, spinning], &centre);
     Ok(Some(around.with_thermal_bending(bendings)))
 }
 
 /// Returns the modal rotations at a point (rad/(m sqrt(kg))).
-fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
+fn rotations(body: &ThreeAxisModel, point: &str) -> Vec<Vector> {
     body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
 }
 

@@ -3,18 +3,19 @@
 
 use flexsc_control::actuator::ActuatorTask;
 use flexsc_control::sensor::SensorKind;
+use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::{AXES, rotation_vector, vector};
+use flexsc_numerics::attitude::{AXES, Vector, rotation_vector, vector};
 use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::body::BodyModel;
 use flexsc_spacecraft::body::craft::Appendage;
-use flexsc_spacecraft::body::{BodyModel, SmallAngles, Spatial};
 
 use super::{ResolvedScenario, ScenarioSpec};
 
 impl ScenarioSpec {
     /// Checks that the parts of a body with small rotations leave its motion linear.
     pub(super) fn validate_small_angles(&self, model: &BodyModel) -> Option<ConfigError> {
-        model.spatial()?.small_angles?;
+        model.three_axis()?.small_angles?;
         let checks: [&dyn Fn() -> Option<(String, &'static str)>; 5] = [
             &|| self.body_beyond_small_angles(model),
             &|| self.torque_beyond_small_angles(model),
@@ -45,7 +46,8 @@ impl ScenarioSpec {
                 "changes the modes or pushes them during the run, and those of small rotations are constant";
             return Some((format!("appendage[{index}].{key}"), why));
         }
-        let damping = model.flexible().and_then(|flexible| flexible.damping.as_ref());
+        let coupling = model.three_axis().and_then(|body| body.coupling.as_ref());
+        let damping = coupling.and_then(|coupling| coupling.damping.as_ref());
         let is_asked = self.spacecraft.as_ref().is_some_and(|craft| craft.whole_damping);
         let key = if is_asked { "spacecraft.whole_damping" } else { "spacecraft.small_angles" };
         damping.map(|_| (key.to_owned(), "needs uncoupled free modes, and the damping matrix couples them"))
@@ -53,8 +55,8 @@ impl ScenarioSpec {
 
     /// Returns the key of a torque that depends on attitude or time, with the reason.
     fn torque_beyond_small_angles(&self, model: &BodyModel) -> Option<(String, &'static str)> {
-        let own = model.spatial().and_then(|body| body.disturbance.as_ref());
-        if own.is_some_and(|own| own.amplitude.iter().any(|amplitude| amplitude.get() != 0.0)) {
+        let own = model.three_axis().and_then(|body| body.disturbance.as_ref());
+        if own.is_some_and(|own| own.amplitude != Vector::zeros()) {
             let why = "is periodic, and torques on small rotations are constant for a while";
             return Some(("body.spatial.disturbance.amplitude".to_owned(), why));
         }
@@ -126,10 +128,10 @@ impl ScenarioSpec {
     /// Checks that a body with small rotations starts near a target that stays fixed.
     pub(super) fn validate_small_start(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         study: &ResolvedScenario,
     ) -> Option<ConfigError> {
-        let SmallAngles { angle: largest, rate: fastest } = body.small_angles?;
+        let SmallAngleBounds { angle: largest, rate: fastest } = body.small_angles?;
         let profile = &study.profile;
         if profile.is_moving(Instant::START) || profile.next(Instant::START).is_some() {
             let own = !self.law.own_targets().is_empty();
@@ -143,8 +145,8 @@ impl ScenarioSpec {
         }
         let angles = rotation_vector(&profile.target(Instant::START), &body.attitude.get());
         let checks = [
-            ("attitude", angles, largest.get(), "angle", "rad from the target"),
-            ("rate", vector(&body.rate), fastest.get(), "rate", "rad/s"),
+            ("attitude", angles, largest, "angle", "rad from the target"),
+            ("rate", vector(&body.rate), fastest, "rate", "rad/s"),
         ];
         checks.into_iter().find_map(|(key, values, limit, of, unit)| {
             let axis = (0..3).find(|axis| values[*axis].abs() > limit)?;

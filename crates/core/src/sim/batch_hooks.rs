@@ -2,9 +2,9 @@
 //! itself.
 
 use flexsc_control::estimator::kalman::KalmanFilter;
+use flexsc_dynamics::flow::ExternalMotion;
 use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
-use flexsc_spacecraft::flow::ExternalMotion;
 
 use super::plant::AppliedTorque;
 use super::{Simulation, SimulationError};

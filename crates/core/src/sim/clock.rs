@@ -37,7 +37,7 @@ impl Clock {
         Self {
             now: Instant::START,
             end: Instant::START + scenario.duration,
-            cycle_period: scenario.model.spatial().map(|_| scenario.study.assessment_period),
+            cycle_period: scenario.model.three_axis().map(|_| scenario.study.assessment_period),
             next_cycle: None,
             decisions_at_now: 0,
             switchings: (0, Instant::START),

@@ -37,7 +37,7 @@ impl PlannedManoeuvre {
     /// Creates the planned manoeuvre of a scenario; `None` without one.
     fn new(scenario: &Scenario) -> Option<Self> {
         let (manoeuvre, plan) = scenario.manoeuvre.as_ref().zip(scenario.plan.as_ref())?;
-        let body = scenario.model.planar()?;
+        let body = scenario.model.one_axis()?;
         Some(Self {
             waveform: Arc::new(plan.waveform.clone()),
             from: (body.angle.get(), body.rate.get()),
@@ -52,7 +52,7 @@ impl Guidance {
         Self {
             setpoint: scenario.goal(),
             planned: PlannedManoeuvre::new(scenario),
-            profile: scenario.model.spatial().map(|_| scenario.study.profile.clone()),
+            profile: scenario.model.three_axis().map(|_| scenario.study.profile.clone()),
         }
     }
 

@@ -3,13 +3,13 @@
 use flexsc_control::actuator::{Actuator, ActuatorEvent, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::Drift;
 use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::plant::{AppliedTorque, Plant};
 use crate::scenario::Scenario;
@@ -38,7 +38,7 @@ impl Loads {
     pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         let at = |t: f64| Instant::START + Span::from_seconds(t);
         let breaks = scenario.plan.iter().flat_map(|plan| plan.waveform.breaks()).map(at);
-        let kinks = scenario.drift.iter().flat_map(Drift::kinks).map(at);
+        let kinks = scenario.study.drift.iter().flat_map(FrequencyDrift::kinks).map(at);
         let disturbed = scenario.disturbance.iter().flat_map(Disturbance::change_times);
         let around = scenario.study.surroundings.iter().flat_map(SurroundingsState::change_times);
         let turned = scenario.study.drives.iter().flat_map(|drives| &drives.courses.changes);
@@ -53,7 +53,7 @@ impl Loads {
             actuator: scenario.study.actuator(scenario, seed),
             distribution: scenario.study.distribution(scenario),
             disturbances: disturbances
-                .map(|(index, of)| DisturbanceState::new(of, scenario.model.spatial(), stream(index)))
+                .map(|(index, of)| DisturbanceState::new(of, scenario.model.three_axis(), stream(index)))
                 .collect(),
             scheduled_changes: edges,
             next_change: None,

@@ -2,9 +2,9 @@
 //! as a vector, and its parameters.
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::flow::ThreeAxisState;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
-use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::{ObservationField, Simulation, SimulationError};
 use crate::scenario::Scenario;
@@ -57,7 +57,7 @@ impl Simulation {
     }
 
     /// Returns the state of a three-axis body at the current instant.
-    pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
+    pub fn three_axis_state(&self) -> Option<&ThreeAxisState> {
         self.plant.quantities().three_axis().map(|motion| &motion.body().state)
     }
 

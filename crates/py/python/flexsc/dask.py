@@ -89,7 +89,12 @@ class _Executor(Executor):
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Submit a task. A deleted part is made again: tasks are not identified by their arguments."""
         result: Future[Any] = Future()
-        task = self._client.submit(fn, *args, **kwargs, pure=False, retries=10)
+        try:
+            task = self._client.submit(fn, *args, **kwargs, pure=False, retries=10)
+        except Exception:
+            # A client that lost its scheduler closes between two checks.
+            self.check()
+            raise
         self._kept[task] = result
 
         def done(task: Any) -> None:

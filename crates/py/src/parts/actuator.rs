@@ -7,9 +7,9 @@ use flexsc_core::control::actuator::{
 };
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::part::Part;
+use flexsc_core::dynamics::wrench::Wrench;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant as Exact, Span};
-use flexsc_core::spacecraft::wrench::Wrench;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -1,6 +1,5 @@
 //! The controlled body, and the ways to describe it.
 
-mod chain;
 mod coordinate_weights;
 pub mod craft;
 mod damping_ratios;
@@ -24,11 +23,10 @@ use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use chain::Chain;
 pub use coordinate_weights::CoordinateWeights;
 pub use craft::AssembledSpacecraft;
 pub use damping_ratios::DampingRatios;
-pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, SERIES, Sinusoid};
+pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, Sinusoid};
 pub use free_and_clamped::{clamped_frequencies, free_frequencies};
 pub use mode::Mode;
 pub use model::{BodyAxes, BodyModel};
@@ -108,8 +106,7 @@ impl Body {
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => {
-                spatial.check()?;
-                return Ok(BodyModel::Spatial(Arc::new(spatial.clone())));
+                return Ok(BodyModel::ThreeAxis(Arc::new(spatial.solve()?)));
             }
         };
         if let Some(fault) = one_axis::inconsistency(&body) {
@@ -117,6 +114,6 @@ impl Body {
         }
         let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
         let body = Arc::new(body);
-        Ok(chain.map_or(BodyModel::Planar(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
+        Ok(chain.map_or(BodyModel::OneAxis(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
     }
 }

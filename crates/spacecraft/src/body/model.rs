@@ -3,22 +3,23 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput};
-use flexsc_dynamics::three_axis::FlexibleBody;
+use flexsc_dynamics::chain_model::Chain;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::quantity::Finite;
 
-use super::{AssembledSpacecraft, Chain, Spatial};
+use super::AssembledSpacecraft;
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyModel {
     /// One-axis body with modes in closed form.
-    Planar(Arc<AxisModel>),
+    OneAxis(Arc<AxisModel>),
     /// One-axis body with panels that bend by any angles, and the modes that it has for small angles.
     Chain(Arc<AxisModel>, Arc<Chain>),
     /// Three-axis body whose modes do not act back on its rotation.
-    Spatial(Arc<Spatial>),
+    ThreeAxis(Arc<ThreeAxisModel>),
     /// Three-axis spacecraft whose rotation and modes are coupled in both directions.
-    Craft(Arc<AssembledSpacecraft>),
+    Spacecraft(Arc<AssembledSpacecraft>),
 }
 
 /// Body in free modes, by the number of its axes.
@@ -27,26 +28,26 @@ pub enum BodyAxes<'a> {
     /// One-axis body.
     One(&'a AxisModel),
     /// Three-axis body.
-    Three(&'a Spatial),
+    Three(&'a ThreeAxisModel),
 }
 
 impl BodyModel {
     /// Returns the body in free modes.
     pub fn axes(&self) -> BodyAxes<'_> {
         match self {
-            Self::Planar(body) | Self::Chain(body, _) => BodyAxes::One(body),
-            Self::Spatial(body) => BodyAxes::Three(body),
-            Self::Craft(craft) => BodyAxes::Three(&craft.spatial),
+            Self::OneAxis(body) | Self::Chain(body, _) => BodyAxes::One(body),
+            Self::ThreeAxis(body) => BodyAxes::Three(body),
+            Self::Spacecraft(craft) => BodyAxes::Three(&craft.model),
         }
     }
 
     /// Returns the body in free modes, if it has one axis.
-    pub fn planar(&self) -> Option<&AxisModel> {
+    pub fn one_axis(&self) -> Option<&AxisModel> {
         if let BodyAxes::One(body) = self.axes() { Some(body) } else { None }
     }
 
     /// Returns the body in free modes, if it has three axes.
-    pub fn spatial(&self) -> Option<&Spatial> {
+    pub fn three_axis(&self) -> Option<&ThreeAxisModel> {
         if let BodyAxes::Three(body) = self.axes() { Some(body) } else { None }
     }
 
@@ -56,13 +57,13 @@ impl BodyModel {
     }
 
     /// Returns the spacecraft, if the body is assembled from a hub and appendages.
-    pub fn craft(&self) -> Option<&AssembledSpacecraft> {
-        if let Self::Craft(craft) = self { Some(craft) } else { None }
+    pub fn spacecraft(&self) -> Option<&AssembledSpacecraft> {
+        if let Self::Spacecraft(craft) = self { Some(craft) } else { None }
     }
 
-    /// Returns the two-way coupling of rotation and modes, which only a spacecraft has.
-    pub fn flexible(&self) -> Option<&FlexibleBody> {
-        self.craft().map(|craft| &craft.flexible)
+    /// Returns true if the modes act back on the rotation, as only those of a spacecraft do.
+    pub fn is_two_way(&self) -> bool {
+        self.three_axis().is_some_and(|body| body.coupling.is_some())
     }
 
     /// Returns the number of elastic modes.
@@ -93,26 +94,26 @@ impl BodyModel {
 
     /// Returns the coordinates that are observed in addition to the hub's angle.
     pub fn outputs(&self) -> &[AxisOutput] {
-        self.planar().map_or(&[], |body| &body.outputs)
+        self.one_axis().map_or(&[], |body| &body.outputs)
     }
 
     /// Returns the name of the commanded quantity and its unit.
     pub fn commanded_quantity(&self) -> (&'static str, &'static str) {
-        self.planar().map_or(("torque", "N m"), AxisModel::commanded)
+        self.one_axis().map_or(("torque", "N m"), AxisModel::commanded)
     }
 
     /// Returns the unit of a torque on the body.
     pub fn torque_unit(&self) -> &'static str {
-        self.planar().map_or("N m", AxisModel::torque_unit)
+        self.one_axis().map_or("N m", AxisModel::torque_unit)
     }
 
     /// Returns true if the commanded quantity is an acceleration (rad/s²) and not a torque (N m).
     pub fn commands_acceleration(&self) -> bool {
-        self.planar().is_some_and(AxisModel::commands_acceleration)
+        self.one_axis().is_some_and(AxisModel::commands_acceleration)
     }
 
     /// Returns true if the inertia is 1, as of a one-axis body that is described without one.
     pub fn has_unit_inertia(&self) -> bool {
-        self.planar().is_some_and(AxisModel::has_unit_inertia)
+        self.one_axis().is_some_and(AxisModel::has_unit_inertia)
     }
 }

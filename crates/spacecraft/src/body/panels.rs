@@ -10,6 +10,7 @@
 //! and the potential energy 1/2 sum c_k (phi_(k+1) - phi_k)² with the sections' angles phi_k = (v_k - v_(k-1))/l_k.
 
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::chain_model::Chain;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::Structure;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Tolerance};
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
-use super::{Chain, DampingRatios, Drive};
+use super::{DampingRatios, Drive};
 
 /// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;
@@ -152,7 +153,7 @@ impl Panels {
     pub fn chain(&self, model: &AxisModel) -> Option<Chain> {
         let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
         let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
-        Some(Chain::new(&lengths, &structure, model, self.tolerance.get()))
+        Some(Chain::new(&lengths, structure.mass(), structure.stiffness(), model, self.tolerance.get()))
     }
 
     /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
@@ -178,7 +179,7 @@ impl Panels {
             rate: *rate,
             outputs,
         };
-        reduction.planar(&structure).map_err(|fault| match fault.key.as_str() {
+        reduction.axis_model(&structure).map_err(|fault| match fault.key.as_str() {
             "damping" | "keep" => fault,
             _ => exceeds_precision(&fault.why),
         })

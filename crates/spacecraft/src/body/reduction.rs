@@ -33,7 +33,7 @@ pub struct ObservedCoordinate {
 
 impl ModalReduction<'_> {
     /// Computes the planar body with the modes to keep.
-    pub fn planar(&self, structure: &Structure) -> Result<AxisModel, ConfigError> {
+    pub fn axis_model(&self, structure: &Structure) -> Result<AxisModel, ConfigError> {
         let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
         if let Some(damping) = &self.damping_matrix {
             if self.drive == CommandedQuantity::Motion {

@@ -1,5 +1,6 @@
 //! Small rotations of a three-axis body about a fixed target, with the bounds within which they are computed.
 
+use flexsc_dynamics::three_axis_model::SmallAngleBounds;
 use flexsc_numerics::quantity::{Fraction, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,12 @@ fn largest_angle() -> Fraction {
 
 fn largest_rate() -> Positive {
     Positive::new(0.01).unwrap_or(Positive::ONE)
+}
+
+impl From<SmallAngles> for SmallAngleBounds {
+    fn from(bounds: SmallAngles) -> Self {
+        Self { angle: bounds.angle.get(), rate: bounds.rate.get() }
+    }
 }
 
 impl Default for SmallAngles {

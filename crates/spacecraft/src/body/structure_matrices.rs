@@ -102,7 +102,7 @@ impl MatrixBody {
             rate: *rate,
             outputs,
         }
-        .planar(&structure)
+        .axis_model(&structure)
     }
 
     fn names(&self, order: usize) -> Result<Vec<String>, ConfigError> {

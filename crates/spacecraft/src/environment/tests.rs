@@ -3,6 +3,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use flexsc_dynamics::flow::{RigidBody, RigidState};
 use flexsc_dynamics::three_axis::{
     FlexibleBody, FreeMode, Rotor, SegmentLoads, Surroundings, ThreeAxisMotion,
 };
@@ -12,7 +13,6 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::{Environment, OrbitEnvironment, SurroundingsState};
 use crate::body::Spatial;
-use crate::flow::{RigidBody, RigidState};
 
 type Never = std::convert::Infallible;
 
@@ -48,7 +48,7 @@ impl One {
         let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
         let body: Spatial = flexsc_formats::document::from_text(&text).expect("a body");
-        let rigid = RigidBody::new(&body);
+        let rigid = RigidBody::new(&body.solve().expect("valid"));
         Self { turn: rigid.start(attitude, rate), rigid, surroundings, t: 0.0 }
     }
 

@@ -9,7 +9,7 @@ mod declared;
 mod mosaic;
 mod one_axis;
 mod panel;
-mod spatial;
+mod three_axis;
 
 use std::borrow::Cow;
 
@@ -56,7 +56,7 @@ impl Layout {
     pub fn for_scenario(scenario: &Scenario) -> Self {
         let mut tabs = match scenario.model.axes() {
             BodyAxes::One(body) => one_axis::tabs(scenario, body),
-            BodyAxes::Three(body) => spatial::tabs(scenario, body),
+            BodyAxes::Three(body) => three_axis::tabs(scenario, body),
         };
         tabs.extend(declared::tab(scenario));
         tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });

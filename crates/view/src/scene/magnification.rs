@@ -8,11 +8,10 @@ use flexsc_core::control::actuator::AssignedMember;
 use flexsc_core::control::law::{Frame, TorqueConditions};
 use flexsc_core::dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_core::dynamics::three_axis::HarmonicLine;
+use flexsc_core::dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_core::numerics::attitude::{Vector, from_yaw_pitch_roll};
 use flexsc_core::numerics::quantity::{Finite, Positive};
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::spacecraft::body::Spatial;
-use flexsc_core::spacecraft::body::spatial::ThreeAxisMode;
 use flexsc_core::spacecraft::disturbance::Disturbance;
 
 /// Bending and rotation (rad) that the estimated motion has as drawn.
@@ -75,7 +74,7 @@ pub fn expected_rate(scenario: &Scenario, body: &AxisModel) -> f64 {
 }
 
 /// Returns the estimated rotation angle of a three-axis body (rad).
-pub fn expected_attitude_angle(scenario: &Scenario, body: &Spatial) -> f64 {
+pub fn expected_attitude_angle(scenario: &Scenario, body: &ThreeAxisModel) -> f64 {
     let targets = scenario.targets().iter().map(|target| {
         let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
         from_yaw_pitch_roll(roll, pitch, yaw)
@@ -129,7 +128,7 @@ pub fn largest_torque(scenario: &Scenario, body: &AxisModel) -> f64 {
 }
 
 /// Returns the estimated largest torque (N m) about an axis of a three-axis body, for actuators other than jets.
-fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
+fn axis_torque(scenario: &Scenario, body: &ThreeAxisModel, axis: usize) -> f64 {
     let members = scenario.actuator.members();
     let serving = members.iter().find(|member| member.share(axis) > 0.0);
     let study = &scenario.study;
@@ -155,14 +154,14 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
 
 /// Returns the estimated displacements of the modes of a three-axis body (m sqrt(kg)), under the jets, the torque of
 /// any axis, or a force.
-pub fn expected_modal_displacements(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
-    let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
+pub fn expected_modal_displacements(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<f64> {
+    let torques = [0, 1, 2].map(|axis| axis_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.torque_point);
     // Pulses may repeat with the period of a mode, and add up.
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
         scenario.disturbance.iter().filter_map(|of| Some((of.force_effect(body)?, times(of)))).collect();
-    let warmed = scenario.model.craft().map_or(&[][..], |craft| &craft.bendings);
+    let warmed = scenario.model.spacecraft().map_or(&[][..], |craft| &craft.bendings);
     let mode = |(index, mode): (usize, &ThreeAxisMode)| {
         let w = mode.frequency.get();
         let fired = scenario.study.groups.iter().flatten().flatten().map(|group| group.push.forces[index]);

@@ -7,13 +7,13 @@ use flexsc_core::Scenario;
 use flexsc_core::control::actuator::GroupPair;
 use flexsc_core::dynamics::ModeState;
 use flexsc_core::dynamics::three_axis::ArticulatedPanel;
+use flexsc_core::dynamics::three_axis_model::{ModelPoint, ThreeAxisModel};
 use flexsc_core::numerics::attitude::{Vector, vector};
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::ThreeAxisPose;
 use flexsc_core::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
 use flexsc_core::record::row::LogDate;
-use flexsc_core::spacecraft::body::Spatial;
 
 use super::Extent;
 use super::magnification::{bending, expected_attitude_angle, expected_modal_displacements, turning};
@@ -78,14 +78,14 @@ pub struct ThreeAxisScene {
 
 impl ThreeAxisScene {
     /// Creates the scene of a scenario.
-    pub fn new(scenario: &Scenario, body: &Spatial) -> Self {
+    pub fn new(scenario: &Scenario, body: &ThreeAxisModel) -> Self {
         let spec = &scenario.log.scene;
         let jets = scenario.actuator.jets().map(|(jets, _)| jets);
         let thrusters = jets.map_or(&[][..], |jets| &jets.thrusters);
-        let point = |point: &flexsc_core::spacecraft::body::spatial::NamedPoint| ScenePoint {
+        let point = |point: &ModelPoint| ScenePoint {
             name: point.name.clone(),
-            at: vector(&point.position),
-            shapes: body.shapes(&point.name),
+            at: point.position,
+            shapes: point.shapes.clone(),
         };
         let points: Vec<ScenePoint> = body.points.iter().map(point).collect();
         let farthest = points.iter().map(|point| point.at.norm()).fold(0.0, f64::max);

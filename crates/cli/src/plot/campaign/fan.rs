@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::super::motion::MotionData;
 use super::super::readable;
 use super::super::run_events::RunEvents;
-use super::super::spatial::CycleData;
+use super::super::three_axis::CycleData;
 use super::super::time;
 use crate::error::CliError;
 use crate::{progress, say};

@@ -5,11 +5,11 @@
 //! commanded torque T and white noise n. The law reads the motion of the hub, or the rigid motion without phi q and phi
 //! q'.
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
-use flexsc_spacecraft::body::Spatial;
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -110,7 +110,12 @@ impl ElasticStates {
     ///
     /// # Errors
     /// A `ConfigError` with the key and the reason.
-    pub fn known(&self, body: &Spatial, mounts: &[String], gyro: usize) -> Result<FilterModes, ConfigError> {
+    pub fn known(
+        &self,
+        body: &ThreeAxisModel,
+        mounts: &[String],
+        gyro: usize,
+    ) -> Result<FilterModes, ConfigError> {
         if self.modes.is_empty() {
             return Err(ConfigError::new("modes", "must name at least one mode"));
         }
@@ -157,7 +162,7 @@ impl ElasticStates {
                 initial: [displacement, self.rate.map_or(displacement, |rate| rate.get() / frequency)],
             }
         };
-        let tensor: Matrix3<f64> = body.inertia_tensor();
+        let tensor: Matrix3<f64> = body.inertia;
         Ok(FilterModes {
             each: self.modes.iter().enumerate().map(known).collect(),
             noise: self.noise.get(),

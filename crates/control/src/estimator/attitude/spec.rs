@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::time::Span;
-use flexsc_spacecraft::body::Spatial;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -112,7 +112,7 @@ pub struct FilterSetup {
 }
 
 /// Body, points at which its sensors are mounted, and true if jets drive it.
-pub type SensorMounts<'a> = (&'a Spatial, &'a [String], bool);
+pub type SensorMounts<'a> = (&'a ThreeAxisModel, &'a [String], bool);
 
 impl AttitudeFilter {
     /// Adds the requirements of the filter on the other parts of a scenario, except its sensors.

@@ -13,10 +13,10 @@ mod steady_state;
 mod tests;
 
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::CoupledMatrices;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Stream;
 use flexsc_spacecraft::body::Mode;
-use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

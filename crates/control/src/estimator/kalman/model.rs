@@ -5,7 +5,7 @@
 //! ratios change linearly, and each substep has those of its middle.
 
 use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_spacecraft::flow::ModeFlow;
+use flexsc_dynamics::flow::ModeFlow;
 use nalgebra::DMatrix;
 
 /// Model of the body in a Kalman filter.
@@ -250,8 +250,8 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
 mod tests {
     use super::*;
     use flexsc_dynamics::axis_model::AxisModel;
+    use flexsc_dynamics::flow::CoupledMatrices;
     use flexsc_spacecraft::body::Planar;
-    use flexsc_spacecraft::flow::CoupledMatrices;
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 

@@ -1,7 +1,7 @@
 //! Plant of a sampled loop in discrete time at given frequencies: everything that does not depend on the gain.
 
 use flexsc_control::law::Differentiation;
-use flexsc_spacecraft::flow::CoupledMatrices;
+use flexsc_dynamics::flow::CoupledMatrices;
 use nalgebra::{DMatrix, DVector};
 
 use super::{ClosedLoop, SampledLoop};

@@ -22,7 +22,7 @@ impl SampledLoop {
     /// A key that such a loop does not support, and the reason.
     pub fn from_scenario(scenario: &Scenario) -> Result<(Self, &Pd), ConfigError> {
         let refused = |key: &str, why: &str| Err(ConfigError::new(key, why));
-        let Some(body) = scenario.model.planar() else {
+        let Some(body) = scenario.model.one_axis() else {
             return refused(
                 &scenario.body_key(),
                 "turns about three axes: only loops with one angle are analysed",

@@ -1,10 +1,10 @@
 //! Motions of bodies in lanes, from the start of one segment to the next: with drifting or with constant frequencies.
 
+use flexsc_dynamics::flow::{CoupledMatrices, DriftingEquations, RatioSeries, TransitionFlow};
+use flexsc_dynamics::frequency_drift::SERIES;
 use flexsc_dynamics::polynomial_piece::REACH;
 use flexsc_numerics::lanes::LaneFloat;
 use flexsc_numerics::polynomial::TERMS;
-use flexsc_spacecraft::body::SERIES;
-use flexsc_spacecraft::flow::{CoupledMatrices, DriftingEquations, RatioSeries, TransitionFlow};
 
 use super::BatchedRun;
 

@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::flow::{ElasticModes, RigidBody, ThreeAxisState};
+use flexsc_dynamics::periodic_torque::PeriodicTorque;
+use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::three_axis::{
     ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, RotorObservation, SegmentLoads, SharedSteps,
     SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::{Vector, rotation, vector};
 use flexsc_spacecraft::body::craft::Translation;
-use flexsc_spacecraft::body::spatial::{PeriodicTorque, Spatial};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
-use flexsc_spacecraft::sine::Sine;
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::{AppendageDrives, DriveProfiles};
@@ -53,7 +54,7 @@ pub struct AccelerometerMount {
 
 impl AccelerometerMount {
     /// Creates the mount at a point of a body with total mass `mass` (kg).
-    pub fn new(body: &Spatial, mass: f64, point: &str) -> Self {
+    pub fn new(body: &ThreeAxisModel, mass: f64, point: &str) -> Self {
         let first = body.points.first().map_or("", |point| &point.name);
         let (here, hub) = (body.shapes(point), body.shapes(first));
         Self {
@@ -73,7 +74,7 @@ struct ExternalTorques {
     /// Environment.
     around: Option<SurroundingsState>,
     /// Sinusoidal torques of actuators and disturbances, each with its axis.
-    sines: Vec<(Vector, Sine)>,
+    sines: Vec<(Vector, SineTorque)>,
 }
 
 impl ExternalTorques {
@@ -108,13 +109,13 @@ impl Surroundings for ExternalTorques {
 
     fn bound(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::bound);
-        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.get().abs()).sum();
+        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.abs()).sum();
         own + self.around.as_ref().map_or(0.0, Surroundings::bound) + sines
     }
 
     fn frequency(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::frequency);
-        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency.get()).fold(0.0, f64::max);
+        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency).fold(0.0, f64::max);
         own + self.around.as_ref().map_or(0.0, Surroundings::frequency) + fastest
     }
 }
@@ -131,7 +132,7 @@ impl CoupledMotion {
     /// Creates the motion at the start, under the environment alone, with the modal rotations at the first sensor and
     /// where torques act, the bearings of the rotors, if any, and the steps that it shares with other runs.
     pub fn new(
-        body: &Spatial,
+        body: &ThreeAxisModel,
         flexible: &FlexibleBody,
         around: Option<SurroundingsState>,
         moving: Option<Translation>,

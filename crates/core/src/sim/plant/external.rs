@@ -4,10 +4,10 @@ use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::flow::{Flow, FlowQuantities};
 use super::one_axis_body::{OneAxisBody, OneAxisQuantities};

@@ -8,10 +8,10 @@ use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::one_axis_body::OneAxisQuantities;
 use super::three_axis_body::ThreeAxisQuantities;

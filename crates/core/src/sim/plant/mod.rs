@@ -16,17 +16,18 @@ use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::flow::ExternalMotion;
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
-use flexsc_dynamics::three_axis::{FlexibleBody, RotorObservation, SlipDirection};
+use flexsc_dynamics::three_axis::{RotorObservation, SlipDirection};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AxisState, MotionPiece};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::{BodyAxes, Drift, Spatial};
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::environment::EnvironmentObservation;
-use flexsc_spacecraft::flow::ExternalMotion;
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::SimulationError;
 use crate::scenario::{ResolvedScenario, Scenario};
@@ -66,26 +67,19 @@ impl Plant {
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
             BodyAxes::One(body) => Self::with_flow(OneAxisFlow::new(scenario, body)),
-            BodyAxes::Three(body) => {
-                let drift = scenario.drift.as_ref();
-                Self::with_three_axes(body, scenario.model.flexible(), drift, &scenario.study)
-            }
+            BodyAxes::Three(body) => Self::with_three_axes(body, &scenario.study),
         }
     }
 
-    /// Creates the plant of a three-axis body; with `flexible`, the modes act back on the rotation.
-    fn with_three_axes(
-        body: &Spatial,
-        flexible: Option<&FlexibleBody>,
-        drift: Option<&Drift>,
-        study: &ResolvedScenario,
-    ) -> Self {
+    /// Creates the plant of a three-axis body.
+    fn with_three_axes(body: &ThreeAxisModel, study: &ResolvedScenario) -> Self {
+        let flexible = body.flexible();
         if let Some(limits) = body.small_angles {
-            return Self::with_flow(SmallAnglesFlow::new(body, limits, flexible, study));
+            return Self::with_flow(SmallAnglesFlow::new(body, limits, flexible.as_ref(), study));
         }
         match flexible {
-            Some(flexible) => Self::with_flow(TwoWayFlow::new(body, flexible, study)),
-            None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, drift)),
+            Some(flexible) => Self::with_flow(TwoWayFlow::new(body, &flexible, study)),
+            None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, study.drift.as_ref())),
         }
     }
 

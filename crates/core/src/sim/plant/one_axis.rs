@@ -8,12 +8,12 @@ use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
 use flexsc_dynamics::guard::{AxisGuards, Guard, GuardCrossing};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::external::ExternalFlow;
 use super::flow::{Flow, FlowQuantities};

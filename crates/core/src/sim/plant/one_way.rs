@@ -5,15 +5,16 @@ use std::borrow::Cow;
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::flow::{DriftingModes, RigidBody, ThreeAxisState};
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
+use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::three_axis::{Rotor, Surroundings};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::spatial::PeriodicTorque;
-use flexsc_spacecraft::body::{Drift, Spatial};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{DriftingModes, RigidBody, ThreeAxisState};
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
 use super::flow::{Flow, FlowQuantities};
@@ -44,7 +45,7 @@ pub struct OneWayFlow {
 
 impl OneWayFlow {
     /// Creates the flow at the start, without loads.
-    pub fn new(spec: &Spatial, study: &ResolvedScenario) -> Self {
+    pub fn new(spec: &ThreeAxisModel, study: &ResolvedScenario) -> Self {
         let body = ThreeAxisBody::new(spec, study);
         Self {
             surroundings: study.surroundings.clone(),
@@ -61,7 +62,7 @@ impl OneWayFlow {
 
     /// Returns the flow with drifting modal frequencies, if `drift` is given.
     #[must_use]
-    pub fn with_drift(mut self, spec: &Spatial, drift: Option<&Drift>) -> Self {
+    pub fn with_drift(mut self, spec: &ThreeAxisModel, drift: Option<&FrequencyDrift>) -> Self {
         self.drifting = drift.map(|drift| DriftingModes::new(spec, drift));
         self
     }

@@ -9,16 +9,16 @@ use std::borrow::Cow;
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{SmallAngleGuard, SmallAngleSegment, SmallAngleState};
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
 use flexsc_dynamics::three_axis::{FlexibleBody, Rotor};
+use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector, vector};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::{SmallAngles, Spatial};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{SmallAngleGuard, SmallAngleSegment, SmallAngleState};
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::flow::{ExceededLimit, Flow, FlowQuantities};
@@ -29,7 +29,7 @@ use crate::scenario::ResolvedScenario;
 #[derive(Clone, Debug)]
 pub struct SmallAnglesFlow {
     body: ThreeAxisBody,
-    limits: SmallAngles,
+    limits: SmallAngleBounds,
     /// Fixed target from which angles are counted, and (`hub`) the attitude of the hub at the current instant.
     target: Quaternion<f64>,
     hub: Quaternion<f64>,
@@ -64,8 +64,8 @@ struct SmallAngleMotion {
 impl SmallAnglesFlow {
     /// Creates the flow at the start, without loads.
     pub fn new(
-        spec: &Spatial,
-        limits: SmallAngles,
+        spec: &ThreeAxisModel,
+        limits: SmallAngleBounds,
         flexible: Option<&FlexibleBody>,
         study: &ResolvedScenario,
     ) -> Self {
@@ -80,7 +80,7 @@ impl SmallAnglesFlow {
         segment.depart(&state, Vector::zeros(), &vec![0.0; state.modes.len()]);
         let sensed = segment.at(0.0, &mut state.clone());
         let hub_modes = flexible.map_or(&[][..], |flexible| &flexible.modes);
-        let inertia = spec.inertia_tensor();
+        let inertia = spec.inertia;
         let motion = SmallAngleMotion { state, sensed };
         let mut flow = Self {
             limits,
@@ -89,7 +89,7 @@ impl SmallAnglesFlow {
             hub_rotations: hub_modes.iter().map(|mode| mode.rotation).collect(),
             // A validated body has an inverse.
             inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::identity),
-            disturbance: spec.disturbance.as_ref().map(|of| vector(&of.constant)),
+            disturbance: spec.disturbance.as_ref().map(|of| of.constant),
             surroundings: study.surroundings.clone(),
             segment,
             segment_start: Instant::START,
@@ -139,7 +139,7 @@ impl Flow for SmallAnglesFlow {
             at: now + Span::from_seconds(after),
             axis,
             is_rate,
-            limit: if is_rate { self.limits.rate.get() } else { self.limits.angle.get() },
+            limit: if is_rate { self.limits.rate } else { self.limits.angle },
         });
     }
 

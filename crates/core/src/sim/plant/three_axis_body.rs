@@ -1,13 +1,13 @@
 //! Three-axis body at the current instant, and the quantities that each of its motions gives to the record.
 
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::flow::{ElasticModes, RigidBody, ThreeAxisState};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AxisState, ModeState};
 use flexsc_numerics::attitude::{Vector, rotation_vector};
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::Spatial;
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
 use super::coupled::CoupledSegment;
@@ -71,7 +71,7 @@ pub trait ThreeAxisQuantities {
 
 impl ThreeAxisBody {
     /// Creates the body at the start.
-    pub fn new(body: &Spatial, study: &ResolvedScenario) -> Self {
+    pub fn new(body: &ThreeAxisModel, study: &ResolvedScenario) -> Self {
         let rotations = |point: &str| -> Vec<Vector> {
             body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
         };

@@ -6,12 +6,12 @@ use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::three_axis::FlexibleBody;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::Spatial;
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
 use super::coupled::{CoupledMotion, CoupledSegment};
@@ -30,7 +30,7 @@ pub struct TwoWayFlow {
 
 impl TwoWayFlow {
     /// Creates the flow at the start, without loads.
-    pub fn new(spec: &Spatial, flexible: &FlexibleBody, study: &ResolvedScenario) -> Self {
+    pub fn new(spec: &ThreeAxisModel, flexible: &FlexibleBody, study: &ResolvedScenario) -> Self {
         let body = ThreeAxisBody::new(spec, study);
         let motion = CoupledMotion::new(
             spec,

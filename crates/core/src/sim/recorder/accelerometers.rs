@@ -19,8 +19,11 @@ impl Accelerometers {
         let seed = Seed { scenario: scenario.seed, run };
         let of = |(index, accelerometer): (usize, &Accelerometer)| {
             let point = scenario.study.sensor_points.get(index)?;
-            let mount =
-                AccelerometerMount::new(scenario.model.spatial()?, scenario.model.craft()?.mass, point);
+            let mount = AccelerometerMount::new(
+                scenario.model.three_axis()?,
+                scenario.model.spacecraft()?.mass,
+                point,
+            );
             Some((index, mount, accelerometer.start(seed, scenario.sensor.index_in_kind(index))))
         };
         Self(scenario.sensor.accelerometers().filter_map(of).collect())

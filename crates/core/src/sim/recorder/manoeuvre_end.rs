@@ -21,7 +21,7 @@ pub struct ManoeuvreEnd {
 impl ManoeuvreEnd {
     /// Creates the end of a scenario's manoeuvre; `None` without one.
     pub fn new(scenario: &Scenario, goal: &Setpoint) -> Option<Self> {
-        let body = scenario.model.planar().filter(|_| scenario.plan.is_some())?.clone();
+        let body = scenario.model.one_axis().filter(|_| scenario.plan.is_some())?.clone();
         Some(Self { at: goal.from, goal: *goal, body })
     }
 

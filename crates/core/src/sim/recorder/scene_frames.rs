@@ -1,11 +1,11 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
 use flexsc_control::actuator::PulsedActuator;
+use flexsc_dynamics::flow::ThreeAxisState;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
     Hinges, OneAxisPose, Record, RecordError, Sample, ScenePose, SceneSource, SceneThrust, ThreeAxisPose,
 };
-use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::journal_events::JournalEvents;
 use crate::sim::plant::FlowQuantities;

@@ -1,11 +1,10 @@
 //! Assembly of a spacecraft from its parts: total mass, clamped modes relative to the hub, free modes, points.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use flexsc_dynamics::three_axis::{ArticulatedBody, ClampedModes, FlexibleBody, FreeMode, FreeModes};
+use flexsc_dynamics::three_axis::{ArticulatedBody, ClampedModes, FreeModes};
+use flexsc_dynamics::three_axis_model::{ModalCoupling, ModelPoint, ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
-use flexsc_formats::structure::Shape;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use nalgebra::{Matrix3, Matrix3xX};
@@ -18,8 +17,7 @@ use super::spacecraft::Spacecraft;
 use super::thermal;
 use super::validation;
 use super::{AssembledSpacecraft, HubRotor};
-use crate::body::Spatial;
-use crate::body::spatial::{NamedPoint, ThreeAxisMode};
+use crate::body::spatial::NamedPoint;
 
 /// Clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,21 +93,21 @@ impl AssembledSpacecraft {
         let hub_points = spacecraft.hub_points();
         let places = places(&hub_points, &oriented, parts.len());
         Ok(Self {
-            spatial: Spatial {
-                inertia: rows(&held.inertia)?,
+            model: ThreeAxisModel {
+                inertia: finite_tensor(held.inertia)?,
                 attitude: spacecraft.attitude,
                 rate: spacecraft.rate,
-                small_angles: spacecraft.small_angles,
-                points: points(&places, &whole.centre)?,
-                modes: modes(appendages, &held, &free, &damping, &places, &whole.centre)?.into(),
+                small_angles: spacecraft.small_angles.map(Into::into),
+                modes: modes(appendages, &held, &free, &damping)?,
+                points: points(&places, &free, &whole.centre)?,
                 disturbance: None,
+                coupling: Some(ModalCoupling {
+                    rotations: (0..free.frequencies.len()).map(|mode| free.rotation(mode)).collect(),
+                    moments: moments(&parts, &free),
+                    damping: damping.full_matrix(spacecraft.whole_damping),
+                }),
+                articulation: articulation(spacecraft, appendages, &spinning),
             },
-            flexible: FlexibleBody {
-                inertia: held.inertia,
-                modes: coupled(&parts, &free, &damping),
-                damping: damping.full_matrix(spacecraft.whole_damping),
-            },
-            driven: driven(spacecraft, appendages, &spinning),
             mass: whole.mass,
             centre: whole.centre,
             bendings: thermal::bendings(appendages, &held.frequencies, &free.shapes),
@@ -119,20 +117,20 @@ impl AssembledSpacecraft {
     }
 }
 
-/// Returns the spacecraft with drives and hinges for the integrator; `None` if it has neither.
-fn driven(
+/// Returns the spacecraft as a function of the angles of its drives and hinges; `None` if it has neither.
+fn articulation(
     spacecraft: &Spacecraft,
     appendages: &[Appendage],
     spinning: &Matrix3<f64>,
 ) -> Option<Arc<ArticulatedBody>> {
     let hub = spacecraft.mass_properties();
-    let mut driven =
+    let mut body =
         ArticulatedBody { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
     for appendage in appendages {
-        let drives = driven.drives();
-        driven.panels.push(appendage.for_integrator(drives));
+        let drives = body.drives();
+        body.panels.push(appendage.for_integrator(drives));
     }
-    driven.is_articulated().then(|| Arc::new(driven))
+    body.is_articulated().then(|| Arc::new(body))
 }
 
 impl HubRotor {
@@ -203,21 +201,25 @@ fn places<'a>(
     places
 }
 
-fn points(places: &[BodyPoint], centre: &Vector) -> Result<Vec<NamedPoint>, ConfigError> {
+/// Returns all points with their shapes in the free modes.
+fn points(places: &[BodyPoint], free: &FreeModes, centre: &Vector) -> Result<Vec<ModelPoint>, ConfigError> {
     let point = |place: &BodyPoint| {
-        Ok(NamedPoint { name: place.point.name.clone(), position: three(&(place.at - centre))? })
+        let shapes = (0..free.frequencies.len()).map(|mode| place.shape(free, mode, centre));
+        Ok(ModelPoint {
+            name: place.point.name.clone(),
+            position: finite_vector(place.at - centre)?,
+            shapes: shapes.collect::<Result<_, ConfigError>>()?,
+        })
     };
     places.iter().map(point).collect()
 }
 
-/// Returns the free modes with their state at the start and their shapes at all points.
+/// Returns the free modes with their state at the start.
 fn modes(
     appendages: &[Appendage],
     held: &ClampedModes,
     free: &FreeModes,
     damping: &FreeModeDamping,
-    places: &[BodyPoint],
-    centre: &Vector,
 ) -> Result<Vec<ThreeAxisMode>, ConfigError> {
     let clamped: Vec<_> =
         appendages.iter().flat_map(|appendage| appendage.clamped_modes().into_owned()).collect();
@@ -225,14 +227,11 @@ fn modes(
     let rates: Vec<f64> = clamped.iter().map(|mode| mode.rate.get()).collect();
     let (displacements, rates) = (held.to_free(free, &displacements), held.to_free(free, &rates));
     let mode = |(index, frequency): (usize, &f64)| {
-        let shapes =
-            places.iter().map(|place| Ok((place.point.name.clone(), place.shape(free, index, centre)?)));
         Ok(ThreeAxisMode {
             frequency: Frequency::new(*frequency).ok_or_else(|| exceeds_rate_limit(*frequency))?,
             damping: NonNegative::new(damping.ratios[index].max(0.0)).ok_or_else(out_of_range)?,
             displacement: finite(displacements[index])?,
             rate: finite(rates[index])?,
-            shapes: shapes.collect::<Result<BTreeMap<_, _>, ConfigError>>()?,
         })
     };
     free.frequencies.iter().enumerate().map(mode).collect()
@@ -241,28 +240,24 @@ fn modes(
 impl BodyPoint<'_> {
     /// Returns the displacement u + phi x (p - c) + F Y and the rotation phi + R Y of the point in a free mode that
     /// consists of the clamped modes Y.
-    fn shape(&self, free: &FreeModes, mode: usize, centre: &Vector) -> Result<Shape, ConfigError> {
+    fn shape(&self, free: &FreeModes, mode: usize, centre: &Vector) -> Result<(Vector, Vector), ConfigError> {
         let rotation = free.rotation(mode);
         let hub = (free.translation(mode) + rotation.cross(&(self.at - centre)), rotation);
         let column = free.shapes.column(mode);
         let parts = self.shapes.iter().zip(column.iter());
         let (translation, rotation) =
             parts.fold(hub, |(f, r), (shape, part)| (f + shape.0 * *part, r + shape.1 * *part));
-        Ok(Shape { translation: three(&translation)?, rotation: three(&rotation)? })
+        Ok((finite_vector(translation)?, finite_vector(rotation)?))
     }
 }
 
-fn coupled(parts: &[ClampedModeInBody], free: &FreeModes, damping: &FreeModeDamping) -> Vec<FreeMode> {
-    let mode = |(index, frequency): (usize, &f64)| {
-        let column = free.shapes.column(index);
-        FreeMode {
-            frequency: *frequency,
-            damping: damping.ratios[index],
-            rotation: free.rotation(index),
-            moments: parts.iter().zip(column.iter()).map(|(part, share)| part.stretching() * *share).sum(),
-        }
+/// Returns the change of the inertia tensor per unit of each free mode (sqrt(kg) m).
+fn moments(parts: &[ClampedModeInBody], free: &FreeModes) -> Vec<Matrix3<f64>> {
+    let moments_of = |mode: usize| {
+        let column = free.shapes.column(mode);
+        parts.iter().zip(column.iter()).map(|(part, share)| part.stretching() * *share).sum()
     };
-    free.frequencies.iter().enumerate().map(mode).collect()
+    (0..free.frequencies.len()).map(moments_of).collect()
 }
 
 fn exceeds_rate_limit(frequency: f64) -> ConfigError {
@@ -283,11 +278,10 @@ fn finite(value: f64) -> Result<Finite, ConfigError> {
     Finite::new(value).ok_or_else(out_of_range)
 }
 
-fn three(vector: &Vector) -> Result<[Finite; 3], ConfigError> {
-    Ok([finite(vector.x)?, finite(vector.y)?, finite(vector.z)?])
+fn finite_vector(vector: Vector) -> Result<Vector, ConfigError> {
+    if vector.iter().all(|component| component.is_finite()) { Ok(vector) } else { Err(out_of_range()) }
 }
 
-fn rows(matrix: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], ConfigError> {
-    let row = |row: usize| three(&matrix.row(row).transpose());
-    Ok([row(0)?, row(1)?, row(2)?])
+fn finite_tensor(tensor: Matrix3<f64>) -> Result<Matrix3<f64>, ConfigError> {
+    if tensor.iter().all(|component| component.is_finite()) { Ok(tensor) } else { Err(out_of_range()) }
 }

@@ -18,12 +18,8 @@ mod thermal;
 mod translation;
 mod validation;
 
-use std::sync::Arc;
-
-use flexsc_dynamics::three_axis::{ArticulatedBody, FlexibleBody};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::Vector;
-
-use crate::body::Spatial;
 
 pub use appendage::{Appendage, PlateAxis};
 pub use assembly::ClampedModeInBody;
@@ -49,11 +45,8 @@ pub struct HubRotor {
 /// Spacecraft assembled from hub and appendages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssembledSpacecraft {
-    /// Rigid body and free modes, without the action of the modes on the rotation. Positions are from the total centre
-    /// of mass.
-    pub spatial: Spatial,
-    /// Two-way coupling of rotation and modes.
-    pub flexible: FlexibleBody,
+    /// Body in free modes, with drives and hinges at their initial angles. Positions are from the total centre of mass.
+    pub model: ThreeAxisModel,
     /// Total mass (kg).
     pub mass: f64,
     /// Total centre of mass, from the point O (m).
@@ -64,6 +57,4 @@ pub struct AssembledSpacecraft {
     pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
-    /// Hub and appendages with drives and hinges for the integrator; `None` if there are neither.
-    pub driven: Option<Arc<ArticulatedBody>>,
 }

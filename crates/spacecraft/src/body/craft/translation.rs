@@ -1,10 +1,9 @@
 //! Translation of a spacecraft under jets and forces: its mass, and the position of its first point.
 
 use flexsc_dynamics::three_axis::BodyView;
-use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_numerics::attitude::Vector;
 use nalgebra::Quaternion;
-
-use crate::body::spatial::Spatial;
 
 /// Mass of a spacecraft, and the point of its hub whose position is logged.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,9 +18,9 @@ pub struct Translation {
 
 impl Translation {
     /// Creates the translation of a body of the given mass (kg), for its first point.
-    pub fn new(body: &Spatial, mass: f64) -> Self {
+    pub fn new(body: &ThreeAxisModel, mass: f64) -> Self {
         let first = body.points.first();
-        let position = first.map_or_else(Vector::zeros, |point| vector(&point.position));
+        let position = first.map_or_else(Vector::zeros, |point| point.position);
         let shifts = body.displacements(first.map_or("", |point| &point.name), &Vector::zeros());
         Self { mass, position, shifts }
     }

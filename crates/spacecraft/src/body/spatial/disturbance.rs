@@ -1,8 +1,7 @@
 //! Torque of the environment: a constant, and a part with the orbit's period.
 
-use std::f64::consts::TAU;
-
-use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_dynamics::periodic_torque::PeriodicTorque;
+use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,8 +9,7 @@ use serde::{Deserialize, Serialize};
 /// A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "Periodic")]
-pub struct PeriodicTorque {
+pub struct Periodic {
     /// Constant part (N m).
     #[serde(default)]
     pub constant: [Finite; 3],
@@ -30,21 +28,13 @@ fn orbit() -> Positive {
     Positive::new(5560.0).unwrap_or(Positive::ONE)
 }
 
-impl PeriodicTorque {
-    /// Returns the torque at a time since the start (N m).
-    pub fn at(&self, t: f64) -> Vector {
-        let turns = TAU * t / self.period.get();
-        let sine = |axis: usize| self.amplitude[axis].get() * libm::sin(turns + self.phase[axis].get());
-        vector(&self.constant) + Vector::from_fn(|axis, _| sine(axis))
-    }
-
-    /// Returns an upper bound of the torque (N m).
-    pub fn bound(&self) -> f64 {
-        vector(&self.constant).norm() + vector(&self.amplitude).norm()
-    }
-
-    /// Returns the angular frequency of the periodic part (rad/s).
-    pub fn frequency(&self) -> f64 {
-        TAU / self.period.get()
+impl From<&Periodic> for PeriodicTorque {
+    fn from(key: &Periodic) -> Self {
+        Self {
+            constant: vector(&key.constant),
+            amplitude: vector(&key.amplitude),
+            period: key.period.get(),
+            phase: vector(&key.phase),
+        }
     }
 }

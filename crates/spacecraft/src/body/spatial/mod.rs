@@ -11,18 +11,18 @@ mod modes;
 
 use std::collections::BTreeMap;
 
+use flexsc_dynamics::three_axis_model::{ModelPoint, ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::Shape;
-use flexsc_numerics::attitude::{Attitude, Vector, asymmetry, tensor, vector};
+use flexsc_numerics::attitude::{Attitude, asymmetry, tensor, vector};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
-use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::SmallAngles;
 
-pub use disturbance::PeriodicTorque;
-pub use modes::ThreeAxisModes;
+pub use disturbance::Periodic;
+pub use modes::SpatialModes;
 
 /// A spatial body: three axes and elastic modes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,10 +44,10 @@ pub struct Spatial {
     pub points: Vec<NamedPoint>,
     /// Elastic modes: a table, or the path of a CSV file.
     #[serde(default)]
-    pub modes: ThreeAxisModes,
+    pub modes: SpatialModes,
     /// Torque of the environment; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub disturbance: Option<PeriodicTorque>,
+    pub disturbance: Option<Periodic>,
 }
 
 /// A point of the structure.
@@ -64,8 +64,7 @@ pub struct NamedPoint {
 /// A mass-normalised elastic mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-#[schemars(rename = "SpatialMode")]
-pub struct ThreeAxisMode {
+pub struct SpatialMode {
     /// Natural frequency w (rad/s).
     pub frequency: Frequency,
     /// Damping ratio zeta: 0 undamped, 1 critical.
@@ -82,54 +81,49 @@ pub struct ThreeAxisMode {
     pub shapes: BTreeMap<String, Shape>,
 }
 
-impl Spatial {
-    /// Returns the inertia tensor (kg m²).
-    pub fn inertia_tensor(&self) -> Matrix3<f64> {
-        tensor(&self.inertia)
-    }
-
-    /// Returns the position of a point from the centre of mass (m), if there is a point of this name.
-    pub fn point(&self, name: &str) -> Option<Vector> {
-        self.points.iter().find(|point| point.name == name).map(|point| vector(&point.position))
-    }
-
-    /// Returns the names of all points, for messages.
-    pub fn point_names(&self) -> String {
-        let names: Vec<_> = self.points.iter().map(|point| format!("`{}`", point.name)).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-    }
-
-    /// Returns the translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
-    pub fn shapes(&self, point: &str) -> Vec<(Vector, Vector)> {
-        let clamped_mode = |mode: &ThreeAxisMode| {
-            let shape = mode.shapes.get(point).copied().unwrap_or_default();
+impl From<&Spatial> for ThreeAxisModel {
+    fn from(body: &Spatial) -> Self {
+        let mode = |mode: &SpatialMode| ThreeAxisMode {
+            frequency: mode.frequency,
+            damping: mode.damping,
+            displacement: mode.displacement,
+            rate: mode.rate,
+        };
+        let shape = |mode: &SpatialMode, point: &NamedPoint| {
+            let shape = mode.shapes.get(&point.name).copied().unwrap_or_default();
             (vector(&shape.translation), vector(&shape.rotation))
         };
-        self.modes.iter().map(clamped_mode).collect()
-    }
-
-    /// Returns the displacement per unit of each mode of the place at an offset (m) from a point, in hub axes that turn
-    /// with the first point (1/sqrt(kg)).
-    pub fn displacements(&self, point: &str, offset: &Vector) -> Vec<Vector> {
-        let first = self.points.first().map_or("", |point| &point.name);
-        let position = self.point(point).unwrap_or_default();
-        let shift = |((shift, rotation), (_, hub)): (&(Vector, Vector), &(Vector, Vector))| {
-            shift - hub.cross(&position) + (rotation - hub).cross(offset)
+        let point = |point: &NamedPoint| ModelPoint {
+            name: point.name.clone(),
+            position: vector(&point.position),
+            shapes: body.modes.iter().map(|mode| shape(mode, point)).collect(),
         };
-        self.shapes(point).iter().zip(&self.shapes(first)).map(shift).collect()
+        Self {
+            inertia: tensor(&body.inertia),
+            attitude: body.attitude,
+            rate: body.rate,
+            points: body.points.iter().map(point).collect(),
+            modes: body.modes.iter().map(mode).collect(),
+            small_angles: body.small_angles.map(Into::into),
+            disturbance: body.disturbance.as_ref().map(Into::into),
+            coupling: None,
+            articulation: None,
+        }
     }
+}
 
-    /// Checks the body for values that are inconsistent with each other.
+impl Spatial {
+    /// Returns the model of the body, after checking that its values are consistent with each other.
     ///
     /// # Errors
     /// A key within the body, and the reason.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    pub fn solve(&self) -> Result<ThreeAxisModel, ConfigError> {
+        let model = ThreeAxisModel::from(self);
         let refused = |key: &str, why: String| Err(ConfigError::new(key, why));
-        let tensor = self.inertia_tensor();
-        if let Some(why) = asymmetry(&tensor) {
+        if let Some(why) = asymmetry(&model.inertia) {
             return refused("inertia", why);
         }
-        if tensor.cholesky().is_none() {
+        if model.inertia.cholesky().is_none() {
             return refused("inertia", "must be positive definite".to_owned());
         }
         for (index, point) in self.points.iter().enumerate() {
@@ -139,16 +133,16 @@ impl Spatial {
             }
         }
         for (index, mode) in self.modes.iter().enumerate() {
-            if let Some(name) = mode.shapes.keys().find(|name| self.point(name).is_none()) {
+            if let Some(name) = mode.shapes.keys().find(|name| model.point(name).is_none()) {
                 let key =
                     format!("modes[{index}].shapes.{}", flexsc_formats::document::key::bare_or_quoted(name));
-                return refused(&key, format!("must be one of the points, {}", self.point_names()));
+                return refused(&key, format!("must be one of the points, {}", model.point_names()));
             }
             if let Some(point) = self.points.iter().find(|point| !mode.shapes.contains_key(&point.name)) {
                 let why = format!("must have a shape at each point, and `{}` is missing", point.name);
                 return refused(&format!("modes[{index}].shapes"), why);
             }
         }
-        Ok(())
+        Ok(model)
     }
 }

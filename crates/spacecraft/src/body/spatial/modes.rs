@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use flexsc_formats::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
-use super::ThreeAxisMode;
+use super::SpatialMode;
 
 /// Modes of a spatial body, which dereference to a slice; those of a file once it is read.
-pub type ThreeAxisModes = ModeTable<ThreeAxisMode>;
+pub type SpatialModes = ModeTable<SpatialMode>;
 
-impl ModeRow for ThreeAxisMode {
+impl ModeRow for SpatialMode {
     const LIST: &'static str = "SpatialModes";
     const FILES: &'static str = ".csv";
     const EXTRA_COLUMNS: &'static [&'static str] = &[];

@@ -2,19 +2,20 @@
 
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
-use flexsc_dynamics::three_axis::{FlexibleBody, FreeMode, Rotor};
+use flexsc_dynamics::three_axis::Rotor;
+use flexsc_dynamics::three_axis_model::{ModalCoupling, ThreeAxisModel};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::gauss_legendre::{NODES, WEIGHTS};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::spatial::Spatial;
-use flexsc_spacecraft::wrench::Wrench;
+use flexsc_spacecraft::body::Spatial;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::ResolvedScenario;
 use crate::sim::plant::{Plant, ThreeAxisQuantities};
 
 /// Returns a body with two modes, which rotate the hub only if `coupled`, and a bench by a little more.
-fn body(disturbed: bool, coupled: bool) -> Spatial {
+fn body(disturbed: bool, coupled: bool) -> ThreeAxisModel {
     let torque = "disturbance = { constant = [1e-3, 0, 0], amplitude = [0.02, -0.01, 0.03], period = 7.0 }";
     let hub = if coupled { ["[0.02, 1e-3, -0.01]", "[1e-3, 0.03, 2e-3]"] } else { ["[0, 0, 0]"; 2] };
     let text = format!(
@@ -37,21 +38,17 @@ fn body(disturbed: bool, coupled: bool) -> Spatial {
         hub[0],
         hub[1]
     );
-    flexsc_formats::document::from_text(&text).expect("a body")
+    let body: Spatial = flexsc_formats::document::from_text(&text).expect("a body");
+    body.solve().expect("valid")
 }
 
-fn flexible(body: &Spatial) -> FlexibleBody {
-    let mode =
-        |(mode, (_, rotation)): (&flexsc_spacecraft::body::spatial::ThreeAxisMode, (Vector, Vector))| {
-            FreeMode {
-                frequency: mode.frequency.get(),
-                damping: mode.damping.get(),
-                rotation,
-                moments: Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 }),
-            }
-        };
-    let modes = body.modes.iter().zip(body.shapes("hub")).map(mode).collect();
-    FlexibleBody { inertia: body.inertia_tensor(), modes, damping: None }
+/// Returns the body with modes that act back on its rotation.
+fn two_way(body: &ThreeAxisModel) -> ThreeAxisModel {
+    let rotations: Vec<Vector> = body.shapes("hub").into_iter().map(|(_, rotation)| rotation).collect();
+    let moments =
+        |rotation: &Vector| Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 });
+    let moments = rotations.iter().map(moments).collect();
+    ThreeAxisModel { coupling: Some(ModalCoupling { rotations, moments, damping: None }), ..body.clone() }
 }
 
 fn study(sensed_at: &str) -> ResolvedScenario {
@@ -88,8 +85,8 @@ fn wheel(momentum: f64, torque: f64) -> Vec<Rotor> {
 #[test]
 fn without_coupling_both_are_one() {
     let body = body(true, false);
-    let mut one_way = Plant::with_three_axes(&body, None, None, &study("bench"));
-    let mut two_way = Plant::with_three_axes(&body, Some(&flexible(&body)), None, &study("bench"));
+    let mut one_way = Plant::with_three_axes(&body, &study("bench"));
+    let mut two_way = Plant::with_three_axes(&two_way(&body), &study("bench"));
     let mut momentum = 20.0;
     for leg in 0..4 {
         let began = 25.0 * f64::from(leg);
@@ -122,13 +119,13 @@ fn without_coupling_both_are_one() {
 #[test]
 fn torques_on_modes_and_on_the_hub_are_separate() {
     let body = body(false, true);
-    let flexible = flexible(&body);
+    let body = two_way(&body);
     let torque = Vector::new(3.0, -2.0, 1.0);
-    let forces = flexible.modes.iter().map(|mode| mode.rotation.dot(&torque)).collect();
+    let forces = body.shapes("hub").iter().map(|(_, rotation)| rotation.dot(&torque)).collect();
     let wrenches =
         [Wrench { hub: torque.into(), ..Wrench::default() }, Wrench { torque, forces, ..Wrench::default() }];
     let [first, second] = wrenches.map(|wrench| {
-        let mut plant = Plant::with_three_axes(&body, Some(&flexible), None, &study("bench"));
+        let mut plant = Plant::with_three_axes(&body, &study("bench"));
         plant.begin_segment(&wrench);
         let truth = seen(&mut plant, 10.0);
         (three_axes(&plant).body().state.clone(), truth)
@@ -145,8 +142,8 @@ fn torques_on_modes_and_on_the_hub_are_separate() {
 #[test]
 fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
     let body = body(true, true);
-    for flexible in [None, Some(flexible(&body))] {
-        let mut plant = Plant::with_three_axes(&body, flexible.as_ref(), None, &study("bench"));
+    for body in [two_way(&body), body] {
+        let mut plant = Plant::with_three_axes(&body, &study("bench"));
         plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
         let h = 1.0 / 16.0;
         let mut integral = Vector::zeros();
@@ -167,9 +164,9 @@ fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
 #[test]
 fn a_bench_is_seen_beside_the_hub() {
     let body = body(true, true);
-    let flexible = flexible(&body);
+    let body = two_way(&body);
     let run = |looks: &[f64], point: &str| {
-        let mut plant = Plant::with_three_axes(&body, Some(&flexible), None, &study(point));
+        let mut plant = Plant::with_three_axes(&body, &study(point));
         plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], ..Wrench::default() });
         for t in looks {
             seen(&mut plant, *t);

@@ -2,19 +2,19 @@
 
 use flexsc_dynamics::axis_model::AxisOutput;
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AxisState, MotionPiece, SeriesExpansion};
 use flexsc_numerics::polynomial::{Polynomial, Series, TERMS};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Outputs, PieceDemand, Record, RecordError};
-use flexsc_spacecraft::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 
 use super::super::one_axis_body::{OneAxisBody, OneAxisQuantities, output_row};
 use super::{AppliedTorque, OneAxisFlow, OneAxisMotion};
 
 /// Motion segment that is expanded in series from its start on.
 enum SegmentExpansion<'a> {
-    Planar(&'a UncoupledSegment, AxisState),
+    Uncoupled(&'a UncoupledSegment, AxisState),
     Chain(ChainExpansion<'a>),
     Coupled(CoupledExpansion<'a>),
 }
@@ -102,7 +102,7 @@ impl OneAxisFlow {
     ) -> Result<(), RecordError> {
         let span = until.since(self.departed).seconds();
         let mut unfolded = match &self.motion {
-            OneAxisMotion::Uncoupled(arc) => SegmentExpansion::Planar(arc, self.body.state.clone()),
+            OneAxisMotion::Uncoupled(arc) => SegmentExpansion::Uncoupled(arc, self.body.state.clone()),
             OneAxisMotion::Chain(flight) => SegmentExpansion::Chain(flight.expansion()),
             OneAxisMotion::Coupled(coupling) => SegmentExpansion::Coupled(coupling.expansion()),
         };
@@ -114,7 +114,7 @@ impl OneAxisFlow {
         let mut h = 0.0;
         while h < span {
             let reach = match &mut unfolded {
-                SegmentExpansion::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
+                SegmentExpansion::Uncoupled(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
                 SegmentExpansion::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
                 SegmentExpansion::Coupled(unfolding) => unfolding.expand(h, span, &mut series),
             };

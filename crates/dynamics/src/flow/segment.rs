@@ -2,11 +2,6 @@
 
 mod predicted_crossing;
 
-use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
-use flexsc_dynamics::crossing::{BoundedMotion, DerivativeBounds, first_root};
-use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
-use flexsc_dynamics::{AngleObservation, AxisState, ModeState};
 use flexsc_numerics::polynomial::TERMS;
 use flexsc_numerics::time::Span;
 use nalgebra::DVector;
@@ -14,6 +9,11 @@ use nalgebra::DVector;
 use super::mode::ModeFlow;
 use super::modes_simd::ModesSimd;
 use super::waveform_response::{ActiveWaveform, ForcedResponse, SegmentInput};
+use crate::axis_model::{AxisModel, CommandedQuantity};
+use crate::crossing::{BoundedMotion, DerivativeBounds, first_root};
+use crate::guard::Guard;
+use crate::polynomial_piece::{REACH, SeriesExpansion};
+use crate::{AngleObservation, AxisState, ModeState};
 use predicted_crossing::CrossingPredictor;
 
 /// Motion under one input, from the state in which it began.

@@ -1,16 +1,16 @@
 //! Prediction of the first trip of a guard on a segment: predicted, refined and certified without a search.
 
-use flexsc_dynamics::axis_model::AxisModel;
-use flexsc_dynamics::crossing::Crossing;
-use flexsc_dynamics::damping::{Damped, DampingRule, Undamped};
-use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::predicted_crossing::{
-    self, FARTHEST_TURN, PredictedCrossing, PredictedLevel, PredictedMode, SegmentStart,
-};
-use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::Span;
 
 use super::UncoupledSegment;
+use crate::axis_model::AxisModel;
+use crate::crossing::Crossing;
+use crate::damping::{Damped, DampingRule, Undamped};
+use crate::guard::Guard;
+use crate::predicted_crossing::{
+    self, FARTHEST_TURN, PredictedCrossing, PredictedLevel, PredictedMode, SegmentStart,
+};
+use crate::{AngleObservation, AxisState};
 
 /// Predictor of crossings: the highest frequency (rad/s), and work space for the modes.
 #[derive(Clone, Debug)]

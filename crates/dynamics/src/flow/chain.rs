@@ -1,13 +1,13 @@
 //! Motion of the exact planar chain under one input, integrated to a tolerance, and its Taylor series.
 
-use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
-use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::extrapolation::{RightHandSide, Trajectory};
 use flexsc_numerics::polynomial::{Series, TERMS};
 use nalgebra::DVector;
 
 use super::waveform_response::{ActiveWaveform, SegmentInput};
-use crate::body::Chain;
+use crate::chain_model::Chain;
+use crate::polynomial_piece::{REACH, SeriesExpansion};
+use crate::{AngleObservation, AxisState};
 
 /// Equations of motion of a chain under one input.
 struct ChainEquations<'a> {

@@ -2,12 +2,12 @@
 
 use std::ops::AddAssign;
 
-use flexsc_dynamics::three_axis::{Gimbal, Rotor};
 use flexsc_numerics::attitude::Vector;
 
-use crate::body::Spatial;
 use crate::flow::ActiveWaveform;
-use crate::sine::Sine;
+use crate::sine::SineTorque;
+use crate::three_axis::{Gimbal, Rotor};
+use crate::three_axis_model::ThreeAxisModel;
 
 /// Torques, forces, rotors and waveform that act on a body from an instant on.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ pub struct Wrench {
     /// Magnetic moment of torquers, in the body's axes (A m²).
     pub moment: Vector,
     /// Sine terms of time in the torque at the hub of a spacecraft, each with its axis.
-    pub sines: Vec<(Vector, Sine)>,
+    pub sines: Vec<(Vector, SineTorque)>,
     /// Waveform about the first axis, and the time reached within it.
     pub waveform: Option<ActiveWaveform>,
 }
@@ -95,7 +95,7 @@ impl AddAssign<&Self> for ForceEffect {
 
 impl ForceEffect {
     /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
-    pub fn add(&mut self, body: &Spatial, point: &str, offset: &Vector, force: &Vector) {
+    pub fn add(&mut self, body: &ThreeAxisModel, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);
         self.torque += body.point(point).unwrap_or_default().cross(force) + moment;
         self.force += force;

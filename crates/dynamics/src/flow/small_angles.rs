@@ -7,16 +7,16 @@
 
 use std::array::from_fn;
 
-use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_dynamics::crossing::{BoundedMotion, DerivativeBounds, first_root};
-use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::{AngleObservation, ModeState};
+use crate::axis_model::AxisMode;
+use crate::crossing::{BoundedMotion, DerivativeBounds, first_root};
+use crate::guard::Guard;
+use crate::three_axis_model::{SmallAngleBounds, ThreeAxisMode, ThreeAxisModel};
+use crate::{AngleObservation, ModeState};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 
 use super::mode::ModeFlow;
-use crate::body::{SmallAngles, Spatial};
 
 /// Small rotation of the mean axes, and the free modes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -74,8 +74,8 @@ struct AxisBounds {
 impl SmallAngleSegment {
     /// Creates the segment of a body whose modes rotate the sensor by `rotations` (rad/(m sqrt(kg))), before its
     /// departure.
-    pub fn new(body: &Spatial, rotations: &[Vector]) -> Self {
-        let mode = |(mode, rotation): (&crate::body::spatial::ThreeAxisMode, &Vector)| ModeSegment {
+    pub fn new(body: &ThreeAxisModel, rotations: &[Vector]) -> Self {
+        let mode = |(mode, rotation): (&ThreeAxisMode, &Vector)| ModeSegment {
             flow: ModeFlow::new(&AxisMode::at_rest(mode.frequency, Finite::default(), mode.damping)),
             rotation: *rotation,
             equilibrium: 0.0,
@@ -146,8 +146,8 @@ impl SmallAngleSegment {
 
     /// Returns the first time after departure (s) at which the mean axes reach a limit, with the axis, and true if it is
     /// that of the rate; `None` if they never do.
-    pub fn first_limit(&self, limits: &SmallAngles) -> Option<(f64, usize, bool)> {
-        let (largest, fastest) = (limits.angle.get(), limits.rate.get());
+    pub fn first_limit(&self, limits: &SmallAngleBounds) -> Option<(f64, usize, bool)> {
+        let (largest, fastest) = (limits.angle, limits.rate);
         let mut first = (f64::INFINITY, 0, false);
         for axis in 0..3 {
             for towards in [1.0, -1.0] {

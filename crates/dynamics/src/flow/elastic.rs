@@ -1,12 +1,12 @@
 //! Elastic modes of a spatial body: exact flow under constant modal forces, energy, and rates at a point.
 
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 
 use super::ModeFlow;
-use crate::body::spatial::{Spatial, ThreeAxisMode};
+use crate::ModeState;
+use crate::axis_model::AxisMode;
+use crate::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 
 /// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ const KNOWN: usize = 128;
 
 impl ElasticModes {
     /// Creates the flows of a body's modes, which are often advanced by `cycle` seconds.
-    pub fn new(body: &Spatial, cycle: f64) -> Self {
+    pub fn new(body: &ThreeAxisModel, cycle: f64) -> Self {
         let flow = |mode: &ThreeAxisMode| {
             ModeFlow::new(&AxisMode::at_rest(mode.frequency, Finite::default(), mode.damping))
         };
@@ -37,7 +37,7 @@ impl ElasticModes {
     }
 
     /// Returns the phases at the start of a run.
-    pub fn start(body: &Spatial) -> Vec<ModeState> {
+    pub fn start(body: &ThreeAxisModel) -> Vec<ModeState> {
         let of = |mode: &ThreeAxisMode| ModeState {
             displacement: mode.displacement.get(),
             quadrature: mode.rate.get() / mode.frequency.get(),

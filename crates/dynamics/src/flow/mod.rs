@@ -8,7 +8,7 @@
 //! - [`SmallAngleSegment`]: small rotations about three axes in closed form, with the same bounds;
 //! - [`RigidBody`] and [`ElasticModes`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!
-//! The two-way coupled motion about three axes is in `flexsc_dynamics::three_axis`.
+//! The coupled motion about three axes is in [`crate::three_axis`].
 
 mod chain;
 mod coupled_flow;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc as Shared;
 
-use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::phasor::Phasor;
 use flexsc_numerics::polynomial::Series;
 
 use super::mode::ModeFlow;
+use crate::waveform::Waveform;
 
 /// Input of a segment of motion from its start on.
 #[derive(Clone, Debug, Default)]

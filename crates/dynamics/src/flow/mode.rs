@@ -1,11 +1,12 @@
 //! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
-use flexsc_dynamics::AngleObservation;
-use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_dynamics::damping::Damped;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::Phasor;
 use flexsc_numerics::trig::sincos_any;
+
+use crate::AngleObservation;
+use crate::axis_model::AxisMode;
+use crate::damping::Damped;
 
 /// Constants of a mode's flow.
 #[derive(Copy, Clone, Debug)]

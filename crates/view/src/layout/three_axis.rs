@@ -4,10 +4,10 @@ use flexsc_core::Scenario;
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::estimator::attitude::ElasticStates;
 use flexsc_core::dynamics::three_axis::Bearing;
+use flexsc_core::dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::record::row::TopicRow;
 use flexsc_core::record::{ControlMomentGyros, Hinges, Wheels};
-use flexsc_core::spacecraft::body::Spatial;
 
 use super::one_axis::adaptation;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
@@ -18,7 +18,7 @@ use crate::scene::Extent;
 const MOST_MODES: usize = 12;
 
 /// Returns the tabs of a scenario.
-pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
+pub fn tabs(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<Tab> {
     let plot = LayoutPanel::plot;
     let mut motion = vec![
         LayoutPanel::scene(Extent::from_scenario(scenario)),
@@ -228,7 +228,7 @@ fn identified(elastic: &ElasticStates) -> LayoutPanel {
 }
 
 /// Returns the lines of the energy of all modes, and of those that the jets excite most.
-fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
+fn energies(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<PlotLine> {
     let groups = || scenario.study.groups.iter().flatten().flatten();
     let push = |mode: usize| groups().map(|group| group.push.forces[mode].abs()).fold(0.0, f64::max);
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();

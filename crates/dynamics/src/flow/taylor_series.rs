@@ -4,10 +4,10 @@
 //! series themselves: each coefficient follows from the previous ones. The series have order 20, and the step keeps
 //! their truncation error at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
-use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_numerics::lanes::LaneFloat;
 
-use crate::body::{Drift, SERIES};
+use crate::axis_model::{AxisMode, AxisModel};
+use crate::frequency_drift::{FrequencyDrift, SERIES};
 
 /// Ratio e² of the radius of convergence to the step at which a series of this order truncates the last bit of a
 /// double.
@@ -67,7 +67,7 @@ impl<R: LaneFloat> RatioSeries<R> {
 
 impl RatioSeries<f64> {
     /// Expands the profile of a mode at a time (s).
-    pub fn expand(&mut self, drift: &Drift, mode: usize, t: f64) {
+    pub fn expand(&mut self, drift: &FrequencyDrift, mode: usize, t: f64) {
         let terms = drift.series(mode, t, &mut self.itself);
         let last = (2 * terms - 1).min(SERIES);
         for n in 0..last {

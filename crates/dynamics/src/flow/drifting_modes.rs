@@ -1,32 +1,34 @@
 //! Elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its equation, exact to
 //! rounding.
 
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_numerics::quantity::Finite;
 
 use super::DriftingFlow;
-use crate::body::Drift;
-use crate::body::spatial::{Spatial, ThreeAxisMode};
+use crate::ModeState;
+use crate::axis_model::{AxisMode, AxisModel};
+use crate::frequency_drift::FrequencyDrift;
+use crate::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 
 /// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]
 pub struct DriftingModes {
     /// One motion for each mode, as the only mode of a one-axis body whose moment is the modal force.
     modes: Vec<DriftingFlow>,
-    drift: Drift,
+    drift: FrequencyDrift,
     /// Frequencies at the start of the run (rad/s).
     frequencies: Vec<f64>,
 }
 
 impl DriftingModes {
     /// Creates the modes in their initial state, under no force.
-    pub fn new(body: &Spatial, drift: &Drift) -> Self {
+    pub fn new(body: &ThreeAxisModel, drift: &FrequencyDrift) -> Self {
         let gain = Finite::new(1.0).unwrap_or_default();
         let alone = |(index, mode): (usize, &ThreeAxisMode)| {
             let own = match drift {
-                Drift::Common(profile) => Drift::Common(profile.clone()),
-                Drift::Each(profiles) => Drift::Each(profiles.get(index).cloned().into_iter().collect()),
+                FrequencyDrift::Common(profile) => FrequencyDrift::Common(profile.clone()),
+                FrequencyDrift::Each(profiles) => {
+                    FrequencyDrift::Each(profiles.get(index).cloned().into_iter().collect())
+                }
             };
             let start = AxisMode {
                 displacement: mode.displacement,

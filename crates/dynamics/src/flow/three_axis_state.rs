@@ -1,10 +1,10 @@
 //! State of a spatial body.
 
-use flexsc_dynamics::ModeState;
 use flexsc_numerics::attitude::vector;
 
 use super::{ElasticModes, RigidBody, RigidState};
-use crate::body::Spatial;
+use crate::ModeState;
+use crate::three_axis_model::ThreeAxisModel;
 
 /// State of a three-axis body: rigid motion and modes.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct ThreeAxisState {
 
 impl ThreeAxisState {
     /// Returns the state at the start of a run.
-    pub fn start(body: &Spatial, rigid: &RigidBody) -> Self {
+    pub fn start(body: &ThreeAxisModel, rigid: &RigidBody) -> Self {
         Self { turn: rigid.start(body.attitude.get(), vector(&body.rate)), modes: ElasticModes::start(body) }
     }
 

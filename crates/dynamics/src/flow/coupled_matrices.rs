@@ -3,10 +3,11 @@
 //! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r
 //! z), where r picks the rate that acts on the wheel (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
 
-use flexsc_dynamics::axis_model::AxisModel;
-use flexsc_dynamics::linear::{LinearFlow, LinearPlant};
 use flexsc_numerics::exponential::{exponential, exponentials};
 use nalgebra::{DMatrix, DVector, RowDVector};
+
+use crate::axis_model::AxisModel;
+use crate::linear::{LinearFlow, LinearPlant};
 
 /// System matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -95,14 +96,17 @@ fn apart(whole: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Planar;
+    use crate::axis_model::AxisMode;
+    use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
     #[test]
     fn the_discrete_system_of_the_third_paper() {
-        let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
-                    { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-        let body: Planar = flexsc_formats::document::from_text(text).expect("valid");
-        let (ad, bd) = CoupledMatrices::new(&AxisModel::from(&body), 1e-4, true, &[1.0; 4]).discrete(0.3);
+        let modes = [(0.3, 1.44), (0.8, 0.21), (1.0, 0.165), (2.0, 0.72)].map(|(frequency, gain)| {
+            let frequency = Frequency::new(frequency).expect("in range");
+            AxisMode::at_rest(frequency, Finite::new(gain).expect("finite"), NonNegative::default())
+        });
+        let body = AxisModel { modes: modes.to_vec(), ..AxisModel::default() };
+        let (ad, bd) = CoupledMatrices::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
         // Reference: SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
         close(5e-4 * bd[0], 2.249_920_797_089e-05);

@@ -1,14 +1,14 @@
 //! Every predicted and certified trip of relay runs must equal the trip of the certified search;
 //! `tests/crossings.rs` has motions of all kinds.
 
-use flexsc_dynamics::AxisState;
-use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
-use flexsc_dynamics::crossing::first_crossing;
-use flexsc_dynamics::guard::Guard;
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use flexsc_numerics::time::Span;
 
 use super::{SegmentInput, UncoupledSegment};
+use crate::AxisState;
+use crate::axis_model::{AxisMode, AxisModel};
+use crate::crossing::first_crossing;
+use crate::guard::Guard;
 
 /// Eps, gamma and the strong and weak torque of the relay study.
 const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];

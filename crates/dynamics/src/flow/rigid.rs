@@ -6,12 +6,13 @@
 //! accumulate over millions of steps: without a torque |L|, the energy and L in space stay constant within 1e-14 over
 //! 1e6 s for a station, and within 1e-13 over 1e4 s for a body that tumbles at 0.6 rad/s (tests/spatial.rs).
 
-use flexsc_dynamics::three_axis::Surroundings;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::body::spatial::{PeriodicTorque, Spatial};
+use crate::periodic_torque::PeriodicTorque;
+use crate::three_axis::Surroundings;
+use crate::three_axis_model::ThreeAxisModel;
 
 /// Approximate largest rotation in a step (rad): the error of its direction is then below 1e-15 rad.
 pub const LONGEST_TURN: f64 = 1.0 / 16.0;
@@ -46,8 +47,8 @@ pub struct RigidState {
 
 impl RigidBody {
     /// Creates the rigid body of a spatial body.
-    pub fn new(body: &Spatial) -> Self {
-        let inertia = body.inertia_tensor();
+    pub fn new(body: &ThreeAxisModel) -> Self {
+        let inertia = body.inertia;
         // A validated body has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         // Symmetric to the last bit, so that the energy is a quadratic form.

@@ -1,10 +1,10 @@
 //! Motion of a body whose frequencies drift, by successive steps of its Taylor series.
 
-use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::polynomial::Series;
 
 use super::taylor_series::{DriftingEquations, RatioSeries, SAFETY};
-use crate::body::{Drift, SERIES};
+use crate::axis_model::AxisModel;
+use crate::frequency_drift::{FrequencyDrift, SERIES};
 
 /// Largest number of steps of one call.
 const STEPS: u32 = 16;
@@ -12,7 +12,7 @@ const STEPS: u32 = 16;
 /// Motion of a body with drifting frequencies under a constant input.
 #[derive(Clone, Debug)]
 pub struct DriftingFlow {
-    drift: Drift,
+    drift: FrequencyDrift,
     springs: DriftingEquations<f64>,
     /// Taylor coefficients by order, for all coordinates: the rigid angle first, then the modes.
     series: Vec<f64>,
@@ -32,7 +32,7 @@ pub struct DriftingFlow {
 impl DriftingFlow {
     /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
     /// total rate if `total` is true, else on the rigid rate.
-    pub fn new(body: &AxisModel, drift: &Drift, back_emf: f64, total: bool) -> Self {
+    pub fn new(body: &AxisModel, drift: &FrequencyDrift, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let start = body.initial_state().to_vector(&frequencies);
         let springs = DriftingEquations::new(body, back_emf, total);

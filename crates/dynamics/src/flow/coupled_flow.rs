@@ -6,18 +6,18 @@
 
 use std::sync::Arc as Shared;
 
-use flexsc_dynamics::axis_model::AxisModel;
-use flexsc_dynamics::crossing::{Crossing, first_crossing};
-use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::linear::{LinearFlow, LinearOutput, LinearSegment, ModalState, OutputGuard};
-use flexsc_dynamics::polynomial_piece::{self, SeriesExpansion};
-use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::phasor::abs;
 use flexsc_numerics::time::Span;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::{CoupledMatrices, DriftingFlow};
-use crate::body::Drift;
+use crate::axis_model::AxisModel;
+use crate::crossing::{Crossing, first_crossing};
+use crate::frequency_drift::FrequencyDrift;
+use crate::guard::Guard;
+use crate::linear::{LinearFlow, LinearOutput, LinearSegment, ModalState, OutputGuard};
+use crate::polynomial_piece::{self, SeriesExpansion};
+use crate::{AngleObservation, AxisState};
 
 /// Number of cached transitions, the newest last: a run has few different periods.
 const KEPT: usize = 8;
@@ -127,7 +127,7 @@ impl CoupledFlow {
 
     /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
     /// total rate if `total` is true, else on the rigid rate.
-    pub fn new(body: &AxisModel, drift: Option<&Drift>, back_emf: f64, total: bool) -> Self {
+    pub fn new(body: &AxisModel, drift: Option<&FrequencyDrift>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let here = body.initial_state().to_vector(&frequencies);
         let flow = drift.map_or_else(

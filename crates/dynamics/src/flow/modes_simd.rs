@@ -3,11 +3,12 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_dynamics::damping::{DampingRule, Undamped};
 use flexsc_numerics::lanes::{LaneFloat, SimdTask, SimdWidth4};
 use flexsc_numerics::trig::FARTHEST;
+
+use crate::ModeState;
+use crate::axis_model::AxisMode;
+use crate::damping::{DampingRule, Undamped};
 
 /// Number of modes in a group.
 const SIDE: usize = SimdWidth4::LANES;
@@ -94,14 +95,13 @@ impl SimdTask for Rotate<'_> {
 mod tests {
     use super::super::mode::ModeFlow;
     use super::*;
-    use crate::body::Mode;
+    use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
     #[test]
     fn modes_side_by_side_are_to_the_bit_where_each_is_alone() {
-        let mode = |frequency: f64| -> AxisMode {
-            let mode: Mode =
-                serde_json::from_str(&format!(r#"{{"frequency":{frequency},"gain":0.01}}"#)).expect("a mode");
-            AxisMode::from(&mode)
+        let mode = |frequency: f64| {
+            let frequency = Frequency::new(frequency).expect("in range");
+            AxisMode::at_rest(frequency, Finite::new(0.01).expect("finite"), NonNegative::default())
         };
         for count in [2, 3, 4, 5, 9] {
             let modes: Vec<AxisMode> = (0..count).map(|i| mode(0.44 + 0.31 * f64::from(i))).collect();

@@ -9,9 +9,9 @@
 //! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
 //! events of the run alone, not on the instants at which the state is read.
 
-use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
-use flexsc_formats::structure::Structure;
 use nalgebra::{DMatrix, DVector};
+
+use crate::axis_model::{AxisMode, AxisModel};
 
 /// Equations of motion of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,10 +27,15 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Creates a chain of sections of the given lengths (m) whose linear model is `structure`, in the coordinates \[hub
-    /// angle, displacement of each node in the hub's frame\], with the modes of `model`.
-    pub fn new(lengths: &[f64], structure: &Structure, model: &AxisModel, tolerance: f64) -> Self {
-        let (mass, stiffness) = (structure.mass(), structure.stiffness());
+    /// Creates a chain of sections of the given lengths (m) whose linear model has these matrices, in the coordinates
+    /// \[hub angle, displacement of each node in the hub's frame\], with the modes of `model`.
+    pub fn new(
+        lengths: &[f64],
+        mass: &DMatrix<f64>,
+        stiffness: &DMatrix<f64>,
+        model: &AxisModel,
+        tolerance: f64,
+    ) -> Self {
         let n = lengths.len() + 1;
         // v_k = sum over j <= k of l_j (psi_j - psi_0).
         let to_nodes = DMatrix::from_fn(n, n, |k, j| match (k, j) {
