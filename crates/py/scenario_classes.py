@@ -1,7 +1,7 @@
 """Writes `flexsc/scenario.py`, the classes of a scenario's parts, from the schema.
 
 `python crates/py/scenario_classes.py` does it, with `flexsc` installed. A table of the schema is a class with
-its keys; a choice of kinds, such as `Law`, is a class for each kind, and the union of them.
+its keys; a choice of kinds, such as `Law`, is a class for each kind, and the union of them, `LawKind`.
 `tests/python/test_scenario_classes.py` checks that the file is current.
 """
 
@@ -23,10 +23,15 @@ NAMES = {
     "Form2": "FilterForm",
     "Form3": "ObserverForm",
     "Initial2": "AttitudeFilterInitial",
+    # `flexsc.Log` is a log file.
+    "Log": "LogContents",
     "Plate2": "DragPlate",
     "Target2": "AttitudeTarget",
     "Weights2": "RecurrenceWeights",
 }
+# Names that mean something else in `flexsc` and `flexsc.parts`: a kind with one of them also has the name of
+# its choice.
+TAKEN = {"Hold", "StateSpace", "Table", "Truth"}
 HEAD = '''"""The parts of a scenario as classes, for editors and type checkers.
 
     >>> import flexsc
@@ -41,8 +46,9 @@ HEAD = '''"""The parts of a scenario as classes, for editors and type checkers.
     0.31
 
 Their keys, units and meanings are those of a scenario file. A key that is left out, or None, has its
-default. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to be is
-checked when a scenario is made of them; all mistakes are reported at once.
+default. A table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of
+them, `LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to
+be is checked when a scenario is made of them; all mistakes are reported at once.
 """
 
 # Made by crates/py/scenario_classes.py: a change here is lost.
@@ -50,7 +56,6 @@ checked when a scenario is made of them; all mistakes are reported at once.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
@@ -76,6 +81,11 @@ def named(name: str) -> str:
     if name[-1].isdigit():
         sys.exit(f"{name}: name it in NAMES of {__file__}")
     return name
+
+
+def union(choice: str) -> str:
+    """The name of the union of the kinds of a choice."""
+    return f"{named(choice)}Kind"
 
 
 def ref(of: Any) -> str | None:
@@ -114,7 +124,8 @@ class Schema:
         for of in [*self.all.values(), schema]:
             self.reach(of)
         tags = [camel(tag) for kinds in self.choices.values() for tag, _ in kinds]
-        taken = [*tags, *map(named, self.tables), *map(named, self.choices)]
+        # A name of the package counts twice, so that no kind has it alone.
+        taken = [*tags, *map(named, self.tables), *map(union, self.choices), *TAKEN, *TAKEN]
         self.kind_names = {
             (choice, tag): camel(tag) if taken.count(camel(tag)) == 1 else camel(tag) + named(choice)
             for choice, kinds in self.choices.items()
@@ -156,7 +167,7 @@ class Schema:
             name = of["$ref"].rpartition("/")[2]
             if name in self.choices:
                 extra = [c for c in self.all[name]["oneOf"] if not tagged(c)]
-                return " | ".join([named(name), *([self.literals(extra)] if extra else [])])
+                return " | ".join([union(name), *([self.literals(extra)] if extra else [])])
             if name in self.tables:
                 return named(name)
             if name in self.of_kind:
@@ -198,34 +209,64 @@ def told(text: str) -> str:
     return re.sub(r"\\([\[\]_])", r"\1", " ".join(text.split()))
 
 
-def docstring(text: str, indent: str) -> str:
+def docstring(text: str, indent: str, keys: list[tuple[str, str]] | None = None) -> str:
     text = told(text)
+    if keys:
+        lines = [*textwrap.wrap(text, WIDTH - len(indent) - 3, break_long_words=False), "", "Args:"]
+        for name, meaning in keys:
+            lines += textwrap.wrap(
+                f"{name}: {told(meaning)}",
+                WIDTH - len(indent),
+                initial_indent=" " * 4,
+                subsequent_indent=" " * 8,
+                break_long_words=False,
+            )
+        return (
+            f'{indent}"""'
+            + "\n".join(f"{indent}{line}".rstrip() for line in lines).lstrip()
+            + f'\n{indent}"""\n'
+        )
     if len(indent) + len(text) + 6 <= WIDTH + 1:
         return f'{indent}"""{text}"""\n'
     lines = textwrap.wrap(text, WIDTH - len(indent) - 3, break_long_words=False)
     return f'{indent}"""' + f"\n{indent}".join(lines) + f'\n{indent}"""\n'
 
 
+def python_name(key: str) -> str:
+    """The name of a key in Python, which keeps some for itself."""
+    return f"{key}_" if keyword.iskeyword(key) else key
+
+
+def meaning(of: dict[str, Any], needed: bool) -> str:
+    """The description of a key, with its default."""
+    doc: str = of.get("description", "")
+    given = of.get("default")
+    if not needed and given not in (None, [], {}) and not isinstance(given, (dict, list)):
+        doc = f"{doc} Default: {json.dumps(given)}."
+    return doc
+
+
 def field(schema: Schema, name: str, of: dict[str, Any], needed: bool) -> str:
     is_date = name == "epoch"
-    name = f"{name}_" if keyword.iskeyword(name) else name
+    name = python_name(name)
     kind = "datetime" if is_date else schema.type_of(of)
     line = f"    {name}: {kind}\n" if needed else f"    {name}: {kind} | None = None\n"
     if len(line) > 110:
         # Ruff's form of a choice of many words.
         line = line.replace('Literal["', 'Literal[\n        "').replace('", "', '",\n        "')
         line = line.replace('"]', '",\n    ]')
-    doc = of.get("description", "")
-    given = of.get("default")
-    if not needed and given not in (None, [], {}) and not isinstance(given, (dict, list)):
-        doc = f"{doc} Default: {json.dumps(given)}."
+    doc = meaning(of, needed)
     return line + (docstring(doc, "    ") if doc else "")
 
 
 def table(schema: Schema, name: str, of: dict[str, Any], doc: str, tag: str | None) -> str:
     """The class of a table, as a kind of a choice if it has a tag."""
-    head = f"\n\n@dataclass(frozen=True, kw_only=True)\nclass {name}(Part):\n"
-    body = docstring(doc or f"The table `{tag or name}`.", "    ")
+    head = f"\n\nclass {name}(Part):\n"
+    needed = of.get("required", [])
+    properties = of.get("properties", {})
+    order = sorted(properties, key=lambda key: key not in needed)
+    meanings = [(python_name(key), meaning(properties[key], key in needed)) for key in order]
+    body = docstring(doc or f"The table `{tag or name}`.", "    ", meanings)
     body += f'\n    _tag: ClassVar[str | None] = "{tag}"\n' if tag else ""
     bare = [key for key, value in of.get("properties", {}).items() if ref(value) in schema.of_kind]
     if bare:
@@ -237,18 +278,14 @@ def table(schema: Schema, name: str, of: dict[str, Any], doc: str, tag: str | No
                 .replace('", )', '",\n    )')
             )
         body += f"\n{line}"
-    needed = of.get("required", [])
-    properties = of.get("properties", {})
-    order = sorted(properties, key=lambda key: key not in needed)
     fields = "".join(field(schema, key, properties[key], key in needed) for key in order)
     return head + body + ("\n" + fields if fields else "")
 
 
 def wrapped(schema: Schema, name: str, of: dict[str, Any], doc: str, tag: str) -> str:
     """The class of a kind that holds one value."""
-    head = f"\n\n@dataclass(frozen=True)\nclass {name}(Part):\n"
+    head = f"\n\nclass {name}(Part, kw_only=False):\n"
     body = docstring(doc or f"The kind `{tag}`.", "    ") + f'\n    _tag: ClassVar[str | None] = "{tag}"\n'
-    body += "    _holds_one: ClassVar[bool] = True\n"
     return head + body + f"\n    value: {schema.type_of(of)}\n"
 
 
@@ -268,7 +305,7 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
             else:
                 classes.append((name, wrapped(schema, name, content, doc, tag)))
             names.append(name)
-        alias = named(choice)
+        alias = union(choice)
         line = f"{alias}: TypeAlias = {' | '.join(names)}\n"
         if len(line) > WIDTH:
             parts = "\n    | ".join(names)
@@ -286,7 +323,10 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
     for key, of in schema.root["properties"].items():
         if key != "name":
             type_ = "datetime" if key == "epoch" else schema.type_of(of)
-            keys += f"\n    {key}: {type_}\n" + docstring(of.get("description", ""), "    ")
+            line = f"    {key}: {type_}\n"
+            if len(line) > WIDTH + 2:
+                line = f"    {key}: (\n        {type_}\n    )\n"
+            keys += f"\n{line}" + docstring(of.get("description", ""), "    ")
     text = HEAD.replace("\nVector: TypeAlias", listed + "\nVector: TypeAlias", 1)
     bodies = "".join(body for _, body in sorted(classes))
     return text + bodies + "\n\n" + "".join(union for _, union in sorted(unions)) + keys

@@ -67,7 +67,8 @@ def test_campaigns_are_tables(table: Table) -> None:
     assert read.num_rows == 12
     assert read.schema.field("cycle_period_s").metadata == {b"unit": b"s"}
     assert table.unit("cycle_period_s") == "s"
-    assert table.unit("body.planar.angle") == ""
+    assert table.unit("body.planar.angle") == "rad"
+    assert read.schema.field("body.planar.angle").metadata == {b"unit": b"rad"}
     with pytest.raises(KeyError, match="no column 'mass'"):
         table.unit("mass")
     lists = read["envelope_window_means_rad"].to_pylist()

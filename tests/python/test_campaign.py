@@ -17,9 +17,9 @@ def table(sampled: Scenario) -> Table:
 
 
 def test_a_table_has_a_row_for_each_run(sampled: Scenario, table: Table) -> None:
-    assert len(table) == 40
+    assert table.rows == 40
     assert table["run"].tolist() == list(range(40))
-    assert table.keys == sorted(sampled.to_dict()["uncertain"])
+    assert table.varied == sorted(sampled.to_dict()["uncertain"])
     assert all(len(column) == 40 for column in table.columns.values())
     assert all(column.ndim == 1 for column in table.columns.values())
     assert set(table) == set(table.columns)
@@ -42,7 +42,7 @@ def test_a_directory_is_the_same_table(
     seconds = str(sampled.to_dict()["duration"])
     command("simulate", path, "--set", f"duration={seconds}", "--runs", "40", "-o", out)
     read = flexsc.read_campaign(out)
-    assert read.keys == table.keys
+    assert read.varied == table.varied
     assert list(read.columns) == list(table.columns)
     for name, column in table.columns.items():
         if column.dtype == object:
@@ -115,7 +115,7 @@ def test_a_sweep_takes_any_values(fixed: Scenario) -> None:
     short = fixed.with_("duration", 1000.0)
     values = [0.34, 0.31, 0.36]
     table = flexsc.sweep(short, "law.relay.k_t", values)
-    assert table.keys == ["law.relay.k_t"]
+    assert table.varied == ["law.relay.k_t"]
     assert table["law.relay.k_t"].tolist() == values
     for value, mean in zip(values, table["envelope_mean_rad"], strict=True):
         alone = short.with_("law.relay.k_t", value).simulate(log="none")
@@ -127,7 +127,7 @@ def test_a_sweep_takes_several_keys(fixed: Scenario) -> None:
     gains, angles = [0.31, 0.34], [0.0, 2e-4, 4e-4]
     short = fixed.with_("duration", 600.0)
     table = flexsc.sweep(short, {"law.relay.k_t": gains, "body.planar.angle": angles})
-    assert table.keys == ["law.relay.k_t", "body.planar.angle"]
+    assert table.varied == ["law.relay.k_t", "body.planar.angle"]
     assert table["law.relay.k_t"].reshape(2, 3)[:, 0].tolist() == gains
     assert table["body.planar.angle"].reshape(2, 3)[1].tolist() == angles
     alone = short.with_({"law.relay.k_t": 0.34, "body.planar.angle": 2e-4}).simulate(log="none")
@@ -201,9 +201,9 @@ def test_a_sweep_draws_only_if_it_is_asked_to(sampled: Scenario) -> None:
     study = Scenario({**sampled.with_("duration", 100.0).to_dict(), **drawn}, "study")
     values = [1e-6, 2e-6, 3e-6]
     table = flexsc.sweep(study, "law.relay.weak", values)
-    assert table.keys == ["law.relay.weak"]
+    assert table.varied == ["law.relay.weak"]
     table = flexsc.sweep(study, "law.relay.weak", values, uncertain=True)
-    assert table.keys == ["law.relay.weak", "law.relay.k_t"]
+    assert table.varied == ["law.relay.weak", "law.relay.k_t"]
     assert len(set(table["law.relay.k_t"].tolist())) == 3
 
 

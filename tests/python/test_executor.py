@@ -54,7 +54,7 @@ def study() -> Scenario:
 def same(one: Table, other: Table) -> None:
     """Two tables have the same rows."""
     assert list(one) == list(other)
-    assert one.keys == other.keys
+    assert one.varied == other.varied
     for name in one:
         a, b = one[name], other[name]
         assert a.dtype == b.dtype, name
@@ -136,14 +136,14 @@ def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path)
             flexsc.campaign(study.with_("duration", 700.0), 600, out=out, executor=pool)
         # More runs continue it, as in a directory.
         more = flexsc.campaign(study, 700, out=out, executor=pool)
-        assert len(more) == 700
+        assert more.rows == 700
         assert (more["switchings"][:600] == whole["switchings"]).all()
         files.rm_file("/bucket/study/manifest.toml")
         with pytest.raises(ValueError, match="its campaign is unknown"):
             flexsc.campaign(study, 700, out=out, executor=pool)
         flexsc.campaign(study, 700, out=out, executor=pool, force=True)
         fewer = flexsc.campaign(study.with_("duration", 700.0), 20, out=out, executor=pool, force=True)
-        assert len(fewer) == 20
+        assert fewer.rows == 20
     with processes(2) as pool:
         same(whole, flexsc.campaign(study, 600, out=f"file://{tmp_path}/out", executor=pool, task_s=0.1))
 
@@ -188,14 +188,14 @@ def test_another_campaign_is_not_replaced(study: Scenario, tmp_path: Path) -> No
     flexsc.campaign(study, 20, out=tmp_path)
     with pytest.raises(ValueError, match="another campaign"):
         flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path)
-    assert len(flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path, force=True)) == 20
+    assert flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path, force=True).rows == 20
     with pytest.raises(ValueError, match="is not a campaign"):
         flexsc.read_campaign(tmp_path / "nowhere")
 
 
 def test_some_metrics_and_designs(study: Scenario) -> None:
     table = flexsc.campaign(study, 64, metrics=["switchings", "goal"], sample="sobol")
-    assert list(table) == ["run", "seed", *table.keys, "switchings", "goal", "error"]
+    assert list(table) == ["run", "seed", *table.varied, "switchings", "goal", "error"]
     # A Sobol sequence fills each half of a range with half of the points.
     assert (table["law.relay.k_t"] < 0.31).sum() == 32
     twice = flexsc.campaign(study, 10, replicas=2)

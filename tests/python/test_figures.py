@@ -118,7 +118,7 @@ def test_campaigns_have_figures(command: Command, tmp_path: Path) -> None:
     axes = plot.draw(table, f"scatter-{metric}")
     [points] = axes.get_lines()
     assert sorted(points.get_ydata()) == sorted(table[metric])
-    assert any(np.array_equal(points.get_xdata(), table[key]) for key in table.keys)
+    assert any(np.array_equal(points.get_xdata(), table[key]) for key in table.varied)
     with pytest.raises(ValueError, match="there is no figure"):
         plot.draw(table, "fan")
     command(

@@ -11,7 +11,7 @@ from flexsc.scenario import (
     AttitudeLaw,
     AttitudeTarget,
     ControlMomentGyros,
-    Log,
+    LogContents,
     NamedPoint,
     NullMotion,
     Spacecraft,
@@ -53,7 +53,7 @@ def scenario(actuator: ControlMomentGyros) -> flexsc.Scenario:
         law=AttitudeLaw(period=0.1, bandwidth=0.6),
         target=[AttitudeTarget(from_=0.0, roll=0.1, pitch=-0.1, yaw=0.2)],
         actuator=actuator,
-        log=Log(period=0.1),
+        log=LogContents(period=0.1),
     )
 
 

@@ -4,7 +4,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
-from flexsc.scenario import Appendage, Hinge, Log, NamedPoint, Open, Spacecraft
+from flexsc.scenario import Appendage, Hinge, LogContents, NamedPoint, Open, Spacecraft
 
 
 def swinging(angle: float, hub: float = 1e9) -> flexsc.Scenario:
@@ -21,7 +21,7 @@ def swinging(angle: float, hub: float = 1e9) -> flexsc.Scenario:
         spacecraft=Spacecraft(mass=hub, inertia=np.diag([hub] * 3).tolist(), points=[NamedPoint(name="hub")]),
         appendage=[panel],
         law=Open(),
-        log=Log(period=0.5),
+        log=LogContents(period=0.5),
     )
 
 

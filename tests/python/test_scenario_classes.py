@@ -1,8 +1,12 @@
 """The classes of a scenario's parts: as the schema has them, and as good as a file."""
 
 import copy
+import dataclasses
 import importlib.util
+import inspect
 import pickle
+import subprocess
+import sys
 import types
 import typing
 from collections.abc import Mapping, Sequence
@@ -137,12 +141,82 @@ def test_parts_are_immutable_values() -> None:
     assert law == copy.deepcopy(law) == pickle.loads(pickle.dumps(law))
     assert hash(law) == hash(copy.copy(law))
     assert law != Relay(dead_zone=5e-4, hysteresis=1e-4, strong=4e-5, weak=1e-6, k_t=0.33)
-    assert repr(law).startswith("Relay(dead_zone=0.0005, hysteresis=0.0001, ")
+    assert repr(law) == "Relay(dead_zone=0.0005, hysteresis=0.0001, strong=4e-05, weak=1e-06, k_t=0.34)"
     with pytest.raises(AttributeError):
         law.k_t = 0.3  # type: ignore[misc]
     with pytest.raises(TypeError):
         Relay(0.3)  # type: ignore[call-arg]
-    assert Relay in typing.get_args(scenario.Law)
+    assert Relay in typing.get_args(scenario.LawKind)
+
+
+def test_parts_with_lists_and_arrays_compare_and_hash() -> None:
+    for noise in ([1e-6, 1e-6, 2e-6], np.array([1e-6, 1e-6, 2e-6])):
+        gyro = Gyro(period=0.1, noise=noise, faults=[StuckFault(from_=10.0, to=20.0)])
+        assert gyro == Gyro(period=0.1, noise=(1e-6, 1e-6, 2e-6), faults=[StuckFault(from_=10.0, to=20.0)])
+        assert gyro != Gyro(period=0.1, noise=(1e-6, 1e-6, 3e-6))
+        assert len({gyro, copy.deepcopy(gyro), pickle.loads(pickle.dumps(gyro))}) == 1
+
+
+def test_parts_are_dataclasses_to_those_who_ask() -> None:
+    mode = Mode(frequency=0.5, gain=0.02)
+    assert dataclasses.is_dataclass(mode)
+    assert dataclasses.replace(mode, gain=0.03) == Mode(frequency=0.5, gain=0.03)
+    assert [field.name for field in dataclasses.fields(Uniform)] == ["value"]
+    assert dataclasses.asdict(mode)["frequency"] == 0.5
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        del mode.gain
+    match Uniform([0.1, 0.2]):
+        case Uniform(limits):
+            assert limits == [0.1, 0.2]
+
+
+def test_wrong_keys_of_a_part_are_named() -> None:
+    wrong: Any = Mode
+    with pytest.raises(TypeError, match=r"Mode has no key 'frequenzy'; did you mean 'frequency'\? there are"):
+        wrong(frequenzy=0.5, gain=0.02)
+    with pytest.raises(TypeError, match="Mode needs 'frequency'"):
+        wrong(gain=0.02)
+    with pytest.raises(TypeError, match="Mode takes keywords only: frequency, "):
+        wrong(0.5)
+    wrong = Uniform
+    with pytest.raises(TypeError, match="Uniform got 'value' twice"):
+        wrong([0.1, 0.2], value=[0.1, 0.2])
+
+
+def test_the_keys_of_a_part_are_in_its_signature_and_docstring() -> None:
+    parts = [getattr(scenario, name) for name in scenario.__all__]
+    classes = [part for part in parts if isinstance(part, type) and issubclass(part, Part)]
+    assert len(classes) > 130
+    for part in classes:
+        parameters = inspect.signature(part).parameters
+        assert tuple(parameters) == part._names
+        needed = tuple(name for name, given in parameters.items() if given.default is inspect.Parameter.empty)
+        assert needed == part._needed
+        if not part._holds_one and part._names:
+            text = inspect.getdoc(part) or ""
+            assert all(f"\n    {name}: " in text for name in part._names), part
+    assert "period: Period of its samples (s)." in (inspect.getdoc(scenario.Accelerometer) or "")
+
+
+def test_no_name_means_two_things() -> None:
+    package = {*flexsc.__all__, *flexsc.parts.__all__, *flexsc.structure.__all__, *flexsc.plot.__all__}
+    assert package & set(scenario.__all__) == set()
+    assert typing.get_args(scenario.LawKind)[0] is Relay
+
+
+def test_the_classes_are_imported_quickly() -> None:
+    code = (
+        "import flexsc, sys, time; began = time.process_time(); "
+        "import flexsc.scenario; print(time.process_time() - began, 'dataclasses' in sys.modules)"
+    )
+    times = []
+    for _ in range(5):
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        seconds, brings_dataclasses = done.stdout.split()
+        assert brings_dataclasses == "False"
+        times.append(float(seconds))
+    # Also where Python may not keep what it compiled, which takes about 30 ms.
+    assert min(times) < (0.02 if not sys.flags.dont_write_bytecode else 0.1)
 
 
 def test_kinds_have_their_names_where_they_need_one() -> None:

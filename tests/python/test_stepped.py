@@ -1,6 +1,5 @@
 """A stepped run has everything that a run has: metrics, columns, samples, logs and figures."""
 
-import doctest
 import pickle
 from pathlib import Path
 from typing import Any
@@ -171,12 +170,3 @@ def test_copies_that_keep_their_commands_have_results() -> None:
     lost.step(np.zeros((2, 3)), 1.0)
     with pytest.raises(ValueError, match="the commands to run 1 were not kept"):
         _ = lost[1].metrics
-
-
-def test_examples_in_the_docstrings() -> None:
-    from flexsc import _simulator, _simulators
-
-    for module in (_result, _simulator, _simulators):
-        found = doctest.testmod(module, extraglobs={"flexsc": flexsc, "numpy": np})
-        assert found.attempted
-        assert not found.failed

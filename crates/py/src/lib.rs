@@ -192,6 +192,12 @@ impl Scenario {
         self.inner.axis_count() == 3
     }
 
+    /// The remarks on values that are accepted and probably not meant, each with its key.
+    #[getter]
+    fn remarks(&self) -> Vec<String> {
+        self.inner.remarks().iter().map(ToString::to_string).collect()
+    }
+
     fn modes_json(&self) -> String {
         match self.inner.model.axes() {
             BodyAxes::One(body) => json!(OneAxisModes::from_body(body)).to_string(),

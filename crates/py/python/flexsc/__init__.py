@@ -30,10 +30,13 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _native as engine
 from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
+from flexsc._log import Log
+from flexsc._missing import reading as _reading
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._quantities import Quantities
-from flexsc._result import Log, Result, Samples
+from flexsc._result import Result, Samples
+from flexsc._row import Row
 from flexsc._sampled_loop import gain_region, robust_gains, stability_map
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot
@@ -89,6 +92,7 @@ __all__ = [
     "Quantities",
     "Reading",
     "Result",
+    "Row",
     "Samples",
     "Scenario",
     "ScenarioError",
@@ -156,6 +160,26 @@ _LATER = {
 }
 
 
+# Pickles, `help` and tracebacks name the place where users find a class, not the file of its source.
+for _class in (
+    Log,
+    Metrics,
+    Plan,
+    Quantities,
+    Result,
+    Row,
+    Samples,
+    Scenario,
+    Simulator,
+    Simulators,
+    Snapshot,
+    Table,
+    Topic,
+):
+    _class.__module__ = __name__
+del _class
+
+
 # A type checker knows what there is, and would take any name for one of these.
 if not TYPE_CHECKING:
 
@@ -218,6 +242,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     """Read a log file.
 
     Raises:
+        FileNotFoundError: There is no such file. The error is a `LogError` too.
         LogError: The file cannot be read, or is incomplete or damaged.
 
     >>> import flexsc, pathlib, tempfile
@@ -228,7 +253,7 @@ def read_log(path: str | os.PathLike[str]) -> Log:
     >>> log.topics
     ['command', 'law', 'log', 'metrics', 'params', 'summary']
     """
-    return Log(engine.Log.open(path))
+    return Log(_reading(path, engine.Log.open))
 
 
 def examples() -> dict[str, str]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import prod
 from operator import index
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from flexsc import _native as engine
+from flexsc._missing import reading
+from flexsc._progress import Progress, callback
 from flexsc._scenario import Scenario
 from flexsc._table import Table
 from flexsc._values import checked, run_number
@@ -36,7 +38,7 @@ def campaign(
     executor: Executor | None = None,
     task_s: float = 1.0,
     force: bool = False,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress = None,
 ) -> Table:
     """Simulate many runs of a scenario, with new noise and newly drawn `[uncertain]` keys for each.
 
@@ -61,7 +63,8 @@ def campaign(
             the tasks, if they can be pickled.
         task_s: Approximate duration of a task of the executor (s).
         force: Replace another campaign in `out`.
-        progress: Called after each task with the number of finished runs and the total number.
+        progress: True to print a line with the finished runs and the remaining time to standard error, or a
+            function that is called after each task with the number of finished runs and the total number.
 
     Raises:
         ScenarioError: The scenario does not allow this variation.
@@ -73,7 +76,7 @@ def campaign(
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 600.0)
     >>> table = flexsc.campaign(scenario, runs=8, metrics=["switchings", "duty"])
-    >>> len(table), table["switchings"].shape
+    >>> table.rows, table["switchings"].shape
     (8, (8,))
     >>> round(table.statistics()["duty"]["mean"], 3)
     0.041
@@ -86,24 +89,9 @@ def campaign(
     if index(replicas) < 1:
         raise ValueError(f"replicas must be at least 1, got {replicas}")
     checked(scenario)
-    if seed is not None:
-        scenario = scenario.with_("seed", seed)
     span = (run_number(numbers.start), run_number(numbers.stop))
-    if jobs is None and scenario.parts:
-        jobs = 1
-    names = None if metrics is None else list(metrics)
-    part_s = None if executor is None else task_s
-    work = engine.Work.create(scenario._native, span, [], sample, replicas, names, part_s, yes, True)
-    if out is None and executor is None and progress is None:
-        return _completed_table(work, jobs)
-    if executor is not None and out is None and scenario.parts:
-        from flexsc import _own_parts
-
-        study = (span, sample, replicas, names)
-        return _checked(_own_parts.run(scenario, study, work, executor, _threads(jobs), task_s, progress))
-    from flexsc._executor import run
-
-    return _checked(run(work, out, executor, _threads(jobs), task_s, force, progress))
+    study = _Study(scenario, span, [], sample, replicas, metrics, seed, yes, True)
+    return study.table(jobs, out, executor, task_s, force, progress)
 
 
 def sweep(
@@ -117,6 +105,11 @@ def sweep(
     metrics: Sequence[str] | None = None,
     replicas: int = 1,
     uncertain: bool = False,
+    out: str | os.PathLike[str] | None = None,
+    executor: Executor | None = None,
+    task_s: float = 1.0,
+    force: bool = False,
+    progress: Progress = None,
 ) -> Table:
     """Simulate a scenario once per value of a key, or per combination of the values of several keys.
 
@@ -133,6 +126,11 @@ def sweep(
         metrics: The metrics in the table; if omitted, all of them.
         replicas: Number of runs per point, in sequence, which differ only in their noise.
         uncertain: Draw the `[uncertain]` keys too, anew for each point; otherwise they keep their values.
+        out: The directory for the rows, as in `campaign`. The same call continues a stopped sweep.
+        executor: The executor of the runs, as in `campaign`.
+        task_s: Approximate duration of a task of the executor (s).
+        force: Replace another campaign in `out`.
+        progress: True, or a function that is called after each task, as in `campaign`.
 
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
@@ -159,16 +157,11 @@ def sweep(
         raise ValueError("a sweep needs a key")
     if index(replicas) < 1:
         raise ValueError(f"replicas must be at least 1, got {replicas}")
-    if seed is not None:
-        scenario = scenario.with_("seed", seed)
+    if not task_s > 0.0:
+        raise ValueError(f"task_s must be a positive number, got {task_s}")
     runs = replicas * prod(len(numbers) for _, numbers in grids)
-    if jobs is None and scenario.parts:
-        jobs = 1
-    names = None if metrics is None else list(metrics)
-    work = engine.Work.create(
-        scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain
-    )
-    return _completed_table(work, jobs)
+    study = _Study(scenario, (0, runs), grids, "random", replicas, metrics, seed, yes, uncertain)
+    return study.table(jobs, out, executor, task_s, force, progress)
 
 
 def read_campaign(path: str | os.PathLike[str]) -> Table:
@@ -179,6 +172,7 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     complete parts. `path` may be a location that `fsspec` supports.
 
     Raises:
+        FileNotFoundError: There is no such directory. The error is a `ValueError` too.
         ValueError: It is not the directory of a campaign, or contains other files.
         OSError: It cannot be read.
 
@@ -190,14 +184,62 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     >>> same.tolist()
     [True, True, True, True]
     """
-    from flexsc._executor import place
+    from flexsc._executor import Local, place
 
-    return place(path).table()
+    where = place(path)
+    return reading(path, lambda _: where.table()) if isinstance(where, Local) else where.table()
 
 
-def _completed_table(work: engine.Work, jobs: int | None) -> Table:
-    columns, summaries = work.make(work.runs, _threads(jobs))
-    return _checked(Table(work, columns.__getitem__, lambda: summaries))
+class _Study(NamedTuple):
+    """The runs of a campaign or a sweep."""
+
+    scenario: Scenario
+    span: tuple[int, int]
+    grids: list[tuple[str, list[float]]]
+    sample: Sample
+    replicas: int
+    metrics: Sequence[str] | None
+    seed: int | None
+    yes: bool
+    draws: bool
+
+    def table(
+        self,
+        jobs: int | None,
+        out: str | os.PathLike[str] | None,
+        executor: Executor | None,
+        task_s: float,
+        force: bool,
+        progress: Progress,
+    ) -> Table:
+        """Simulate the runs: on threads here, on an executor, or into a directory."""
+        scenario = self.scenario if self.seed is None else self.scenario.with_("seed", self.seed)
+        if jobs is None and scenario.parts:
+            jobs = 1
+        names = None if self.metrics is None else list(self.metrics)
+        work = engine.Work.create(
+            scenario._native,
+            self.span,
+            self.grids,
+            self.sample,
+            self.replicas,
+            names,
+            None if executor is None else task_s,
+            self.yes,
+            self.draws,
+        )
+        threads, report = _threads(jobs), callback(progress)
+        if out is None and executor is None and report is None:
+            columns, summaries = work.make(work.runs, threads)
+            return _checked(Table(work, columns.__getitem__, lambda: summaries))
+        if executor is not None and out is None and scenario.parts:
+            from flexsc import _own_parts
+
+            study = (self.span, self.grids, self.sample, self.replicas, names, self.draws)
+            return _checked(_own_parts.run(scenario, study, work, executor, threads, task_s, report))
+        from flexsc._executor import run
+
+        return _checked(run(work, out, executor, threads, task_s, force, report))
 
 
 def _checked(table: Table) -> Table:

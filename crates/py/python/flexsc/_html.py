@@ -9,8 +9,8 @@ from typing import Any
 
 from flexsc import _native as engine
 
-# What tells a run at a glance.
-_TELLING = ("angle", "pointing")
+# Figures that show a run at a glance.
+AT_A_GLANCE = ("angle", "pointing")
 # A figure is drawn of a run that is repeated this soon (s).
 SOON_S = 2.0
 
@@ -22,9 +22,9 @@ def picture(figure: engine.Figure) -> str:
 
 
 def of_log(log: engine.Log) -> str:
-    """The figure that tells a run at a glance."""
+    """The figure that shows a run at a glance."""
     there = engine.log_figures(log)
-    name = next((name for name in _TELLING if name in there), None)
+    name = next((name for name in AT_A_GLANCE if name in there), None)
     return picture(engine.log_figure(log, name)) if name else ""
 
 

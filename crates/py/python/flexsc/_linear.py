@@ -319,3 +319,7 @@ def whole_and_part(period: float, delay: float) -> tuple[int, float]:
     late = floor(delay / period + 1e-9)
     part = max(delay - late * period, 0.0)
     return late, part if part > 1e-9 * period else 0.0
+
+
+for _class in (Linear, Margins, Signal):
+    _class.__module__ = "flexsc"

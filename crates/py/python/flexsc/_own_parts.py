@@ -14,8 +14,9 @@ from flexsc._scenario import Scenario
 from flexsc._table import Table
 from flexsc.parts import CompiledLaw
 
-# How the runs of a campaign are drawn: their range, the method, the replicas and the metrics.
-Study = tuple[Span, str, int, list[str] | None]
+# The runs of a campaign: their range, the grids of a sweep, the method of the draws, the replicas, the
+# metrics, and whether uncertain keys are drawn.
+Study = tuple[Span, list[tuple[str, list[float]]], str, int, list[str] | None, bool]
 
 
 def run(
@@ -88,8 +89,8 @@ def _rows(
 ) -> tuple[float, list[tuple[Span, dict[str, Any]]]]:
     """Simulate parts of a campaign: a worker's task. Return its duration (s) and the columns of each part."""
     began = time.perf_counter()
-    runs, sample, replicas, names = study
-    work = engine.Work.create(scenario._native, runs, [], sample, replicas, names, None, True, True)
+    runs, grids, sample, replicas, names, draws = study
+    work = engine.Work.create(scenario._native, runs, grids, sample, replicas, names, None, True, draws)
     results = [(part, work.make(part, jobs)[0]) for part in parts]
     return time.perf_counter() - began, results
 

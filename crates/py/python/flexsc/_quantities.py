@@ -6,12 +6,15 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from flexsc._columns import Lookup, equal
+from flexsc._named import no_such
+
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
 
-class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
+class Quantities(Lookup["npt.NDArray[np.float64]"]):
     """The quantities of motion of a run at an instant: arrays by name, with units.
 
     For one run a quantity has shape () or (k,), for n copies shape (n,) or (n, k). The arrays do not change
@@ -33,8 +36,11 @@ class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
         if name not in self._values:
-            raise KeyError(f"no quantity {name!r}; there are {', '.join(self._values)}")
+            raise no_such("no quantity", name, self._values)
         return self._values[name]
+
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other) if isinstance(other, Quantities) else NotImplemented
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)

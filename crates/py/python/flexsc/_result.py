@@ -1,23 +1,23 @@
-"""Results of runs, samples of their motion, and logs: topics as mappings of columns."""
+"""Results of runs, and samples of their motion: topics as mappings of columns."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from functools import cached_property
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._columns import Lookup, read_only
+from flexsc._named import Named, library, no_such
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc._values import arrays
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     import numpy as np
     import numpy.typing as npt
+    from matplotlib.figure import Figure, SubFigure
 
     from flexsc._scenario import Scenario
 
@@ -27,8 +27,10 @@ Detail = Literal["events", "full", "scene", "none"]
 """What is recorded of a run: see `Scenario.simulate`."""
 
 
-class _Topics:
-    """Topics by name, each as a dictionary of columns."""
+class Topics(Lookup[Topic]):
+    """Topics by name, each a mapping of columns."""
+
+    _instead = "use to_pandas(), to_polars() or to_xarray(), or index it by the name of a topic"
 
     @property
     def topics(self) -> list[str]:
@@ -44,6 +46,10 @@ class _Topics:
     def __iter__(self) -> Iterator[str]:
         return iter(self.topics)
 
+    def __len__(self) -> int:
+        """The number of topics."""
+        return len(self.topics)
+
     def __getitem__(self, topic: str) -> Topic:
         """Return the columns of a topic, such as `command`; other libraries can read them through Arrow.
 
@@ -55,11 +61,49 @@ class _Topics:
             KeyError: There is no such topic.
         """
         if topic not in self:
-            raise KeyError(f"no topic {topic!r}; there are {', '.join(self.topics) or 'none'}")
+            raise no_such("no topic", topic, self.topics)
         return self._topic(topic.removeprefix("/"))
 
+    def to_pandas(self) -> dict[str, Any]:
+        """Return each topic as a `pandas.DataFrame`: see `Topic.to_pandas`.
 
-class Samples(_Topics):
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()
+        >>> run.to_pandas()["command"].groupby("state").size()          # doctest: +SKIP
+
+        Raises:
+            ImportError: pandas is not installed.
+        """
+        return Named.of({name: topic.to_pandas() for name, topic in self.items()}, "no topic")
+
+    def to_polars(self) -> dict[str, Any]:
+        """Return each topic as a `polars.DataFrame`: see `Topic.to_polars`.
+
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()
+        >>> run.to_polars()["command"].height                           # doctest: +SKIP
+
+        Raises:
+            ImportError: Polars is not installed.
+        """
+        return Named.of({name: topic.to_polars() for name, topic in self.items()}, "no topic")
+
+    def to_xarray(self) -> Any:
+        """Return an `xarray.DataTree` with a data set per topic: see `Topic.to_xarray`.
+
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate(log="full")
+        >>> run.to_xarray()["modes"]["modes.displacement_rad"].dims     # doctest: +SKIP
+        ('time_s', 'modes')
+
+        Raises:
+            ImportError: xarray (2024.10 or later) is not installed.
+        """
+        xarray = library("xarray", f"{type(self).__name__}.to_xarray")
+        return xarray.DataTree.from_dict({name: topic.to_xarray() for name, topic in self.items()})
+
+
+class Samples(Topics):
     """The motion of a run at chosen times: topics as columns, with one row per time.
 
     >>> import flexsc
@@ -74,6 +118,11 @@ class Samples(_Topics):
     def __init__(self, times: npt.NDArray[np.float64], topics: dict[str, Topic]) -> None:
         self.times = times
         self._topics = topics
+        read_only([times])
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        read_only([self.times])
 
     @property
     def topics(self) -> list[str]:
@@ -83,15 +132,12 @@ class Samples(_Topics):
     def _topic(self, name: str) -> Topic:
         return self._topics[name]
 
-    def __len__(self) -> int:
-        return len(self.times)
-
     def __repr__(self) -> str:
-        return f"<flexsc.Samples at {len(self)} times: {', '.join(self.topics)}>"
+        return f"<flexsc.Samples at {len(self.times)} times: {', '.join(self.topics)}>"
 
 
-class Result(_Topics):
-    """The result of a run: its metrics, and its topics as columns.
+class Result(Topics):
+    """The result of a run: its metrics, and a mapping of its topics as columns, which are read-only.
 
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate(log="full")
@@ -123,6 +169,7 @@ class Result(_Topics):
         self.scenario = scenario
         self.run = run
         self.metrics = Metrics(metrics, scenario)
+        read_only(value for value in metrics.values() if hasattr(value, "flags"))
         self._log = log
         self._topics = self._named(topics)
         self._took = took
@@ -156,6 +203,11 @@ class Result(_Topics):
             The topics of the motion, such as `attitude` and `law` for a single-axis body and `pointing` for a
             three-axis one, each with one row per time, in the order of `times`.
 
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate(log="none")
+        >>> run.sample([0.0, 25.0, 50.0])["modes"]["modes.displacement_rad"].shape
+        (3, 2)
+
         Raises:
             ValueError: A time is not within the run.
         """
@@ -187,6 +239,11 @@ class Result(_Topics):
 
         Values with several parts, such as modes, are arrays of shape (parts,). Use `sample` for many times.
 
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()
+        >>> round(run.at(12.5)["attitude"]["angle_rad"], 9)
+        9.298e-06
+
         Raises:
             ValueError: The time is not within the run.
         """
@@ -195,7 +252,39 @@ class Result(_Topics):
         def plain_cell(values: npt.NDArray[Any]) -> Any:
             return values[0].item() if values.ndim == 1 and values.dtype != object else values[0]
 
-        return {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
+        rows = {name: {c: plain_cell(v) for c, v in seen[name].items()} for name in seen}
+        return Named.of(
+            {name: Named.of(row, f"topic {name!r} has no column") for name, row in rows.items()}, "no topic"
+        )
+
+    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
+        """Draw a figure of the run with Matplotlib (`pip install flexsc[plot]`).
+
+        Args:
+            name: One of `flexsc.plot.figures(run)`, such as `angle`; if omitted, the one that shows the
+                motion at a glance.
+            on: An empty figure or subfigure; if omitted, a new one.
+
+        Returns:
+            The figure, in SI units; its `axes` are the panels, from the top.
+
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
+        >>> figure = run.plot("angle")                                  # doctest: +SKIP
+
+        Raises:
+            ValueError: There is no such figure.
+            ImportError: Matplotlib is not installed.
+        """
+        from flexsc import plot
+
+        return plot.at_a_glance(self, name, on)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Result):
+            return NotImplemented
+        same = self.scenario == other.scenario and self.run == other.run and self.metrics == other.metrics
+        return same and dict(self) == dict(other)
 
     def _native_log(self) -> engine.Log:
         """The log of the run with its events, the source of figures."""
@@ -212,6 +301,13 @@ class Result(_Topics):
         The run is simulated again. The log of a run that was stepped under commands from outside holds them
         as `commands.csv`. `log` is the detail of the log; if omitted, that of the result, and at
         least `events`.
+
+        >>> import flexsc, pathlib, tempfile
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap", log="full")
+        ...     size == (pathlib.Path(out) / "run.mcap").stat().st_size
+        True
 
         Raises:
             LogError: The file cannot be written.
@@ -234,67 +330,3 @@ class Result(_Topics):
         held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
         figure = _html.of_log(self._native_log()) if self._took < _html.SOON_S else ""
         return _html.heading(self.scenario.name, about) + figure + metrics + held
-
-
-class Log(_Topics):
-    """A log file in memory.
-
-    >>> import flexsc, pathlib, tempfile
-    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
-    >>> with tempfile.TemporaryDirectory() as out:
-    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
-    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
-    >>> log.metadata["end"], log["command"].rows == run["command"].rows
-    ('complete', True)
-    """
-
-    def __init__(self, native: engine.Log) -> None:
-        self._native = native
-        self._names = {name.removeprefix("/"): name for name in native.topics}
-        self._read: dict[str, Topic] = {}
-
-    @property
-    def topics(self) -> list[str]:
-        """The names of the topics, without their slash."""
-        return list(self._names)
-
-    @property
-    def metadata(self) -> dict[str, str]:
-        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
-        return self._native.metadata
-
-    @cached_property
-    def scenario(self) -> Scenario | None:
-        """The simulated scenario, if the log contains it.
-
-        Raises:
-            ScenarioError: This version does not accept it.
-        """
-        from flexsc._scenario import Scenario
-
-        text = self._native.scenario
-        return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
-
-    def _topic(self, name: str) -> Topic:
-        if name not in self._read:
-            columns = arrays(self._native.columns(self._names[name]))
-            about = {key: text for key in ("scenario", "seed", "run") if (text := self.metadata.get(key))}
-            self._read[name] = Topic(name, columns, self._known(), about)
-        return self._read[name]
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _from_bytes, (self._native.path, self._native.contents)
-
-    def _known(self) -> Scenario | None:
-        try:
-            return self.scenario
-        except engine.ScenarioError:
-            return None
-
-    def __repr__(self) -> str:
-        return f"<flexsc.Log: {', '.join(self.topics)}>"
-
-
-def _from_bytes(path: Path, contents: bytes) -> Log:
-    """Create the log of a pickle."""
-    return Log(engine.Log.read(path, contents))

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
 import time
 from collections.abc import Mapping, Sequence
 from math import inf
-from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
 
+from flexsc import _keys
 from flexsc import _native as engine
+from flexsc._missing import reading
+from flexsc._named import no_such
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
+from flexsc._signature import LateSignature, of_scenario
 from flexsc._values import arrays, counted, document, plain, run_number, toml
 
 if TYPE_CHECKING:
@@ -48,6 +50,9 @@ class Scenario:
 
     __slots__ = ("_native",)
     _native: engine.Scenario
+    if not TYPE_CHECKING:
+        # For `help`, and for the completion of keys in notebooks.
+        __signature__ = LateSignature(of_scenario)
 
     def __init__(
         self, values: Mapping[str, object] | None = None, name: str = "scenario", **keys: Unpack[Keys]
@@ -69,15 +74,28 @@ class Scenario:
     def load(cls, path: str | os.PathLike[str]) -> Scenario:
         """Read a scenario file.
 
+        >>> import flexsc, pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = pathlib.Path(folder) / "mine.toml"
+        ...     length = path.write_text(flexsc.Scenario.example("relay-fixed").to_toml())
+        ...     flexsc.Scenario.load(path)
+        <flexsc.Scenario relay-fixed: 20000 s, 2 modes, seed 1>
+
         Raises:
+            FileNotFoundError: There is no such file. The error is a `ScenarioError` too.
             ScenarioError: The file cannot be read or is not accepted; the text gives the line, the key and
                 the accepted values.
         """
-        return cls._of(engine.Scenario.load(path))
+        return cls._of(reading(path, engine.Scenario.load))
 
     @classmethod
     def parse(cls, text: str, name: str = "scenario") -> Scenario:
         """Read a scenario from TOML text. `name` is its name if the text has none; it is also used in errors.
+
+        >>> import flexsc
+        >>> text = "duration = 60.0\\n[body.planar]\\nangle = 1e-3\\n[law.open]"
+        >>> flexsc.Scenario.parse(text, "drifting")
+        <flexsc.Scenario drifting: 60 s, 0 modes, seed 0>
 
         Raises:
             ScenarioError: The text is not accepted.
@@ -97,10 +115,7 @@ class Scenario:
         """
         examples = dict(engine.examples())
         if name not in examples:
-            from difflib import get_close_matches
-
-            near = "".join(f"; did you mean {one!r}?" for one in get_close_matches(name, examples, 1))
-            raise KeyError(f"no example {name!r}{near or '; flexsc.examples() has them all'}")
+            raise no_such("no example", name, examples)
         return cls.parse(examples[name], name)
 
     @property
@@ -119,6 +134,17 @@ class Scenario:
         return self._native.duration
 
     @property
+    def remarks(self) -> list[str]:
+        """Remarks on values that are accepted and probably not meant, such as a damping ratio above 1.
+
+        The command prints them as notes before a run.
+
+        >>> flexsc.Scenario.example("relay-fixed").with_("body.planar.modes[0].damping", 5.0).remarks
+        ['body.planar.modes[0].damping: 5 is a ratio and not in percent']
+        """
+        return self._native.remarks
+
+    @property
     def modes(self) -> dict[str, npt.NDArray[np.float64]]:
         """The elastic modes, as arrays of shape (modes,).
 
@@ -131,45 +157,69 @@ class Scenario:
         For a spatial body: `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
         of the elastic rate at the gyro per jump of the rigid rate that the jets cause about x, y and z.
         """
-        import numpy as np
+        from flexsc._modes import modes
 
-        table = json.loads(self._native.modes_json())
-        if self._native.spatial:
-            names = {"frequency": "frequencies_rad_s", "period": "periods_s", "damping": "dampings"}
-            of_modes = {name: np.array(table[key], dtype=np.float64) for name, key in names.items()}
-            return of_modes | {"influence": np.array(table["influences"], dtype=np.float64).T}
-        columns = {
-            "frequency": table["frequencies_rad_s"],
-            "period": table["periods_s"],
-            "damping": table["dampings"],
-            "gain": table["gains"],
-            "excitability": table["excitabilities_s2"],
-            "effective_inertia": table["effective_inertias_kg_m2"],
-            "free_frequency": table["free_frequencies_rad_s"],
-            "clamped_frequency": table["clamped_frequencies_rad_s"],
-        }
-        none = [np.nan] * self._native.mode_count
-        return {
-            name: np.array(none if column is None else column, dtype=np.float64)
-            for name, column in columns.items()
-        }
+        return modes(self._native)
 
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
         """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,)."""
-        import numpy as np
+        from flexsc._modes import outputs
 
-        outputs = json.loads(self._native.modes_json()).get("outputs", [])
-        return {o["name"]: np.array([o["rigid"], *o["weights"]], dtype=np.float64) for o in outputs}
+        return outputs(self._native)
 
     def to_dict(self) -> dict[str, Any]:
-        """The scenario with all its defaults, as a dictionary that `Scenario(...)` accepts."""
+        """The scenario with all its defaults, as a dictionary that `Scenario(...)` accepts.
+
+        >>> import flexsc
+        >>> flexsc.Scenario.example("relay-fixed").to_dict()["law"]["relay"]["k_t"]
+        0.31
+        """
         values: dict[str, Any] = plain(self._native.to_json())
         return values
 
     def to_toml(self) -> str:
-        """The scenario with all its defaults, as TOML."""
+        """The scenario with all its defaults, as TOML.
+
+        >>> import flexsc
+        >>> flexsc.Scenario.example("relay-fixed").to_toml().splitlines()[0]
+        'name = "relay-fixed"'
+        """
         return self._native.to_toml()
+
+    def get(self, key: str) -> Any:
+        """Return the value of a key, as in `to_dict`: its default if it is not set, and None without one.
+
+        Args:
+            key: The path of the key, such as `law.relay.k_t` or `body.planar.modes[0].frequency`.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> scenario.get("law.relay.k_t"), scenario.get("body.planar.modes[0].damping"), scenario.get("epoch")
+        (0.31, 0.0, None)
+
+        Raises:
+            KeyError: There is no such key; the text has those that there are.
+        """
+        return _keys.get(self, key)
+
+    def without(self, *keys: str) -> Scenario:
+        """Return a scenario without some keys: what they were for has its default, or is left out.
+
+        An element of an array, such as `sensor[1]`, is removed from it.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled")
+        >>> "uncertain" in scenario.without("uncertain").to_dict()
+        False
+        >>> scenario.without("body.planar.modes[0]", "body.planar.modes[1]").modes["frequency"].shape
+        (3,)
+
+        Raises:
+            KeyError: A key is not set.
+            ScenarioError: The scenario needs the key.
+        """
+        return _keys.without(self, keys)
 
     @overload
     def with_(self, key: str, value: object, /) -> Scenario: ...
@@ -179,7 +229,14 @@ class Scenario:
         """Return a scenario with new values: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
 
         Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several keys are set together:
-        only the result has to be valid.
+        only the result has to be valid. A quantity may be a text with a unit, such as `"0.02 Hz"`.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> scenario.with_("body.planar.modes[0].frequency", "0.02 Hz").modes["frequency"].round(4).tolist()
+        [0.1257, 0.755]
+        >>> scenario.with_({"seed": 3, "duration": 600.0})
+        <flexsc.Scenario relay-fixed: 600 s, 2 modes, seed 3>
 
         Raises:
             ScenarioError: A key or a value is not accepted.
@@ -215,26 +272,11 @@ class Scenario:
             TypeError: An object is not of the class of its role.
             ScenarioError: The parts do not fit the others.
         """
-        from flexsc import parts
+        from flexsc._roles import by_role
 
-        sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
-        actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
-        given: list[tuple[str, type[Any], object]] = [
-            ("law", parts.ThreeAxisLaw if isinstance(law, parts.ThreeAxisLaw) else parts.Law, law),
-            ("estimator", parts.Estimator, estimator),
-            ("adaptation", parts.Adaptation, adaptation),
-            *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
-            *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
-        ]
-        brought = []
-        for role, kind, part in given:
-            if part is None:
-                continue
-            if not isinstance(part, kind):
-                found = part.__name__ if isinstance(part, type) else type(part).__name__
-                raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
-            brought.append((role, part))
-        return self._of(engine.with_parts(self._native, brought))
+        return self._of(
+            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor))
+        )
 
     @property
     def parts(self) -> dict[str, object]:
@@ -334,7 +376,14 @@ class Scenario:
     def draw(self, run: int) -> Scenario:
         """Return the scenario of one run of a campaign, with its `[uncertain]` keys drawn and set.
 
-        `scenario.draw(57).simulate(run=57)` is run 57 of `campaign(scenario)`.
+        `scenario.draw(57).simulate(run=57)` is run 57 of `campaign(scenario)`; `Table.row` returns the
+        scenario of a row of any campaign or sweep.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> run = scenario.draw(2).simulate(run=2)
+        >>> run.metrics["duty"] == flexsc.campaign(scenario, range(2, 3))["duty"].item()
+        True
 
         Raises:
             ScenarioError: The drawn values do not make a valid scenario.
@@ -343,6 +392,11 @@ class Scenario:
 
     def plan(self, band: float = 0.1) -> Plan:
         """Return the plan of the manoeuvre; its residuals allow for a relative frequency error `band`.
+
+        >>> import flexsc
+        >>> plan = flexsc.Scenario.example("rotation-sine").plan()
+        >>> plan["peak_torque_nm"] > 0.0
+        True
 
         Raises:
             ValueError: The scenario has no manoeuvre, or the band is not between 0 and 1.
@@ -363,6 +417,11 @@ class Scenario:
                 each period of the scenario's log and at every switching. `none` records the metrics only.
                 `scene` has the columns of `full`; a file written from it also has the scene for viewers.
             yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+
+        >>> import flexsc
+        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate(log="full")
+        >>> run.metrics["switchings"], run["attitude"]["angle_rad"].shape
+        (81, (6082,))
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
@@ -14,6 +14,8 @@ from flexsc._values import run_number
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+
+    from flexsc._one_copy import OneCopy
 
 # More copies than this are a mistake: each takes some kilobytes.
 _MOST = 10_000_000
@@ -43,6 +45,7 @@ class Simulators:
     """
 
     __slots__ = ("_fields", "_native", "_rows", "scenario")
+    _native: engine.Simulators | OneCopy
 
     scenario: Scenario
     """The scenario from which the runs are drawn."""
@@ -69,6 +72,19 @@ class Simulators:
         self._fields = Fields(self._native.fields)
         self._rows: npt.NDArray[np.float64] | None = None
         self._raise()
+
+    @classmethod
+    def _of_one(cls, scenario: Scenario, run: int) -> Simulators:
+        """One copy that is advanced in the calling thread, and keeps its commands."""
+        from flexsc._one_copy import OneCopy
+
+        simulators = cls.__new__(cls)
+        simulators.scenario = scenario
+        simulators._native = OneCopy(scenario, run)
+        simulators._fields = Fields(simulators._native.fields)
+        simulators._rows = None
+        simulators._raise()
+        return simulators
 
     def __len__(self) -> int:
         """The number of copies."""
@@ -215,6 +231,13 @@ class Simulators:
         self._keep(self._native.reset(_mask(mask, len(self)), numbers))
         self._raise()
         return self.state
+
+    def __copy__(self) -> NoReturn:
+        # A shallow copy would share the engine: a step of one would advance the other.
+        raise TypeError("Simulators cannot be copied; `sims[i]` is a copy of one run, a Simulator")
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> NoReturn:
+        self.__copy__()
 
     def __repr__(self) -> str:
         return f"<flexsc.Simulators of {self.scenario.name}: {len(self)} copies>"

@@ -4,30 +4,42 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Sequence
+from math import prod
+from operator import index
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _arrow, _units
 from flexsc import _native as engine
+from flexsc import _units
+from flexsc._columns import Columns, read_only
+from flexsc._named import Named, library, no_such
+from flexsc._row import Row
 from flexsc._scenario import Scenario
 from flexsc._values import counted, objects
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+    from matplotlib.figure import Figure, SubFigure
 
 
-class Table:
-    """The results of a campaign, with one row per run.
+class Table(Columns):
+    """The results of a campaign, with one row per run: a mapping of columns.
+
+    The columns, of shape (rows,) and read-only, are `run`, `seed`, the varied keys, the metrics, and `error`.
+    Metrics are float64 with NaN where there is no value; words are str; lists are an array of arrays. `error`
+    is the reason for which a run failed, or empty. Columns of a directory are read at the first access.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
     >>> table = flexsc.campaign(scenario, runs=4)
-    >>> table["run"].tolist(), table.unit("cycle_period_s")
-    ([0, 1, 2, 3], 's')
+    >>> table["run"].tolist(), table.rows, table.unit("cycle_period_s")
+    ([0, 1, 2, 3], 4, 's')
+    >>> table.varied[0], table.unit(table.varied[0])
+    ('body.planar.angle', 'rad')
     """
 
     scenario: Scenario
     """The scenario from which the runs were drawn."""
-    keys: list[str]
+    varied: list[str]
     """The keys of the scenario that are varied."""
 
     def __init__(
@@ -37,7 +49,7 @@ class Table:
         summaries: Callable[[], list[Any]],
     ) -> None:
         self.scenario = Scenario._of(work.scenario)
-        self.keys = work.keys
+        self.varied = work.keys
         self._names = work.names
         self._read = read
         self._summaries = summaries
@@ -49,27 +61,104 @@ class Table:
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
-        """Columns by name, of shape (runs,): `run`, `seed`, the varied keys, the metrics, `error`.
+        """All columns by name, as a dictionary.
 
-        Metrics are float64 with NaN where there is no value; words are str; lists are an array of arrays.
-        `error` is the reason for which a run failed, or empty. `pandas.DataFrame(table.columns)` accepts them
-        unchanged. Columns of a directory are read at the first access.
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0)
+        >>> list(flexsc.sweep(scenario, "law.relay.k_t", [0.3], metrics=["duty"]).columns)
+        ['run', 'seed', 'law.relay.k_t', 'duty', 'error']
         """
-        return {name: self[name] for name in self._names}
+        return dict(self)
 
     def __len__(self) -> int:
-        return len(self["run"])
+        """The number of columns; `rows` is that of the rows."""
+        return len(self._names)
 
     def __getitem__(self, column: str) -> npt.NDArray[Any]:
-        """Return a column, of shape (runs,)."""
+        """Return a column, of shape (rows,), which is read-only: `table[name].copy()` can be changed.
+
+        Raises:
+            KeyError: There is no such column.
+        """
         if column not in self._names:
-            raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
+            raise no_such("no column", column, self._names)
         if column not in self._columns:
-            self._columns[column] = _array(column in ("run", "seed", *self.keys), self._read(column))
+            values = _array(column in ("run", "seed", *self.varied), self._read(column))
+            read_only([values])
+            self._columns[column] = values
         return self._columns[column]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
+
+    @property
+    def rows(self) -> int:
+        """The number of rows, one per run.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0)
+        >>> flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.31]).rows
+        2
+        """
+        return len(self["run"])
+
+    def row(self, place: int) -> Row:
+        """Return the scenario and the run number of a row, counted from 0, or from the end if negative.
+
+        The keys that vary have the values of the row, whether they were drawn or swept, and `[uncertain]` is
+        left out: to simulate the scenario repeats the row to the bit.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
+        >>> table = flexsc.sweep(scenario, "law.relay.k_t", [0.30, 0.31])
+        >>> table.row(-1).scenario.get("law.relay.k_t")
+        0.31
+
+        Raises:
+            IndexError: There is no such row.
+            ScenarioError: The row is one with an `error`, as its values were not accepted.
+        """
+        count, at = self.rows, index(place)
+        if not -count <= at < count:
+            raise IndexError(f"no row {at}; the table has rows 0 to {count - 1}")
+        values = {key: self[key][at].item() for key in self.varied}
+        scenario = self._undrawn()
+        return Row(scenario.with_(values) if values else scenario, int(self["run"][at]))
+
+    def _undrawn(self) -> Scenario:
+        """The scenario without `[uncertain]` keys: those that vary have the values of a row."""
+        native = self.scenario._native
+        work = engine.Work.create(native, (0, 1), [], "random", 1, [], None, True, False)
+        return Scenario._of(work.scenario)
+
+    def worst(self, metric: str, *, smallest: bool = False) -> Row:
+        """Return the row with the largest value of a metric, or with the smallest.
+
+        Rows without a value are left out; of equal values the first counts.
+
+        Args:
+            metric: The metric, or another column of numbers.
+            smallest: Return the row with the smallest value instead, for a metric such as a margin.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> table = flexsc.campaign(scenario, runs=8)
+        >>> worst = table.worst("duty")
+        >>> worst.simulate().metrics["duty"] == table["duty"].max().item()
+        True
+
+        Raises:
+            KeyError: There is no such column.
+            ValueError: The column has no numbers, or no run has a value.
+        """
+        import numpy as np
+
+        values = self[metric]
+        if values.dtype.kind not in "iuf":
+            raise ValueError(f"{metric!r} is not a column of numbers, of which one is the worst")
+        if np.isnan(values).all():
+            raise ValueError(f"no run has a value of {metric!r}")
+        return self.row(int(np.nanargmin(values) if smallest else np.nanargmax(values)))
 
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Return statistics of each numeric metric over the runs that have a value.
@@ -77,36 +166,128 @@ class Table:
         For each metric: its `unit`, the number of these `runs`, their `mean`, their standard deviation `sd`
         (with runs - 1; NaN for a single run), and `quantiles`, a dictionary with the keys 0.05, 0.25, 0.5,
         0.75 and 0.95.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> duty = flexsc.campaign(scenario, runs=8).statistics()["duty"]
+        >>> duty["runs"], duty["quantiles"][0.05] <= duty["mean"] <= duty["quantiles"][0.95]
+        (8, True)
         """
         if self._statistics is None:
             names = ("unit", "runs", "mean", "sd")
-            self._statistics = {
+            found = {
                 name: {**dict(zip(names, numbers, strict=True)), "quantiles": dict(quantiles)}
                 for name, *numbers, quantiles in self._summaries()
             }
+            self._statistics = Named.of(found, "no numeric metric")
         return self._statistics
 
     def unit(self, column: str) -> str:
-        """Return the unit of a metric; empty for a count, a ratio, a word, or a key.
+        """Return the unit of a column, a metric or a key; empty for a count, a ratio or a word.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0)
+        >>> table = flexsc.sweep(scenario, "body.planar.angle", [0.0, 1e-4])
+        >>> table.unit("body.planar.angle"), table.unit("cycle_period_s"), table.unit("run")
+        ('rad', 's', '')
 
         Raises:
             KeyError: There is no such column.
         """
         if column not in self._names:
-            raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
-        return self._unit_lookup()(column)
+            raise no_such("no column", column, self._names)
+        return self._arrow_unit()(column)
 
-    def _unit_lookup(self) -> Callable[[str], str]:
+    def _arrow_unit(self) -> Callable[[str], str]:
         meanings = _units.meanings(self.scenario)
-        return lambda column: meanings.get(column, {"unit": ""})["unit"]
 
-    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """Return the rows through Arrow's PyCapsule interface: null where a run has no value."""
-        return _arrow.stream(self.columns.items(), self._unit_lookup(), {"scenario": self.scenario.name})
+        def unit(column: str) -> str:
+            if column in self.varied:
+                return _units.of_key(column)
+            return meanings[column]["unit"] if column in meanings else ""
 
-    def __arrow_c_schema__(self) -> object:
-        """Return the schema of the rows through Arrow's PyCapsule interface."""
-        return _arrow.schema(self.columns.items(), self._unit_lookup(), {"scenario": self.scenario.name})
+        return unit
+
+    def _about(self) -> dict[str, str]:
+        return {"scenario": self.scenario.name}
+
+    def to_xarray(self) -> Any:
+        """Return the table as an `xarray.Dataset`, which must be installed (`pip install xarray`).
+
+        A sweep over all combinations of the values of its keys has these keys as dimensions, with their
+        values as coordinates, and a dimension `replica` if there are several runs per point. Any other table
+        has the dimension `run`. Lists of the same length in every row have a second dimension. Each variable
+        has its unit as the attribute `units`.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0)
+        >>> keys = {"law.relay.k_t": [0.30, 0.31, 0.32], "body.planar.angle": [0.0, 1e-4]}
+        >>> table = flexsc.sweep(scenario, keys)
+        >>> dict(table.to_xarray()["duty"].sizes)                       # doctest: +SKIP
+        {'law.relay.k_t': 3, 'body.planar.angle': 2}
+
+        Raises:
+            ImportError: xarray is not installed.
+        """
+        xarray = library("xarray", "Table.to_xarray")
+        variables = self._variables("run")
+        grid = self._grid()
+        if not grid:
+            coordinates = {name: variables.pop(name) for name in ("run", *self.varied)}
+            return xarray.Dataset(variables, coordinates, self._about())
+        unit = self._arrow_unit()
+        sizes = tuple(len(values) for values in grid.values())
+        replicas = self.rows // prod(sizes)
+        names: tuple[str, ...] = (*grid, "replica") if replicas > 1 else tuple(grid)
+        shape = (*sizes, replicas) if replicas > 1 else sizes
+        shaped = {
+            name: ((*names, *dimensions[1:]), values.reshape(shape + values.shape[1:]), attributes)
+            for name, (dimensions, values, attributes) in variables.items()
+            if name not in grid
+        }
+        axes = {key: ((key,), values, {"units": unit(key)}) for key, values in grid.items()}
+        return xarray.Dataset(shaped, axes, self._about())
+
+    def _grid(self) -> dict[str, Any]:
+        """The values of each swept key, if the rows are all of their combinations in order."""
+        import numpy as np
+
+        drawn = self.scenario.to_dict().get("uncertain", {})
+        keys = [key for key in self.varied if key not in drawn]
+        if not keys or not self.rows:
+            return {}
+        values = {key: self[key][np.sort(np.unique(self[key], return_index=True)[1])] for key in keys}
+        points = prod(len(of_key) for of_key in values.values())
+        if self.rows % points:
+            return {}
+        grids = np.meshgrid(*values.values(), indexing="ij")
+        each = {
+            key: np.repeat(grid.reshape(-1), self.rows // points)
+            for key, grid in zip(keys, grids, strict=True)
+        }
+        return values if all(np.array_equal(each[key], self[key]) for key in keys) else {}
+
+    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
+        """Draw a figure of the table with Matplotlib (`pip install flexsc[plot]`).
+
+        Args:
+            name: One of `flexsc.plot.figures(table)`, such as `distribution-duty`; if omitted, the first.
+            on: An empty figure or subfigure; if omitted, a new one.
+
+        Returns:
+            The figure, in SI units.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> figure = flexsc.campaign(scenario, runs=8).plot("distribution-duty")  # doctest: +SKIP
+
+        Raises:
+            ValueError: There is no such figure, or none.
+            ImportError: Matplotlib is not installed.
+        """
+        from flexsc import plot
+
+        return plot.at_a_glance(self, name, on)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for pickles and copies: all columns, statistics, and the manifest of the work."""
@@ -119,6 +300,8 @@ class Table:
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self._kept = self._work = None
+        # A pickle does not keep that they are.
+        read_only(self._columns.values())
         # All columns and statistics are in the state.
         self._read = self._columns.__getitem__
         self._summaries = list
@@ -150,13 +333,13 @@ class Table:
         ]
         head = ("metric", "unit", "mean", "sd", "5 %", "95 %")
         can_draw = self._work is not None or self._manifest is not None
-        drawn = self._figures(None, ()) if len(self) > 1 and can_draw else []
+        drawn = self._figures(None, ()) if self.rows > 1 and can_draw else []
         figure = _html.picture(drawn[0][1]) if drawn else ""
         statistics = _html.folded(f"{len(rows)} metrics", _html.table(head, rows))
-        return _html.heading(self.scenario.name, counted(len(self), "run")) + figure + statistics
+        return _html.heading(self.scenario.name, counted(self.rows, "run")) + figure + statistics
 
     def __repr__(self) -> str:
-        return f"<flexsc.Table of {self.scenario.name}: {counted(len(self), 'run')}>"
+        return f"<flexsc.Table of {self.scenario.name}: {counted(self.rows, 'run')}>"
 
 
 def of_directory(path: str | os.PathLike[str], kept: object = None) -> Table:

@@ -1,12 +1,15 @@
-"""Units: the names of columns and metrics end with their units."""
+"""Units: the names of columns and metrics end with their units; descriptions give the others."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._named import no_such
 
 if TYPE_CHECKING:
     from flexsc._scenario import Scenario
@@ -32,7 +35,9 @@ _ENDINGS = {
     "_n": "N",
 }
 # On a body without a moment of inertia a torque is an acceleration.
-_REDUCED = {"N m": "rad/s²", "N m s": "rad/s"}
+_REDUCED = {"N m": "rad/s²", "N m s": "rad/s", "J": "J/(kg m²)"}
+# A unit within a description, such as `Displacement (m sqrt(kg)).`
+_IN_TEXT = re.compile(r"\(((?:rad|deg|m|s|N|kg|J|T|A|1/s|Hz|sqrt)\b(?:[^(),;]|\([^()]*\))*)")
 
 
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
@@ -47,13 +52,68 @@ def is_reduced(scenario: Scenario | None) -> bool:
     return meanings(scenario)["peak_torque_nm"]["unit"] != "N m"
 
 
-def of_column(name: str, reduced: bool = False) -> str:
+def of_column(topic: str, name: str, reduced: bool = False) -> str:
     """The unit of a column such as `modes.displacement_rad`; empty for a count, a ratio or a word."""
+    found = _ending(name) or _described().get((topic, name), "")
+    return _REDUCED.get(found, found) if reduced else found
+
+
+def _ending(name: str) -> str:
     for part in reversed(name.split(".")):
         for ending, unit in _ENDINGS.items():
             if part.endswith(ending) and part != ending[1:]:
-                return _REDUCED.get(unit, unit) if reduced else unit
+                return unit
     return ""
+
+
+@lru_cache(maxsize=1)
+def _described() -> dict[tuple[str, str], str]:
+    """The units of columns whose names have none, by topic and column, from the engine's descriptions."""
+
+    def units(above: str, unit: str, fields: list[dict[str, Any]]) -> Iterator[tuple[str, str]]:
+        for field in fields:
+            name = f"{above}.{field['name']}" if above else field["name"]
+            own = in_text(field["doc"])
+            if "fields" in field:
+                # The components of a vector have its unit.
+                yield from units(name, own if field["kind"] == "row" else "", field["fields"])
+            elif field["kind"] == "time":
+                yield name, "s"
+            elif field["kind"] == "number" and (own or unit):
+                yield name, own or unit
+
+    topics = json.loads(engine.topics_json()).items()
+    return {(topic, name): unit for topic, of in topics for name, unit in units("", "", of["fields"])}
+
+
+def in_text(text: str) -> str:
+    """The unit in a description, such as that of `Angle at the start (rad)`; empty without one."""
+    found = _IN_TEXT.search(text)
+    return found[1].rstrip() if found else ""
+
+
+@lru_cache(maxsize=256)
+def of_key(path: str) -> str:
+    """The unit of a key of a scenario, such as `body.planar.angle`; empty without one."""
+    schema = json.loads(engine.schema_json())
+    places: list[tuple[dict[str, Any], str]] = [(schema, "")]
+    for step in re.sub(r"\[\d+\]", "[]", path).replace("[]", ".[]").split("."):
+        places = [inner for place, _ in places for inner in _within(schema, place, step)]
+    return next((unit for _, unit in places if unit), "")
+
+
+def _within(schema: dict[str, Any], place: Any, step: str) -> Iterator[tuple[dict[str, Any], str]]:
+    """The values that a step of a path may lead to, each with the unit of its description."""
+    if not isinstance(place, dict):
+        return
+    if "$ref" in place:
+        yield from _within(schema, schema["$defs"][place["$ref"].rpartition("/")[2]], step)
+    for kind in ("oneOf", "anyOf"):
+        for choice in place.get(kind, ()):
+            yield from _within(schema, choice, step)
+    inner = place.get("items") if step == "[]" else place.get("properties", {}).get(step)
+    if isinstance(inner, dict):
+        yield inner, in_text(inner.get("description", ""))
 
 
 class Metrics(dict[str, Any]):
@@ -79,9 +139,16 @@ class Metrics(dict[str, Any]):
             return NotImplemented
         return self.keys() == other.keys() and all(np.array_equal(self[name], other[name]) for name in self)
 
+    def __missing__(self, name: object) -> Any:
+        raise no_such("no metric", name, self)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """Return the names of the metrics, which Jupyter and IPython complete."""
+        return list(self)
+
     def _meaning(self, name: str) -> dict[str, str]:
         if name not in self:
-            raise KeyError(f"no metric {name!r}; there are {', '.join(self)}")
+            raise no_such("no metric", name, self)
         if self._meanings is None:
             self._meanings = meanings(self._scenario)
         return self._meanings[name]

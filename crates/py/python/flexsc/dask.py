@@ -10,15 +10,17 @@ import os
 import sys
 import time
 from _thread import interrupt_main
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from importlib import import_module
 from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._campaign import Sample
 from flexsc._campaign import campaign as _campaign
 from flexsc._executor import Local, run
+from flexsc._progress import Progress
 from flexsc._scenario import Scenario
 from flexsc._table import Table
 
@@ -28,7 +30,22 @@ if TYPE_CHECKING:
 __all__ = ["campaign"]
 
 
-def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **options: Any) -> Table:
+def campaign(
+    client: Client,
+    scenario: Scenario,
+    runs: int | range = 1000,
+    jobs: int | None = None,
+    seed: int | None = None,
+    yes: bool = False,
+    *,
+    metrics: Sequence[str] | None = None,
+    sample: Sample = "random",
+    replicas: int = 1,
+    out: str | os.PathLike[str] | None = None,
+    task_s: float = 1.0,
+    force: bool = False,
+    progress: Progress = None,
+) -> Table:
     """Simulate many runs of a scenario on the workers of a Dask cluster.
 
     Workers write their rows to `out`, a directory that all of them can reach or a location that `fsspec`
@@ -39,12 +56,26 @@ def campaign(client: Client, scenario: Scenario, runs: int | range = 1000, **opt
         client: The client of a scheduler.
         scenario: The scenario from which the runs are drawn.
         runs: The number of runs, or their range (of step 1).
-        options: Those of `flexsc.campaign`, except `executor`.
+        jobs, seed, yes, metrics, sample, replicas, out, task_s, force, progress: As in `flexsc.campaign`.
 
     Raises:
         ScenarioError, ValueError, OSError: As in `flexsc.campaign`.
     """
-    return _campaign(scenario, runs, executor=_Executor(client), **options)
+    return _campaign(
+        scenario,
+        runs,
+        jobs,
+        seed,
+        yes,
+        metrics=metrics,
+        sample=sample,
+        replicas=replicas,
+        out=out,
+        executor=_Executor(client),
+        task_s=task_s,
+        force=force,
+        progress=progress,
+    )
 
 
 class _Executor(Executor):

@@ -8,166 +8,39 @@ The extra `flexsc[gym]` installs the dependencies. Importing this module registe
     >>> observation, info = env.reset(seed=7)
     >>> observation.shape
     (6,)
+
+`gymnasium.make("flexsc.gym:flexsc/Spacecraft-v0", ...)` imports it first. `stable_baselines` makes such an
+environment for Stable-Baselines3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
 import numpy as np
 import numpy.typing as npt
-from gymnasium.spaces import Box
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from flexsc._quantities import Quantities
+from flexsc._episodes import (
+    Beyond,
+    Mask,
+    Observation,
+    Observe,
+    Quadratic,
+    QuickStep,
+    Reward,
+    Task,
+    Terminate,
+)
+from flexsc._result import Detail, Result
 from flexsc._scenario import Scenario
 from flexsc._simulators import Simulators
 
-__all__ = ["Beyond", "Quadratic", "SpacecraftEnv", "SpacecraftVectorEnv"]
-
-Array = npt.NDArray[np.float64]
-Observation = npt.NDArray[np.float32]
-Mask = npt.NDArray[np.bool_]
-
-Observe = Mapping[str, float] | Callable[[Simulators], npt.ArrayLike]
-"""The observation: names such as `believed.rate`, each with the value by which it is divided; or a callable
-that returns an array of shape (n, numbers) from the simulators."""
-Reward = Callable[[Simulators, Array], npt.ArrayLike]
-"""Rewards of shape (n,), computed from the simulators after a step and from the actions of shape (n,
-axes)."""
-Terminate = Callable[[Simulators], npt.ArrayLike]
-"""Whether each episode has ended for a reason other than its time, of shape (n,)."""
-
-
-def _size(quantities: Quantities, *names: str) -> Array:
-    """The magnitude of the first quantity that exists, of shape (n,)."""
-    values = next(quantities[name] for name in names if name in quantities)
-    return np.abs(values) if values.ndim == 1 else np.sqrt(np.sum(values * values, axis=1))
-
-
-@dataclass(frozen=True)
-class Quadratic:
-    """A reward: minus a quadratic cost of the true error, the true rate and the action.
-
-    -((error/`error`)² + (rate/`rate`)² + `effort` action²), with the magnitudes of the vectors on three axes.
-
-    >>> flexsc.gym.Quadratic(error=0.01, effort=0.1).rate
-    0.1
-    """
-
-    error: float = 0.1
-    """The error with a cost of 1 (rad)."""
-    rate: float = 0.1
-    """The rate with a cost of 1 (rad/s)."""
-    effort: float = 0.01
-    """The cost of the largest command about one axis."""
-
-    def __call__(self, simulators: Simulators, actions: Array) -> Array:
-        state = simulators.state
-        error = _size(state, "error", "angle") / self.error
-        rate = _size(state, "rate") / self.rate
-        cost: Array = error * error + rate * rate + self.effort * np.sum(actions * actions, axis=1)
-        return -cost
-
-
-@dataclass(frozen=True)
-class Beyond:
-    """Terminates an episode if the true error or rate exceeds a limit.
-
-    >>> flexsc.gym.Beyond(rate=0.5).error
-    inf
-    """
-
-    error: float = np.inf
-    """The largest error (rad)."""
-    rate: float = np.inf
-    """The largest rate (rad/s)."""
-
-    def __call__(self, simulators: Simulators) -> Mask:
-        state = simulators.state
-        return (_size(state, "error", "angle") > self.error) | (_size(state, "rate") > self.rate)
-
-
-class _Task:
-    """The common part of one environment and of many."""
-
-    def __init__(
-        self,
-        scenario: Scenario | str,
-        count: int,
-        dt: float,
-        limit: npt.ArrayLike | None,
-        observe: Observe | None,
-        reward: Reward | None,
-        terminate: Terminate | None,
-        jobs: int | None,
-    ) -> None:
-        scenario = Scenario.example(scenario) if isinstance(scenario, str) else scenario
-        self.simulators = Simulators(scenario, count, jobs)
-        self.dt = float(dt)
-        axes = self.simulators.axes
-        most = self.simulators.command_limit if limit is None else np.asarray(limit, dtype=np.float64)
-        self.limit: Array = np.broadcast_to(most, (axes,))
-        if not (np.isfinite(self.limit) & (self.limit > 0.0)).all():
-            unit = self.simulators.command_unit
-            hint = "the actuator has none: give `limit`" if limit is None else f"got {limit!r}"
-            raise ValueError(f"the largest command about each axis must be positive numbers ({unit}), {hint}")
-        if observe is None:
-            error = "error" if axes == 3 else "angle"
-            observe = {f"believed.{error}": 1.0, "believed.rate": 1.0}
-        self._observe = observe
-        self._reward = Quadratic() if reward is None else reward
-        self._terminate = Beyond() if terminate is None else terminate
-        size = self.observe().shape[1]
-        self.observation_space = Box(-np.inf, np.inf, (size,), np.float32)
-        self.action_space = Box(-1.0, 1.0, (axes,), np.float32)
-
-    def observe(self) -> Observation:
-        """Observations of shape (n, numbers)."""
-        sims = self.simulators
-        if callable(self._observe):
-            observation = np.asarray(self._observe(sims), dtype=np.float32)
-            if observation.ndim != 2 or len(observation) != len(sims):
-                raise ValueError(
-                    f"observe must give an array of shape ({len(sims)}, numbers), got {observation.shape}"
-                )
-            return observation
-        groups = {"state": sims.state, "measured": sims.measured, "believed": sims.believed}
-        columns = []
-        for name, scale in self._observe.items():
-            group, _, quantity = name.partition(".")
-            if group not in groups:
-                raise ValueError(
-                    f"observe must name `state.`, `measured.` or `believed.` quantities, got {name!r}"
-                )
-            columns.append(groups[group][quantity].reshape(len(sims), -1) / scale)
-        observation = np.concatenate(columns, axis=1, dtype=np.float32, casting="same_kind")
-        return observation
-
-    def step(self, actions: npt.ArrayLike, mask: Mask | None) -> tuple[Array, Mask, Mask]:
-        """Advance; return the rewards and which episodes were terminated and truncated."""
-        sims, count = self.simulators, len(self.simulators)
-        given = np.asarray(actions, dtype=np.float64)
-        if given.shape != (count, sims.axes):
-            raise ValueError(f"actions must have shape {(count, sims.axes)}, got {given.shape}")
-        given = np.clip(given, -1.0, 1.0)
-        sims.step(given * self.limit, self.dt, mask)
-        reward = self._told(self._reward(sims, given), np.float64, "reward")
-        terminated = self._told(self._terminate(sims), np.bool_, "terminate")
-        return reward, terminated, sims.done
-
-    def _told(self, values: npt.ArrayLike, dtype: Any, name: str) -> npt.NDArray[Any]:
-        array = np.array(values, dtype=dtype)
-        if array.shape != (len(self.simulators),):
-            raise ValueError(
-                f"{name} must give an array of shape ({len(self.simulators)},), got {array.shape}"
-            )
-        return array
+__all__ = ["Beyond", "Quadratic", "SpacecraftEnv", "SpacecraftVectorEnv", "stable_baselines"]
 
 
 def _run(random: np.random.Generator) -> int:
@@ -189,10 +62,13 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
             in the unit of `Simulator.command_unit`; if omitted, the largest that the actuator can execute.
             Larger actions are clipped to 1.
         observe: The observation, as names with scales or as a callable; if omitted, `believed.error` (on one
-            axis `believed.angle`) and `believed.rate`, unscaled (rad, rad/s).
+            axis `believed.angle`) and `believed.rate`, each divided by its value in `observed`: the largest
+            at the start of runs, or on the fastest way from there to the goal.
         reward: The reward of a step, computed from simulators and actions; if omitted, `Quadratic()`.
         terminate: Whether an episode has ended before its time; if omitted, never.
-        render_mode: None is the only value: use logs of `scenario.draw(run)` to view a run.
+        metrics: The names of metrics of an episode that `info["metrics"]` has at its end; with `goal`,
+            `info["is_success"]` says whether it is met. The run is repeated for them.
+        render_mode: None is the only value: `result` has the log and the figures of an episode.
 
     Raises:
         ValueError: The actuator has no limit and `limit` is not given; `dt` is not a positive time; or
@@ -213,22 +89,70 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
         observe: Observe | None = None,
         reward: Reward | None = None,
         terminate: Terminate | None = None,
+        metrics: Sequence[str] = (),
         render_mode: None = None,
     ) -> None:
-        self._task = _Task(scenario, 1, dt, limit, observe, reward, terminate, 1)
+        self._task = Task(
+            scenario,
+            dt,
+            limit,
+            observe,
+            reward,
+            terminate,
+            metrics,
+            lambda of_runs: Simulators._of_one(of_runs, 0),
+        )
+        self._quick = QuickStep.of(self._task)
         self.observation_space = self._task.observation_space
         self.action_space = self._task.action_space
         self.render_mode = render_mode
 
     @property
     def simulators(self) -> Simulators:
-        """The simulator of the environment: one copy."""
+        """The simulator of the environment: one copy.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> env.simulators.state["attitude"].shape
+        (1, 4)
+        """
         return self._task.simulators
+
+    @property
+    def observed(self) -> Observe:
+        """The observation: names of quantities with the values by which they are divided, or a callable.
+
+        >>> flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0).observed
+        {'believed.error': 0.61, 'believed.rate': 0.08}
+        """
+        return self._task.observed
+
+    def result(self, log: Detail = "events") -> Result:
+        """Return the present episode, until its next `reset`, as a result: metrics, columns, log and figures.
+
+        The run is repeated under the commands of the episode.
+
+        Args:
+            log: The detail of the columns, as in `Scenario.simulate`.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> start = env.reset(seed=1)
+        >>> for _ in range(5):
+        ...     told = env.step(env.action_space.sample())
+        >>> env.result("full")["rates"]["time_s"][-1].item()
+        5.0
+        """
+        return self._task.result(0, log)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Start an episode: the next of its seed, or with `options={"run": n}` the run with this number."""
+        """Start an episode: the next of its seed, or with `options={"run": n}` the run with this number.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> observation, info = env.reset(options={"run": 5})
+        >>> info
+        {'run': 5}
+        """
         super().reset(seed=seed)
         run = _run(self.np_random)
         run = (options or {}).get("run", run)
@@ -236,10 +160,34 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return self._task.observe()[0], {"run": run}
 
     def step(self, action: npt.NDArray[Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Hold a command for a step; return observation, reward, terminated, truncated and info."""
-        reward, terminated, truncated = self._task.step(np.asarray(action)[None], None)
-        observation = self._task.observe()[0]
-        return observation, float(reward[0]), bool(terminated[0]), bool(truncated[0]), {}
+        """Hold a command for a step; return observation, reward, terminated, truncated and info.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> start = env.reset(seed=1)
+        >>> observation, reward, terminated, truncated, info = env.step([0.5, 0.0, -0.5])
+        >>> reward < 0.0, terminated, truncated
+        (True, False, False)
+
+        Raises:
+            ValueError: The action has another shape or is not finite.
+            SimulationError: The run cannot go on.
+        """
+        if self._quick is not None:
+            observation, reward, terminated, truncated = self._quick.step(action)
+        else:
+            rewards, terminations, truncations = self._task.step(np.asarray(action)[None], None)
+            observation, reward = self._task.observe()[0], float(rewards[0])
+            terminated, truncated = bool(terminations[0]), bool(truncations[0])
+        info: dict[str, Any] = {}
+        if self._task.metrics and (terminated or truncated):
+            info = _with_success(self._task.metrics_of(0))
+        return observation, reward, terminated, truncated, info
+
+
+def _with_success(metrics: dict[str, Any]) -> dict[str, Any]:
+    """The info of an episode that has ended: its metrics, and whether its goal is met."""
+    goal = {"is_success": metrics["goal"] == "met"} if "goal" in metrics else {}
+    return {"metrics": metrics, **goal}
 
 
 class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[Any]]):
@@ -248,12 +196,15 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
     Copy i has, with seed s, the episodes of `SpacecraftEnv` with seed s + i.
 
     Args:
-        scenario, dt, limit, observe, reward, terminate: As in `SpacecraftEnv`.
+        scenario, dt, limit, observe, reward, terminate, metrics: As in `SpacecraftEnv`. In the mode
+            `SameStep` the metrics are in `info["final_info"]`.
         num_envs: The number of environments.
         autoreset_mode: When the next episode starts. `NextStep`: in the step after the end of an episode.
             `SameStep`: in the step that ends the episode; `info["final_obs"]` has its last observation.
             `Disabled`: at `reset` with `options={"reset_mask": mask}`.
         jobs: Number of threads; if omitted, one per core.
+        keep_commands: Whether the commands of episodes are kept, 40 bytes each, so that `result` can repeat
+            them; with `metrics` they are.
 
     >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=100, dt=1.0, limit=1.0)
     >>> observations, info = envs.reset(seed=1)
@@ -274,10 +225,22 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
         terminate: Terminate | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         jobs: int | None = None,
+        metrics: Sequence[str] = (),
+        keep_commands: bool = False,
         render_mode: None = None,
     ) -> None:
         self.num_envs = num_envs
-        self._task = _Task(scenario, num_envs, dt, limit, observe, reward, terminate, jobs)
+        keeps = keep_commands or bool(metrics)
+        self._task = Task(
+            scenario,
+            dt,
+            limit,
+            observe,
+            reward,
+            terminate,
+            metrics,
+            lambda of_runs: Simulators(of_runs, num_envs, jobs, keep_commands=keeps),
+        )
         self._mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}
         self.single_observation_space = self._task.observation_space
@@ -290,13 +253,52 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
 
     @property
     def simulators(self) -> Simulators:
-        """The simulators of the environments: one copy each."""
+        """The simulators of the environments: one copy each.
+
+        >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=8, dt=1.0, limit=1.0)
+        >>> len(envs.simulators)
+        8
+        """
         return self._task.simulators
+
+    @property
+    def observed(self) -> Observe:
+        """The observation: see `SpacecraftEnv.observed`.
+
+        >>> flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=8, dt=1.0, limit=1.0).observed
+        {'believed.error': 0.61, 'believed.rate': 0.08}
+        """
+        return self._task.observed
+
+    def result(self, index: int, log: Detail = "events") -> Result:
+        """Return the present episode of an environment as a result: see `SpacecraftEnv.result`.
+
+        Args:
+            index: The environment.
+            log: The detail of the columns, as in `Scenario.simulate`.
+
+        >>> options = {"num_envs": 8, "dt": 1.0, "limit": 1.0, "keep_commands": True}
+        >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", **options)
+        >>> start = envs.reset(seed=1)
+        >>> told = envs.step(envs.action_space.sample())
+        >>> envs.result(3, "none").metrics["peak_torque_nm"] <= 1.0
+        True
+
+        Raises:
+            ValueError: The commands were not kept.
+        """
+        return self._task.result(index, log)
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Start episodes: all, or those of `options["reset_mask"]`."""
+        """Start episodes: all, or those of `options["reset_mask"]`.
+
+        >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=8, dt=1.0, limit=1.0)
+        >>> observations, info = envs.reset(seed=1)
+        >>> observations.shape, info["run"].shape
+        ((8, 6), (8,))
+        """
         count = self.num_envs
         mask = (options or {}).get("reset_mask", np.ones(count, dtype=np.bool_))
         seeds: list[int | None]
@@ -327,8 +329,19 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
     def step(
         self, actions: npt.NDArray[Any]
     ) -> tuple[Observation, npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], dict[str, Any]]:
-        """Hold commands of shape (n, axes); return observations, rewards, terminations, truncations and
-        info."""
+        """Hold commands of shape (n, axes); return observations, rewards, terminations, truncations and info.
+
+        >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=8, dt=1.0, limit=1.0)
+        >>> start = envs.reset(seed=1)
+        >>> observations, rewards, terminations, truncations, info = envs.step(numpy.zeros((8, 3)))
+        >>> rewards.shape, truncations.any().item()
+        ((8,), False)
+
+        Raises:
+            ValueError: The actions have another shape or are not finite, or episodes have ended and have to
+                be reset.
+            SimulationError: Runs cannot go on; the text names them.
+        """
         if not self._randoms:
             raise gymnasium.error.ResetNeeded("Cannot call env.step() before calling env.reset()")
         begins = self._ended
@@ -348,11 +361,73 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
                 observation = self._task.observe()
                 for index in np.flatnonzero(ended):
                     last[index] = observation[index]
+                final = self._metrics_of(ended)
                 info = self._begin(ended)
-                info |= {"final_obs": last, "_final_obs": ended, "final_info": {}, "_final_info": ended}
+                info |= {"final_obs": last, "_final_obs": ended, "final_info": final, "_final_info": ended}
         else:
             self._ended = ended
+            info |= self._metrics_of(ended)
         return self._task.observe(), reward, terminated, truncated, info
+
+    def _metrics_of(self, ended: Mask) -> dict[str, Any]:
+        """The info about the metrics of episodes that have ended: an array for each, and which are set."""
+        names = self._task.metrics
+        if not names or not ended.any():
+            return {}
+        each = {index: self._task.metrics_of(index) for index in np.flatnonzero(ended).tolist()}
+        arrays: dict[str, npt.NDArray[Any]] = {}
+        for name in names:
+            arrays[name] = np.full(self.num_envs, None, dtype=object)
+            for index, metrics in each.items():
+                arrays[name][index] = metrics[name]
+        info: dict[str, Any] = {"metrics": arrays, "_metrics": ended.copy()}
+        if "goal" in arrays:
+            info |= {"is_success": arrays["goal"] == "met", "_is_success": ended.copy()}
+        return info
+
+
+def stable_baselines(
+    scenario: Scenario | str,
+    num_envs: int = 1,
+    dt: float = 0.1,
+    limit: npt.ArrayLike | None = None,
+    observe: Observe | None = None,
+    reward: Reward | None = None,
+    terminate: Terminate | None = None,
+    jobs: int | None = None,
+    metrics: Sequence[str] = (),
+    keep_commands: bool = False,
+) -> Any:
+    """Return many environments together as a `VecEnv` of Stable-Baselines3, which must be installed.
+
+    It has the episodes of `SpacecraftVectorEnv`, whose arguments it takes, and the conventions of
+    Stable-Baselines3: the next episode starts in the step that ends one, and the info of that step has
+    `terminal_observation`, `TimeLimit.truncated`, and with `metrics` those of the episode and `is_success`.
+    `venv.envs` is the `SpacecraftVectorEnv`.
+
+    >>> venv = flexsc.gym.stable_baselines("four-clamped-modes", 16, dt=1.0, limit=1.0)  # doctest: +SKIP
+    >>> model = stable_baselines3.PPO("MlpPolicy", venv).learn(20_000)                   # doctest: +SKIP
+
+    Raises:
+        ImportError: Stable-Baselines3 is not installed.
+        ValueError: As in `SpacecraftEnv`.
+    """
+    from flexsc._stable_baselines import adapted
+
+    envs = SpacecraftVectorEnv(
+        scenario,
+        num_envs,
+        dt,
+        limit,
+        observe,
+        reward,
+        terminate,
+        AutoresetMode.SAME_STEP,
+        jobs,
+        metrics,
+        keep_commands,
+    )
+    return adapted(envs)
 
 
 gymnasium.register(

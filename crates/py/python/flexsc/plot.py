@@ -24,10 +24,13 @@ import os
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
+from flexsc import _html
 from flexsc import _native as engine
-from flexsc._result import Log, Result
+from flexsc._log import Log
+from flexsc._missing import reading
+from flexsc._result import Result
 from flexsc._table import Table
 
 if TYPE_CHECKING:
@@ -40,6 +43,9 @@ __all__ = ["Source", "draw", "figure", "figures"]
 
 Source: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
 """A run, a log, a campaign or a sweep, or the path of a log file or of a campaign's directory."""
+
+if TYPE_CHECKING:
+    _On = TypeVar("_On", Figure, SubFigure)
 
 # Pixels of the command's figures in inches, and in points.
 _INCH = 1.0 / 96.0
@@ -112,6 +118,12 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
     return ax
 
 
+@overload
+def figure(source: Source, name: str, on: None = None) -> Figure: ...
+@overload
+def figure(source: Source, name: str, on: _On) -> _On: ...
+@overload
+def figure(source: Source, name: str, on: Figure | SubFigure | None) -> Figure | SubFigure: ...
 def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
     """Draw a figure with all of its panels.
 
@@ -142,6 +154,16 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
     return on
 
 
+def at_a_glance(source: Source, name: str | None, on: Figure | SubFigure | None) -> Figure | SubFigure:
+    """Draw a figure of a source, or if no name is given the one that shows it at a glance."""
+    if name is None:
+        there = figures(source)
+        if not there:
+            raise ValueError("there is no figure of it")
+        name = next((name for name in _html.AT_A_GLANCE if name in there), there[0])
+    return figure(source, name, on)
+
+
 def _need_matplotlib() -> None:
     """Raise an ImportError with the command that installs Matplotlib, if it is missing."""
     try:
@@ -163,7 +185,7 @@ def _log(source: Source) -> engine.Log | None:
         return source._native
     if isinstance(source, Table) or Path(source).is_dir():
         return None
-    return engine.Log.open(source)
+    return reading(source, engine.Log.open)
 
 
 def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> dict[str, engine.Figure]:

@@ -12,8 +12,9 @@
     0.31
 
 Their keys, units and meanings are those of a scenario file. A key that is left out, or None, has its
-default. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to be is
-checked when a scenario is made of them; all mistakes are reported at once.
+default. A table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of
+them, `LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to
+be is checked when a scenario is made of them; all mistakes are reported at once.
 """
 
 # Made by crates/py/scenario_classes.py: a change here is lost.
@@ -21,7 +22,6 @@ checked when a scenario is made of them; all mistakes are reported at once.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 __all__ = [
     "Accelerometer",
     "ActiveDamping",
-    "Actuator",
-    "Adaptation",
+    "ActuatorKind",
+    "AdaptationKind",
     "Adaptive",
     "Added",
     "Appendage",
@@ -48,10 +48,10 @@ __all__ = [
     "BDot",
     "BangBang",
     "Biquad",
-    "Body",
+    "BodyKind",
     "Choice",
     "ClampedMode",
-    "Command",
+    "CommandKind",
     "Common",
     "Compensation",
     "Complementary",
@@ -61,24 +61,24 @@ __all__ = [
     "DampingGuards",
     "Dead",
     "Dipole",
-    "Distribution",
+    "DistributionKind",
     "Disturbance",
     "Drag",
     "DragPlate",
-    "Drift",
+    "DriftKind",
     "DrivePoint",
     "Each",
     "Ei",
     "ElasticStates",
     "Envelope",
     "Environment",
-    "Estimator",
+    "EstimatorKind",
     "ExtendedKalman",
-    "Extra",
-    "Failure",
-    "Fault",
-    "Filter",
-    "FilterForm",
+    "ExtraKind",
+    "FailureKind",
+    "FaultKind",
+    "FilterFormKind",
+    "FilterKind",
     "Friction",
     "Gain",
     "Given",
@@ -88,7 +88,7 @@ __all__ = [
     "Gyro",
     "Harmonic",
     "Hinge",
-    "Hold",
+    "HoldActuator",
     "Ideal",
     "Imbalance",
     "Initial",
@@ -97,10 +97,10 @@ __all__ = [
     "Kalman",
     "Kepler",
     "Keys",
-    "Law",
+    "LawKind",
     "Lead",
     "LitPlate",
-    "Log",
+    "LogContents",
     "LogUniform",
     "LowPass",
     "MagneticField",
@@ -115,7 +115,7 @@ __all__ = [
     "Normal",
     "Notch",
     "NullMotion",
-    "ObserverForm",
+    "ObserverFormKind",
     "Open",
     "Output",
     "Pair",
@@ -128,7 +128,7 @@ __all__ = [
     "Point",
     "Pointing",
     "Polynomial",
-    "Profile",
+    "ProfileKind",
     "Pulses",
     "Ramp",
     "RandomSearch",
@@ -148,9 +148,9 @@ __all__ = [
     "Schedule",
     "ScheduledGain",
     "Section",
-    "Sensor",
+    "SensorKind",
     "Shape",
-    "Shaper",
+    "ShaperKind",
     "Silent",
     "Sine",
     "SineCommand",
@@ -164,19 +164,19 @@ __all__ = [
     "Stage",
     "Stages",
     "StarTracker",
-    "StateSpace",
+    "StateSpaceLaw",
     "StuckFailure",
     "StuckFault",
     "Sum",
     "SunSensor",
-    "Table",
+    "TableProfile",
     "Tachometer",
     "Target",
     "Thermal",
     "Thruster",
     "Thrusters",
     "Tracker",
-    "Truth",
+    "TruthEstimator",
     "Turn",
     "Uniform",
     "Unloading",
@@ -196,9 +196,25 @@ Rows: TypeAlias = Union[Sequence[Sequence[float]], "npt.NDArray[Any]"]
 """Rows of numbers: lists in a list, or an array of shape (rows, columns)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Accelerometer(Part):
-    """The specific force at a point of a spacecraft, for the log only."""
+    """The specific force at a point of a spacecraft, for the log only.
+
+    Args:
+        period: Period of its samples (s).
+        watch_only: Must be true: no law or estimator reads an accelerometer; its readings are only logged.
+            Default: false.
+        point: Point of the structure at which it is mounted; default: the first of the body's points.
+        along: Measurement directions: one to three, of any length, in the hub's axes with the structure
+            undeformed; default: x, y and z.
+        noise: Standard deviation of the white noise along each (m/s²). Default: 0.0.
+        bias: Constant error along each (m/s²). Default: 0.0.
+        bias_random_walk: Random walk of the bias along each (m/s² per square root of a second). Default:
+            0.0.
+        resolution: Quantum of the output along each (m/s²); 0 for none. Default: 0.0.
+        scale: Relative error of the scale along each. Default: 0.0.
+        latency: Time from a sample to its output (s). Default: 0.0.
+        faults: Intervals in which the accelerometer fails.
+    """
 
     _tag: ClassVar[str | None] = "accelerometer"
 
@@ -226,13 +242,23 @@ class Accelerometer(Part):
     """Relative error of the scale along each. Default: 0.0."""
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the accelerometer fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class ActiveDamping(Part):
-    """Active damping."""
+    """Active damping.
+
+    Args:
+        threshold: Elastic rate about each axis above which the jets fire (rad/s); default, for the mode
+            that a long burn excites most: 1.5 times the amplitude of the limit cycle due to the delay, and
+            at least the change by two whole cycles of firing.
+        release: Fraction of the threshold at which the pulses of active damping stop. Default: 0.5.
+        pulse_width: Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it
+            fills the cycle. Default: true.
+        predictor: Whether the elastic rate is predicted for the middle of the next pulse. Default: true.
+        guards: Guards against exciting the motion.
+    """
 
     threshold: Vector | None = None
     """Elastic rate about each axis above which the jets fire (rad/s); default, for the mode that a long
@@ -251,13 +277,25 @@ class ActiveDamping(Part):
     """Guards against exciting the motion."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Adaptive(Part):
-    """Adaptive observers of the rigid rates and elastic modes of a spatial body."""
+    """Adaptive observers of the rigid rates and elastic modes of a spatial body.
+
+    Args:
+        form: Form of the observers.
+        trackers: The modes to track; default: the dominant modes of the body.
+        count: Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
+        merge: Relative frequency difference below which modes of the body are tracked as one. Default:
+            0.08.
+        cross_axis: Whether an axis accounts for the jets of the other axes; default: true in the form
+            `gradient`, else false.
+        frequency_error: Relative error of the frequencies at the start. Default: 0.0.
+        influence_error: Relative error of the influences at the start. Default: 0.0.
+        adapt: Whether frequencies and influences are identified. Default: true.
+    """
 
     _tag: ClassVar[str | None] = "adaptive"
 
-    form: ObserverForm | None = None
+    form: ObserverFormKind | None = None
     """Form of the observers."""
     trackers: Given | None = None
     """The modes to track; default: the dominant modes of the body."""
@@ -277,9 +315,20 @@ class Adaptive(Part):
     """Whether frequencies and influences are identified. Default: true."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Added(Part):
-    """An error added to the commanded output."""
+    """An error added to the commanded output.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+        about: Axis that fails, on a body with three; default: all.
+        wheel: Wheel that fails, counted from 1; default: all.
+        gimbal: Gimbal of `control_moment_gyros` that fails, counted from 1; default: all.
+        thruster: Thruster of `jets` that fails; default: all.
+        constant: Constant part: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate
+            (rad/s), for jets a thrust (N). Default: 0.0.
+        sines: Sine torques.
+    """
 
     _tag: ClassVar[str | None] = "added"
 
@@ -303,9 +352,30 @@ class Added(Part):
     """Sine torques."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Appendage(Part):
-    """An appendage, clamped to the hub at its root."""
+    """An appendage, clamped to the hub at its root.
+
+    Args:
+        name: Name.
+        mass: Mass (kg).
+        centre: Centre of mass from the root (m), in its own axes.
+        inertia: Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default:
+            zero, a point mass.
+        at: Position of its root from the point O of the spacecraft (m).
+        turned: Rotation of its axes relative to those of the body.
+        drive: Drive that turns it about an axis through its root during a run; default: none.
+        hinge: Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`;
+            default: none.
+        plate: For a thin plate in the plane of its own x and y: the axis along which it extends; the first
+            moments then follow from the participations in rotation.
+        points: Named points of the appendage, measured from its root in its own axes.
+        modes: Clamped modes: a table, or the path of a CSV file or of results of a finite-element program.
+            Without modes it is rigid.
+        damping: Damping ratios of modes read from finite-element results.
+        keep: Number of modes to keep from finite-element results, lowest frequencies first; default: all.
+        thermal: Thermal bending in sunlight; default: none.
+        units: Units of finite-element results; default: metres and kilograms.
+    """
 
     name: str
     """Name."""
@@ -347,9 +417,22 @@ class Appendage(Part):
     """Units of finite-element results; default: metres and kilograms."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class AppendageDrive(Part):
-    """A drive."""
+    """A drive.
+
+    Args:
+        about: Axis through the root, in the axes of the appendage, of any nonzero length.
+        angle: Angle at the start (rad); at 0 the appendage has the orientation given by `turned`. Default:
+            0.0.
+        rate: Constant rate of the drive (rad/s).
+        from_: Time at which it begins to turn (s); default: the start of the run.
+        until: Time at which it begins to stop (s); default: it does not stop.
+        acceleration: Acceleration with which its rate changes (rad/s²); default: the rate jumps.
+        table: Table of angles over time, with constant rates between the points.
+        track: Object that the drive tracks.
+        normal: Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the
+            drive's axis; default: z.
+    """
 
     about: Vector
     """Axis through the root, in the axes of the appendage, of any nonzero length."""
@@ -373,9 +456,26 @@ class AppendageDrive(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Assigned(Part):
-    """An actuator of a list: exactly one of the kinds, and which part of the demand it executes."""
+    """An actuator of a list: exactly one of the kinds, and which part of the demand it executes.
+
+    Args:
+        ideal: The command itself, at every instant.
+        hold: A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at
+            its start.
+        thrusters: One pulse of full torque per period, centred in it, with the same impulse as a zero-order
+            hold.
+        wheel: A flywheel on a motor with back-EMF.
+        wheels: Reaction wheels about axes of their own.
+        control_moment_gyros: Control moment gyros of a spacecraft.
+        jets: Thrusters at points of a spatial body.
+        magnetorquers: Magnetorquers of a spatial body in the field of its planet.
+        axes: Axes about which it executes the demand, on a body with three; default: all.
+        share: Share of the demand about these axes; default: 1. The shares of all actuators about an axis
+            must sum to 1.
+        unloads: For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of
+            the list. They then execute no demand.
+    """
 
     _bare: ClassVar[tuple[str, ...]] = (
         "ideal",
@@ -390,7 +490,7 @@ class Assigned(Part):
 
     ideal: Ideal | None = None
     """The command itself, at every instant."""
-    hold: Hold | None = None
+    hold: HoldActuator | None = None
     """A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its
     start.
     """
@@ -418,9 +518,15 @@ class Assigned(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttitudeAt(Part):
-    """A row of the table."""
+    """A row of the table.
+
+    Args:
+        time: Time since the start of the target (s); 0 in the first row.
+        roll: Roll (rad). Default: 0.0.
+        pitch: Pitch (rad). Default: 0.0.
+        yaw: Yaw (rad). Default: 0.0.
+    """
 
     time: float
     """Time since the start of the target (s); 0 in the first row."""
@@ -432,13 +538,31 @@ class AttitudeAt(Part):
     """Yaw (rad). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttitudeEstimator(Part):
-    """A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body."""
+    """A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body.
+
+    Args:
+        form: How the gains are computed. Default: "extended".
+        angle_random_walk: Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default:
+            the largest of the gyro's own.
+        rate_random_walk: Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the
+            gyro's own.
+        attitude_noise: Standard deviation of a measured attitude about each axis of its sensor (rad);
+            default: the sensor's own.
+        field_noise: Standard deviation of a measured magnetic field along each axis (T); default: the
+            magnetometer's own.
+        sun_noise: Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's
+            own.
+        initial: Standard deviations of the estimate at the start.
+        prior: Initial estimate of attitude and bias. Default: "drawn".
+        elastic: Elastic modes as further states; none by default.
+        assess: Interval over which the metrics assess the filter (s); default: the whole run.
+        watch_only: Whether the filter runs for assessment only: the law does not read it.
+    """
 
     _tag: ClassVar[str | None] = "attitude"
 
-    form: FilterForm | Literal["extended", "steady"] | None = None
+    form: FilterFormKind | Literal["extended", "steady"] | None = None
     """How the gains are computed. Default: "extended"."""
     angle_random_walk: float | None = None
     """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the
@@ -467,9 +591,13 @@ class AttitudeEstimator(Part):
     """Whether the filter runs for assessment only: the law does not read it."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttitudeFilterInitial(Part):
-    """Standard deviations of an attitude filter's estimate at the start, the same about each axis."""
+    """Standard deviations of an attitude filter's estimate at the start, the same about each axis.
+
+    Args:
+        angle: Standard deviation of the attitude (rad). Default: 0.001.
+        bias: Standard deviation of the bias (rad/s). Default: 1e-05.
+    """
 
     angle: float | None = None
     """Standard deviation of the attitude (rad). Default: 0.001."""
@@ -477,9 +605,20 @@ class AttitudeFilterInitial(Part):
     """Standard deviation of the bias (rad/s). Default: 1e-05."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttitudeLaw(Part):
-    """Sampled feedback of the attitude, as an acceleration."""
+    """Sampled feedback of the attitude, as an acceleration.
+
+    Args:
+        period: Period of its samples (s).
+        bandwidth: Bandwidth wn (rad/s): the natural frequency of the error of a rigid body.
+        damping: Damping ratio zeta of the error. Default: 0.7.
+        inertia: Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default:
+            the body's own.
+        error: How a rotation is converted into an error, on a body with three axes.
+        integral: Integral of the error; none by default.
+        rate_limit: Largest rate at which an error is corrected (rad/s); no limit by default.
+        filters: Filters of the fed-back acceleration, applied in this order.
+    """
 
     _tag: ClassVar[str | None] = "attitude"
 
@@ -499,14 +638,29 @@ class AttitudeLaw(Part):
     """Integral of the error; none by default."""
     rate_limit: float | None = None
     """Largest rate at which an error is corrected (rad/s); no limit by default."""
-    filters: Sequence[Filter] | None = None
+    filters: Sequence[FilterKind] | None = None
     """Filters of the fed-back acceleration, applied in this order."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class AttitudeTarget(Part):
     """A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x
     axis.
+
+    Args:
+        from_: Start time (s).
+        frame: Frame relative to which the attitude is given.
+        roll: Roll (rad). Default: 0.0.
+        pitch: Pitch (rad). Default: 0.0.
+        yaw: Yaw (rad). Default: 0.0.
+        acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
+            jumps.
+        rate_limit: Largest rate of the slew (rad/s); no limit by default.
+        profile: How the rate of the slew rises and falls.
+        command: Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
+        duration: Duration of the slew by that command (s).
+        shaper: Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.
+        table: Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at
+            rest at both ends.
     """
 
     from_: float
@@ -525,11 +679,11 @@ class AttitudeTarget(Part):
     """Largest rate of the slew (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
     """How the rate of the slew rises and falls."""
-    command: Command | None = None
+    command: CommandKind | None = None
     """Command planned for the slew, in place of `acceleration`; it may leave modes at rest."""
     duration: float | None = None
     """Duration of the slew by that command (s)."""
-    shaper: Shaper | None = None
+    shaper: ShaperKind | None = None
     """Shaper that suppresses modes: the acceleration of the slew is convolved with impulses."""
     table: Sequence[AttitudeAt] | None = None
     """Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at
@@ -537,9 +691,13 @@ class AttitudeTarget(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class BDot(Part):
-    """Magnetic moments against the measured change of the field, to detumble a body."""
+    """Magnetic moments against the measured change of the field, to detumble a body.
+
+    Args:
+        period: Period of its commands (s).
+        gain: Magnetic moment per unit rate of change of the field (A m² s/T).
+    """
 
     _tag: ClassVar[str | None] = "b_dot"
 
@@ -549,16 +707,19 @@ class BDot(Part):
     """Magnetic moment per unit rate of change of the field (A m² s/T)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class BangBang(Part):
     """Full torque one way, then full torque the other way: the smallest peak that turns the rigid body."""
 
     _tag: ClassVar[str | None] = "bang_bang"
 
 
-@dataclass(frozen=True, kw_only=True)
 class Biquad(Part):
-    """(b0 + b1/z + b2/z²)/(1 + a1/z + a2/z²), with the coefficients as given."""
+    """(b0 + b1/z + b2/z²)/(1 + a1/z + a2/z²), with the coefficients as given.
+
+    Args:
+        b: b0, b1, b2.
+        a: a1, a2.
+    """
 
     _tag: ClassVar[str | None] = "biquad"
 
@@ -568,20 +729,31 @@ class Biquad(Part):
     """a1, a2."""
 
 
-@dataclass(frozen=True)
-class Choice(Part):
+class Choice(Part, kw_only=False):
     """One of these values, with equal probability."""
 
     _tag: ClassVar[str | None] = "choice"
-    _holds_one: ClassVar[bool] = True
 
     value: Vector
 
 
-@dataclass(frozen=True, kw_only=True)
 class ClampedMode(Part):
     """A mass-normalised mode of an appendage clamped at its root: the integral of phi_i . phi_j dm is 1 for
     i = j, else 0. Vectors are in the axes of the appendage, and r is the position from its root.
+
+    Args:
+        frequency: Natural frequency O with the root held (rad/s).
+        damping: Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0.
+        translation: Participation in translation, the integral of phi dm (sqrt(kg)).
+        along: For a point mass, in place of `translation`: the direction in which all of its mass swings,
+            of any length.
+        rotation: Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
+        moments: First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows
+            along r, columns along phi.
+        displacement: Modal displacement at the start (m sqrt(kg)). Default: 0.0.
+        rate: Modal rate at the start (m sqrt(kg)/s). Default: 0.0.
+        shapes: Shape of the mode at each point of the appendage, relative to the fixed root, by the name of
+            the point.
     """
 
     frequency: float
@@ -610,19 +782,21 @@ class ClampedMode(Part):
     """
 
 
-@dataclass(frozen=True)
-class Common(Part):
+class Common(Part, kw_only=False):
     """All frequencies have one ratio."""
 
     _tag: ClassVar[str | None] = "common"
-    _holds_one: ClassVar[bool] = True
 
-    value: Profile
+    value: ProfileKind
 
 
-@dataclass(frozen=True, kw_only=True)
 class Compensation(Part):
-    """Friction of the wheels as the drives model it."""
+    """Friction of the wheels as the drives model it.
+
+    Args:
+        coulomb: Coulomb friction (N m): one number for all wheels, or one for each. Default: 0.0.
+        viscous: Viscous friction (N m s/rad): one number for all wheels, or one for each. Default: 0.0.
+    """
 
     coulomb: float | Vector | None = None
     """Coulomb friction (N m): one number for all wheels, or one for each. Default: 0.0."""
@@ -630,9 +804,13 @@ class Compensation(Part):
     """Viscous friction (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Complementary(Part):
-    """Constant: from a bandwidth and a damping ratio of the error."""
+    """Constant: from a bandwidth and a damping ratio of the error.
+
+    Args:
+        bandwidth: Bandwidth (rad/s): below it the attitude follows the sensors, above it the gyro.
+        damping: Damping ratio. Default: 0.7.
+    """
 
     _tag: ClassVar[str | None] = "complementary"
 
@@ -642,9 +820,27 @@ class Complementary(Part):
     """Damping ratio. Default: 0.7."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class ControlMomentGyros(Part):
-    """Control moment gyros of a spacecraft."""
+    """Control moment gyros of a spacecraft.
+
+    Args:
+        momentum: Angular momentum of each rotor, which is constant (N m s).
+        arrangement: Arrangement; default: given by `gimbal_axes` and `spin_axes`.
+        cant: For a pyramid: angle of each gimbal axis from z (rad); default: 0.9553 rad (54.74 degrees),
+            with about equal momentum in all directions.
+        gimbal_axes: Gimbal axis of each in the body's axes, of any length.
+        spin_axes: Direction of the momentum of each with its gimbal at angle 0, of any length, at right
+            angles to its gimbal axis.
+        angles: Gimbal angles at the start (rad); default: 0.
+        rate_limit: Largest gimbal rate (rad/s); no limit by default. If a demanded torque exceeds it, all
+            rates are scaled down, and the torque keeps its axis.
+        period: Time between updates of the gimbal rates, beside those at the law's commands (s); default:
+            at these alone.
+        steering: How the demanded torque becomes gimbal rates. Default: "singularity_robust".
+        robust: The weight of `singularity_robust` steering.
+        null_motion: Null motion towards preferred gimbal angles; none by default.
+        faults: Intervals in which gimbals fail.
+    """
 
     _tag: ClassVar[str | None] = "control_moment_gyros"
 
@@ -678,15 +874,18 @@ class ControlMomentGyros(Part):
     """The weight of `singularity_robust` steering."""
     null_motion: NullMotion | None = None
     """Null motion towards preferred gimbal angles; none by default."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which gimbals fail."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Correlated(Part):
     """Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix
     correlates these numbers, and each key keeps its own distribution. For normal distributions these are
     the correlations of the keys.
+
+    Args:
+        keys: The keys.
+        matrix: The correlations: symmetric, with ones on the diagonal, in the order of the keys.
     """
 
     keys: Sequence[str]
@@ -695,9 +894,13 @@ class Correlated(Part):
     """The correlations: symmetric, with ones on the diagonal, in the order of the keys."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Cosine(Part):
-    """A series of cosines ([Rotation], equations (25) to (30))."""
+    """A series of cosines ([Rotation], equations (25) to (30)).
+
+    Args:
+        suppress: Number of modes left at rest, lowest frequencies first. Default: 0.
+        zeros: Further zeros.
+    """
 
     _tag: ClassVar[str | None] = "cosine"
 
@@ -707,9 +910,16 @@ class Cosine(Part):
     """Further zeros."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class DampingGuards(Part):
-    """Guards of active damping."""
+    """Guards of active damping.
+
+    Args:
+        dead_zone: Suppress pulses that would drive the rigid motion out of the dead zone. Default: true.
+        eligibility: Without the predictor, damp only modes whose phase factor is at least 0.5. Default:
+            true.
+        residual: Act only while the innovations of the observer are small. Default: true.
+        watchdog: Pause active damping when the pulses do not help. Default: true.
+    """
 
     dead_zone: bool | None = None
     """Suppress pulses that would drive the rigid motion out of the dead zone. Default: true."""
@@ -721,9 +931,17 @@ class DampingGuards(Part):
     """Pause active damping when the pulses do not help. Default: true."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Dead(Part):
-    """No output."""
+    """No output.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+        about: Axis that fails, on a body with three; default: all.
+        wheel: Wheel that fails, counted from 1; default: all.
+        gimbal: Gimbal of `control_moment_gyros` that fails, counted from 1; default: all.
+        thruster: Thruster of `jets` that fails; default: all.
+    """
 
     _tag: ClassVar[str | None] = "dead"
 
@@ -741,9 +959,18 @@ class Dead(Part):
     """Thruster of `jets` that fails; default: all."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Dipole(Part):
-    """A magnetic moment in the field of a dipole."""
+    """A magnetic moment in the field of a dipole.
+
+    Args:
+        moment: Magnetic moment of the body (A m²), in its axes.
+        strength: Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³; for the
+            Earth mu is 7.8e15 T m³. Default: the environment's magnetic field.
+        inclination: Inclination of that orbit to the magnetic equator (rad).
+        from_node: Angle from the ascending node at the start (rad).
+        orbit_rate: Rate of that orbit (rad/s).
+        local: Orientation of the local axes at the start, as for a gravity gradient.
+    """
 
     moment: Vector
     """Magnetic moment of the body (A m²), in its axes."""
@@ -761,9 +988,23 @@ class Dipole(Part):
     """Orientation of the local axes at the start, as for a gravity gradient."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Disturbance(Part):
-    """A disturbance: a torque about an axis, or a force at a point."""
+    """A disturbance: a torque about an axis, or a force at a point.
+
+    Args:
+        about: Axis about which it acts, on a body with three.
+        torque: Torque (N m). Default: 0.0.
+        sines: Sine terms added to the torque, on a `[spacecraft]`.
+        force: Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck
+            jet, a push.
+        point: Name of the point at which the force acts; default: the first.
+        noise: Spectral density of white noise added to the torque ((N m)² s); each draw is held for
+            `period`. Default: 0.0.
+        pulse: Pulses in place of a steady torque or force.
+        period: Time for which a draw of the noise is held (s).
+        from_: Start time (s). Default: 0.0.
+        to: End time (s); default: the end of the run.
+    """
 
     about: Literal["roll", "pitch", "yaw"] | None = None
     """Axis about which it acts, on a body with three."""
@@ -791,9 +1032,17 @@ class Disturbance(Part):
     """End time (s); default: the end of the run."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Drag(Part):
-    """Drag of the atmosphere."""
+    """Drag of the atmosphere.
+
+    Args:
+        density: Density at a distance of the orbit's semi-major axis (kg/m³).
+        plates: The plates.
+        scale_height: Scale height, in which the density falls to 1/e (m); default: the density is uniform.
+        coefficient: Drag coefficient. Default: 2.2.
+        rotation: Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default:
+            7.292115e-05.
+    """
 
     density: float
     """Density at a distance of the orbit's semi-major axis (kg/m³)."""
@@ -808,9 +1057,15 @@ class Drag(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class DragPlate(Part):
-    """A plate; drag acts on one side of it."""
+    """A plate; drag acts on one side of it.
+
+    Args:
+        area: Area (m²).
+        normal: Outward normal in the body's axes, of any length.
+        at: Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a
+            spatial body.
+    """
 
     area: float
     """Area (m²)."""
@@ -822,9 +1077,13 @@ class DragPlate(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class DrivePoint(Part):
-    """An angle at a time."""
+    """An angle at a time.
+
+    Args:
+        time: Time since the start (s).
+        angle: Angle (rad).
+    """
 
     time: float
     """Time since the start (s)."""
@@ -832,20 +1091,22 @@ class DrivePoint(Part):
     """Angle (rad)."""
 
 
-@dataclass(frozen=True)
-class Each(Part):
+class Each(Part, kw_only=False):
     """Each frequency has its own ratio, in the order of the modes."""
 
     _tag: ClassVar[str | None] = "each"
-    _holds_one: ClassVar[bool] = True
 
-    value: Sequence[Profile]
+    value: Sequence[ProfileKind]
 
 
-@dataclass(frozen=True, kw_only=True)
 class Ei(Part):
     """Extra insensitive: three impulses that allow a little vibration at the mode's frequency, and stay
     near it over a wider band.
+
+    Args:
+        modes: Indices of the modes.
+        vibration: Residual vibration at the mode's frequency, relative to that of a single impulse.
+            Default: 0.05.
     """
 
     _tag: ClassVar[str | None] = "ei"
@@ -856,9 +1117,23 @@ class Ei(Part):
     """Residual vibration at the mode's frequency, relative to that of a single impulse. Default: 0.05."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class ElasticStates(Part):
-    """Elastic modes as states of the filter."""
+    """Elastic modes as states of the filter.
+
+    Args:
+        modes: Indices of the free modes.
+        noise: Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5).
+        frequencies: Natural frequencies in the filter's model (rad/s); default: the body's own.
+        factor: Factor on the frequencies: the error of the filter's model. Default: 1.0.
+        frequency_deviation: Relative standard deviation of the frequencies at the start, which the filter
+            then identifies; default: it takes them as known.
+        frequency_walk: Random walk of the logarithm of each identified frequency (1/sqrt(s)); default:
+            none.
+        displacement: Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001.
+        rate: Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement
+            times the frequency.
+        feeds: Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid.
+    """
 
     modes: Sequence[int]
     """Indices of the free modes."""
@@ -884,9 +1159,14 @@ class ElasticStates(Part):
     """Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Envelope(Part):
-    """The envelope of the elastic modes and its window means."""
+    """The envelope of the elastic modes and its window means.
+
+    Args:
+        window: Length of the windows over which the envelope is averaged (s).
+        form: How the phasors are computed. Default: "dynamic".
+        modes: Modes of the monitor's model; default: the body's own.
+    """
 
     _tag: ClassVar[str | None] = "envelope"
 
@@ -898,9 +1178,20 @@ class Envelope(Part):
     """Modes of the monitor's model; default: the body's own."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Environment(Part):
-    """The environment of a body with three axes. Its torques add up."""
+    """The environment of a body with three axes. Its torques add up.
+
+    Args:
+        orbit: Orbit of the body; default: none, or the one given with a torque below.
+        magnetic_field: The magnetic field of the orbit's planet.
+        sun: Direction to the Sun in inertial axes, of any length, or from the date of the start; the
+            orbit's planet casts a shadow.
+        gravity_gradient: Gravity gradient of a circular orbit.
+        solar_pressure: Pressure of sunlight.
+        dipole: A magnetic moment of the body in the field of its planet.
+        drag: Drag of the atmosphere on plates.
+        torque: A torque that is constant in inertial axes (N m).
+    """
 
     orbit: Kepler | None = None
     """Orbit of the body; default: none, or the one given with a torque below."""
@@ -922,9 +1213,34 @@ class Environment(Part):
     """A torque that is constant in inertial axes (N m)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class ExtendedKalman(Part):
-    """An extended Kalman filter of the motion and the natural frequencies."""
+    """An extended Kalman filter of the motion and the natural frequencies.
+
+    Args:
+        modes: Modes of the filter's model; default: the body's own at the start.
+        moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
+            1e-13.
+        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        initial: Standard deviations of the estimate at the start.
+        prior: Initial state estimate of the filter. Default: "drawn".
+        dominant: Criterion for the dominant mode. Default: "excitability".
+        assess: Interval over which the metrics assess the filter (s); default: the whole run.
+        feeds: Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as
+            measured; `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid
+            angle and rate. By default, `modes` for a law that reads the dominant mode, else `hub`.
+        watch_only: Whether the filter runs for assessment only: the law does not read it.
+        ratios: Which frequencies drift together. Default: "common".
+        ratio: Initial estimate of the frequency ratio. Default: 1.0.
+        ratio_sd: Standard deviation of the initial ratio. Default: 0.03.
+        ratio_rate_sd: Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s).
+            Default: 0.003.
+        ratio_noise: Spectral density of the white noise in a ratio (1/s). Default: 1e-08.
+        ratio_rate_noise: Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08.
+        bounds: Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
+        substeps: Number of prediction steps per period. Default: 2.
+        gate: Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios
+            are not updated. Default: 3.0.
+    """
 
     _tag: ClassVar[str | None] = "extended_kalman"
 
@@ -971,10 +1287,15 @@ class ExtendedKalman(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Friction(Part):
     """Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a
     wheel at rest.
+
+    Args:
+        coulomb: Coulomb friction t (N m): one number for all wheels, or one for each. Default: 0.0.
+        viscous: Viscous friction c (N m s/rad): one number for all wheels, or one for each. Default: 0.0.
+        breakaway: Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb
+            friction.
     """
 
     coulomb: float | Vector | None = None
@@ -985,20 +1306,22 @@ class Friction(Part):
     """Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb friction."""
 
 
-@dataclass(frozen=True)
-class Gain(Part):
+class Gain(Part, kw_only=False):
     """A constant gain."""
 
     _tag: ClassVar[str | None] = "gain"
-    _holds_one: ClassVar[bool] = True
 
     value: float
 
 
-@dataclass(frozen=True, kw_only=True)
 class Given(Part):
     """Modes to track about each axis. The influence has one element per group of jets (roll, pitch, yaw),
     or a single one for the axis' own group if `cross_axis` is false.
+
+    Args:
+        roll: About x.
+        pitch: About y.
+        yaw: About z.
     """
 
     roll: Sequence[Tracker] | None = None
@@ -1009,9 +1332,22 @@ class Given(Part):
     """About z."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Gradient(Part):
-    """Recursive gradient with exact pulses."""
+    """Recursive gradient with exact pulses.
+
+    Args:
+        damping: Damping ratio of the modes, which is not identified. Default: 0.005.
+        rigid_gain: Gain of the rigid rate: the fraction of an innovation by which it is corrected. Default:
+            0.03.
+        elastic_gain: Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several.
+        rate: Rate of the identification; 0 for none. It converges if this is below 0.05 divided by the
+            number of modes. Default: 0.02.
+        gate: Amplitude of a mode's elastic rate (rad/s) below which its frequency is not updated. Default:
+            5e-06.
+        influence_bounds: Bounds of an influence, as multiples of its initial value.
+        reach: Default bounds of a frequency: its initial value divided by this factor, and multiplied by
+            it. Default: 2.0.
+    """
 
     _tag: ClassVar[str | None] = "gradient"
 
@@ -1036,9 +1372,15 @@ class Gradient(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class GravityGradient(Part):
-    """Gravity gradient."""
+    """Gravity gradient.
+
+    Args:
+        orbit_rate: Rate of a circular orbit (rad/s); default: the environment's orbit.
+        local: Orientation of that orbit's local axes at the start, a unit quaternion [w, x, y, z] that
+            turns vectors of the local axes (x along the velocity, y against the orbit's normal, z nadir)
+            into inertial ones; default: the inertial axes.
+    """
 
     orbit_rate: float | None = None
     """Rate of a circular orbit (rad/s); default: the environment's orbit."""
@@ -1049,9 +1391,13 @@ class GravityGradient(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Groups(Part):
     """The groups: for each axis, names of the thrusters that turn the body about it one way and the other.
+
+    Args:
+        roll: About x; needed if the jets act about it.
+        pitch: About y; needed if the jets act about it.
+        yaw: About z; needed if the jets act about it.
     """
 
     roll: Pair | None = None
@@ -1062,9 +1408,29 @@ class Groups(Part):
     """About z; needed if the jets act about it."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Gyro(Part):
-    """A rate gyro, read in each cycle of the law; the angle, or the attitude, is known exactly."""
+    """A rate gyro, read in each cycle of the law; the angle, or the attitude, is known exactly.
+
+    Args:
+        point: Point of the structure at which it is mounted, on a body with three axes; default: the first
+            of the body's points.
+        period: Period of its samples (s); default: that of the law.
+        noise: Standard deviation of the white noise about each axis (rad/s). Default: 0.0.
+        bias: Constant error about each axis (rad/s). Default: 0.0.
+        resolution: Quantum of the output about each axis (rad/s); 0 for none. Default: 0.0.
+        angle_random_walk: Angle random walk of an integrating gyro about each axis (rad/sqrt(s)).
+        rate_random_walk: Rate random walk of the bias of an integrating gyro about each axis (rad/s^1.5).
+        quantum: Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries
+            over to the next sample; 0 for none.
+        bias_instability: Standard deviation of the part of the bias about each axis that wanders,
+            exponentially correlated (rad/s); 0 for none. It is 0 at the start.
+        correlation_time: Correlation time of that part (s).
+        latency: How late it reports a rate (s), a whole number of periods.
+        scale: Relative error of the scale about each axis.
+        misalignment: Misalignment (rad), on a body with three axes: row i gives what axis i measures of the
+            rates about the other axes; the diagonal is 0.
+        faults: Intervals in which the gyro fails; star trackers still give the attitude.
+    """
 
     _tag: ClassVar[str | None] = "gyro"
 
@@ -1102,13 +1468,20 @@ class Gyro(Part):
     """Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about
     the other axes; the diagonal is 0.
     """
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the gyro fails; star trackers still give the attitude."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Harmonic(Part):
-    """A harmonic of the imbalance."""
+    """A harmonic of the imbalance.
+
+    Args:
+        order: Order k: periods per turn of the wheel; it may be fractional.
+        force: Force perpendicular to the axis per (rad/s)² (kg m). Default: 0.0.
+        torque: Torque perpendicular to the axis per (rad/s)² (kg m²). Default: 0.0.
+        axial: Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0.
+        phase: Phase of the harmonic (rad). Default: 0.0.
+    """
 
     order: float
     """Order k: periods per turn of the wheel; it may be fractional."""
@@ -1122,9 +1495,16 @@ class Harmonic(Part):
     """Phase of the harmonic (rad). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Hinge(Part):
-    """A hinge: a spring and a damper about one axis at the root."""
+    """A hinge: a spring and a damper about one axis at the root.
+
+    Args:
+        about: Axis through the root, in the axes of the appendage, of any nonzero length.
+        stiffness: Stiffness of its spring (N m/rad).
+        damping: Viscous damping (N m s/rad). Default: 0.0.
+        angle: Angle at the start (rad); at 0 the spring is relaxed. Default: 0.0.
+        rate: Rate at the start (rad/s). Default: 0.0.
+    """
 
     about: Vector
     """Axis through the root, in the axes of the appendage, of any nonzero length."""
@@ -1138,10 +1518,14 @@ class Hinge(Part):
     """Rate at the start (rad/s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Hold(Part):
+class HoldActuator(Part):
     """A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its
     start.
+
+    Args:
+        period: Period (s).
+        phase: Time of the first period (s); default: 0.
+        faults: Intervals in which the actuator fails.
     """
 
     _tag: ClassVar[str | None] = "hold"
@@ -1150,25 +1534,39 @@ class Hold(Part):
     """Period (s)."""
     phase: float | None = None
     """Time of the first period (s); default: 0."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the actuator fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Ideal(Part):
-    """The command itself, at every instant."""
+    """The command itself, at every instant.
+
+    Args:
+        faults: Intervals in which the actuator fails.
+    """
 
     _tag: ClassVar[str | None] = "ideal"
 
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the actuator fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Imbalance(Part):
     """Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th. Each force and
     torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1
     is z x a of the wheel's axis a, or x of one along z, and e2 is a x e1.
+
+    Args:
+        static: Static imbalance (kg m): the force once per turn; one number for all wheels, or one for
+            each. Default: 0.0.
+        dynamic: Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for
+            each. Default: 0.0.
+        phase: Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
+            Default: 0.0.
+        harmonics: Further harmonics of the speed, the same for all wheels.
+        point: Point of the structure at which the wheels are mounted; default: the first of the body's
+            points.
+        positions: Position of each wheel relative to that point (m); default: at the point.
     """
 
     static: float | Vector | None = None
@@ -1191,9 +1589,17 @@ class Imbalance(Part):
     """Position of each wheel relative to that point (m); default: at the point."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Initial(Part):
-    """Standard deviations of a filter's estimate at the start."""
+    """Standard deviations of a filter's estimate at the start.
+
+    Args:
+        angle: Standard deviation of the rigid angle (rad). Default: 0.0001.
+        rate: Standard deviation of the rigid rate (rad/s). Default: 0.0001.
+        displacement: Standard deviation of the displacement of the mode with the largest k/w² (rad); a
+            tenth of it for the other modes. Default: 0.002.
+        mode_rate: Standard deviation of the rate of that mode (rad/s); a tenth of it for the other modes.
+            Default: 0.0006.
+    """
 
     angle: float | None = None
     """Standard deviation of the rigid angle (rad). Default: 0.0001."""
@@ -1209,9 +1615,14 @@ class Initial(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Integral(Part):
-    """The integral of the error."""
+    """The integral of the error.
+
+    Args:
+        time: Time constant t of the integral (s).
+        limit: Largest integral (rad s). The integral also stops while the torque or the rate is at its
+            limit and the error would increase it.
+    """
 
     time: float
     """Time constant t of the integral (s)."""
@@ -1221,9 +1632,23 @@ class Integral(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Jets(Part):
-    """Thrusters at points of a spatial body."""
+    """Thrusters at points of a spatial body.
+
+    Args:
+        specific_impulse: Specific impulse (s).
+        thrusters: The thrusters.
+        minimum_on: Shortest pulse (s). Default: 0.0.
+        quantum: Quantum of a pulse's length (s); 0 for none. Default: 0.0.
+        period: Period of the pulses (s); default: that of the law.
+        phase: Time of the first cycle of pulses, for jets with a `period` (s); default: 0.
+        delay: Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle.
+            Default: 0.
+        allocation: How the demand is converted into pulses.
+        force_free: For `least_propellant`: whether the forces of the pulses must cancel.
+        groups: For `groups`: the thrusters that act together.
+        faults: Intervals in which the jets fail.
+    """
 
     _tag: ClassVar[str | None] = "jets"
 
@@ -1249,13 +1674,27 @@ class Jets(Part):
     """For `least_propellant`: whether the forces of the pulses must cancel."""
     groups: Groups | None = None
     """For `groups`: the thrusters that act together."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the jets fail."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Kalman(Part):
-    """A Kalman filter of the motion, with constant natural frequencies."""
+    """A Kalman filter of the motion, with constant natural frequencies.
+
+    Args:
+        modes: Modes of the filter's model; default: the body's own at the start.
+        moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
+            1e-13.
+        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        initial: Standard deviations of the estimate at the start.
+        prior: Initial state estimate of the filter. Default: "drawn".
+        dominant: Criterion for the dominant mode. Default: "excitability".
+        assess: Interval over which the metrics assess the filter (s); default: the whole run.
+        feeds: Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as
+            measured; `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid
+            angle and rate. By default, `modes` for a law that reads the dominant mode, else `hub`.
+        watch_only: Whether the filter runs for assessment only: the law does not read it.
+    """
 
     _tag: ClassVar[str | None] = "kalman"
 
@@ -1282,9 +1721,22 @@ class Kalman(Part):
     """Whether the filter runs for assessment only: the law does not read it."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Kepler(Part):
-    """A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation."""
+    """A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
+
+    Args:
+        semi_major_axis: Semi-major axis (m); for a circular orbit, its radius.
+        eccentricity: Eccentricity. Default: 0.0.
+        inclination: Inclination to the equator (rad). Default: 0.0.
+        node: Angle from the inertial x to the ascending node (rad). Default: 0.0.
+        perigee: Angle from the node to the perigee (rad). Default: 0.0.
+        anomaly: Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default:
+            0.0.
+        gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
+            398600441800000.0.
+        planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
+            Default: 6378137.0.
+    """
 
     semi_major_axis: float
     """Semi-major axis (m); for a circular orbit, its radius."""
@@ -1305,9 +1757,13 @@ class Kepler(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Lead(Part):
-    """(1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag."""
+    """(1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag.
+
+    Args:
+        zero: The zero (rad/s).
+        pole: The pole (rad/s).
+    """
 
     _tag: ClassVar[str | None] = "lead"
 
@@ -1317,9 +1773,17 @@ class Lead(Part):
     """The pole (rad/s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class LitPlate(Part):
-    """A plate; sunlight presses on one side of it."""
+    """A plate; sunlight presses on one side of it.
+
+    Args:
+        area: Area (m²).
+        normal: Outward normal in the body's axes, of any length.
+        at: Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a
+            spatial body.
+        specular: The part of the light that it reflects like a mirror. Default: 0.0.
+        diffuse: The part that it reflects diffusely. Default: 0.0.
+    """
 
     area: float
     """Area (m²)."""
@@ -1335,9 +1799,14 @@ class LitPlate(Part):
     """The part that it reflects diffusely. Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Log(Part):
-    """Contents of a full log."""
+class LogContents(Part):
+    """Contents of a full log.
+
+    Args:
+        period: Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2,
+            5 and so on that gives at most 10 000 samples.
+        scene: How the scene of a log is drawn.
+    """
 
     period: float | None = None
     """Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2, 5 and so
@@ -1347,19 +1816,21 @@ class Log(Part):
     """How the scene of a log is drawn."""
 
 
-@dataclass(frozen=True)
-class LogUniform(Part):
+class LogUniform(Part, kw_only=False):
     """Log-uniform between two positive values."""
 
     _tag: ClassVar[str | None] = "log_uniform"
-    _holds_one: ClassVar[bool] = True
 
     value: Vector
 
 
-@dataclass(frozen=True, kw_only=True)
 class LowPass(Part):
-    """w²/(s² + 2 zeta w s + w²)."""
+    """w²/(s² + 2 zeta w s + w²).
+
+    Args:
+        frequency: The frequency w (rad/s).
+        damping: The damping ratio zeta. Default: 0.7071067811865476.
+    """
 
     _tag: ClassVar[str | None] = "low_pass"
 
@@ -1369,10 +1840,19 @@ class LowPass(Part):
     """The damping ratio zeta. Default: 0.7071067811865476."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class MagneticField(Part):
     """A tilted dipole: B = (a/R)³ (3 (g.r) r - g) with r the direction from the planet's centre and g,
     which points south.
+
+    Args:
+        coefficients: Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the
+            planet: z along its axis, x through its prime meridian; default: the Earth's from IGRF-13 for
+            2020.
+        radius: Reference radius a of the coefficients (m); default: the Earth's mean radius. Default:
+            6371200.0.
+        rotation: Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
+        meridian: Angle from the inertial x to the prime meridian at the start (rad); default: that of
+            Greenwich at the scenario's `epoch`, 0 without one.
     """
 
     coefficients: Vector | None = None
@@ -1389,9 +1869,21 @@ class MagneticField(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Magnetometer(Part):
-    """The magnetic field."""
+    """The magnetic field.
+
+    Args:
+        period: Period of its samples (s).
+        point: Point of the structure at which it is mounted; default: the first of the body's points.
+        noise: Standard deviation of the white noise along each axis (T). Default: 0.0.
+        bias: Constant error along each axis (T). Default: 0.0.
+        resolution: Quantum of the output along each axis (T); 0 for none. Default: 0.0.
+        scale: Relative error of the scale along each axis. Default: 0.0.
+        misalignment: Misalignment (rad): row i gives what axis i measures of the field along the other
+            axes; the diagonal is 0.
+        latency: Time from a sample to its output (s). Default: 0.0.
+        faults: Intervals in which the magnetometer fails.
+    """
 
     _tag: ClassVar[str | None] = "magnetometer"
 
@@ -1413,31 +1905,47 @@ class Magnetometer(Part):
     """
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the magnetometer fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Magnetorquers(Part):
-    """Magnetorquers of a spatial body in the field of its planet."""
+    """Magnetorquers of a spatial body in the field of its planet.
+
+    Args:
+        moment: Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three.
+        faults: Intervals in which the magnetorquers fail.
+    """
 
     _tag: ClassVar[str | None] = "magnetorquers"
 
     moment: float | Vector
     """Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the magnetorquers fail."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Manoeuvre(Part):
-    """A manoeuvre. The modes of the body are at rest at its start."""
+    """A manoeuvre. The modes of the body are at rest at its start.
+
+    Args:
+        angle: Angle by which the rigid body turns (rad).
+        command: Command that turns the body.
+        time: Duration of the manoeuvre (s); default: the shortest that the peak torque allows.
+        peak_torque: Largest torque (N m); together with `time`, a limit that the plan must respect.
+        start_rate: Rate before the manoeuvre (rad/s), equal to the body's rate at the start. Default: 0.0.
+        end_rate: Rate after the manoeuvre (rad/s). Default: 0.0.
+        shaper: Shaper with which the command is convolved; it uses part of the duration.
+        model: Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys
+            of the body plans for the body as written in the scenario: the plan does not depend on the drawn
+            values.
+    """
 
     _bare: ClassVar[tuple[str, ...]] = ("model", )
 
     angle: float
     """Angle by which the rigid body turns (rad)."""
-    command: Command
+    command: CommandKind
     """Command that turns the body."""
     time: float | None = None
     """Duration of the manoeuvre (s); default: the shortest that the peak torque allows."""
@@ -1447,7 +1955,7 @@ class Manoeuvre(Part):
     """Rate before the manoeuvre (rad/s), equal to the body's rate at the start. Default: 0.0."""
     end_rate: float | None = None
     """Rate after the manoeuvre (rad/s). Default: 0.0."""
-    shaper: Shaper | None = None
+    shaper: ShaperKind | None = None
     """Shaper with which the command is convolved; it uses part of the duration."""
     model: Planar | None = None
     """Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the
@@ -1455,9 +1963,26 @@ class Manoeuvre(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Matrices(Part):
-    """The matrices of a structure."""
+    """The matrices of a structure.
+
+    Args:
+        mass: Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements).
+        stiffness: Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for
+            angles, N/m for displacements).
+        coordinates: Names of the coordinates; default: `q0`, `q1` and so on.
+        hub: Index of the coordinate that is the hub's angle, counted from 0. Default: 0.
+        rotation: Displacement of each coordinate under a unit rigid rotation; default: 1 for the hub's
+            angle and 0 for all other coordinates, which are relative to it.
+        drive: Quantity that the actuator commands. Default: "torque".
+        damping: Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0.
+        damping_matrix: Damping matrix, symmetric, without resistance to the rigid rotation (N m s/rad for
+            angles, N s/m for displacements). It adds to the damping ratios and may couple the modes.
+        keep: Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s.
+        angle: Rigid angle at the start (rad). Default: 0.0.
+        rate: Rigid rate at the start (rad/s). Default: 0.0.
+        outputs: Sums of coordinates that are observed in addition to the hub's angle.
+    """
 
     _tag: ClassVar[str | None] = "matrices"
 
@@ -1493,9 +2018,13 @@ class Matrices(Part):
     """Sums of coordinates that are observed in addition to the hub's angle."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class MinimumEnergy(Part):
-    """The command with the smallest integral of its square."""
+    """The command with the smallest integral of its square.
+
+    Args:
+        suppress: Number of modes left at rest, lowest frequencies first. Default: 0.
+        zeros: Further zeros.
+    """
 
     _tag: ClassVar[str | None] = "minimum_energy"
 
@@ -1505,9 +2034,12 @@ class MinimumEnergy(Part):
     """Further zeros."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class MinimumPeak(Part):
-    """The command with the smallest peak."""
+    """The command with the smallest peak.
+
+    Args:
+        suppress: Number of modes left at rest, lowest frequencies first. Default: 0.
+    """
 
     _tag: ClassVar[str | None] = "minimum_peak"
 
@@ -1515,9 +2047,16 @@ class MinimumPeak(Part):
     """Number of modes left at rest, lowest frequencies first. Default: 0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Mode(Part):
-    """An elastic mode ([Silaev], equation (1), with damping added)."""
+    """An elastic mode ([Silaev], equation (1), with damping added).
+
+    Args:
+        frequency: Natural frequency w (rad/s).
+        gain: Modal gain k: modal acceleration per unit of rigid acceleration.
+        damping: Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0.
+        displacement: Displacement at the start (rad). Default: 0.0.
+        rate: Rate at the start (rad/s). Default: 0.0.
+    """
 
     frequency: float
     """Natural frequency w (rad/s)."""
@@ -1531,9 +2070,14 @@ class Mode(Part):
     """Rate at the start (rad/s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class NamedPoint(Part):
-    """A point of the structure."""
+    """A point of the structure.
+
+    Args:
+        name: Name.
+        position: Position (m): from the centre of mass; on a spacecraft's hub from its point O, on an
+            appendage from its root.
+    """
 
     name: str
     """Name."""
@@ -1543,9 +2087,13 @@ class NamedPoint(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Normal(Part):
-    """Normal with this mean and standard deviation."""
+    """Normal with this mean and standard deviation.
+
+    Args:
+        mean: Mean.
+        sd: Standard deviation.
+    """
 
     _tag: ClassVar[str | None] = "normal"
 
@@ -1555,9 +2103,14 @@ class Normal(Part):
     """Standard deviation."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Notch(Part):
-    """(s² + 2 depth zeta w s + w²)/(s² + 2 zeta w s + w²)."""
+    """(s² + 2 depth zeta w s + w²)/(s² + 2 zeta w s + w²).
+
+    Args:
+        frequency: The frequency w (rad/s).
+        depth: Gain at that frequency, below 1.
+        damping: Damping ratio zeta of the denominator; a larger one makes the notch wider. Default: 0.6.
+    """
 
     _tag: ClassVar[str | None] = "notch"
 
@@ -1569,9 +2122,13 @@ class Notch(Part):
     """Damping ratio zeta of the denominator; a larger one makes the notch wider. Default: 0.6."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class NullMotion(Part):
-    """Null motion: gimbal rates whose torques cancel each other, towards preferred gimbal angles."""
+    """Null motion: gimbal rates whose torques cancel each other, towards preferred gimbal angles.
+
+    Args:
+        angles: Preferred angle of each gimbal (rad).
+        gain: Gain with which the gimbals turn towards them, as far as no torque results (1/s).
+    """
 
     angles: Vector
     """Preferred angle of each gimbal (rad)."""
@@ -1579,16 +2136,21 @@ class NullMotion(Part):
     """Gain with which the gimbals turn towards them, as far as no torque results (1/s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Open(Part):
     """No law: the default of a scenario with a manoeuvre."""
 
     _tag: ClassVar[str | None] = "open"
 
 
-@dataclass(frozen=True, kw_only=True)
 class Output(Part):
-    """A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes[i] x_i."""
+    """A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes[i] x_i.
+
+    Args:
+        name: Name, such as `tip`.
+        modes: Weight of each mode's displacement, in the order of the modes.
+        unit: Unit. Default: "rad".
+        rigid: Weight of the rigid angle. Default: 0.0.
+    """
 
     name: str
     """Name, such as `tip`."""
@@ -1600,9 +2162,13 @@ class Output(Part):
     """Weight of the rigid angle. Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Pair(Part):
-    """The two groups of an axis."""
+    """The two groups of an axis.
+
+    Args:
+        plus: Thrusters whose torque is positive.
+        minus: Thrusters whose torque is negative.
+    """
 
     plus: Sequence[str]
     """Thrusters whose torque is positive."""
@@ -1610,9 +2176,22 @@ class Pair(Part):
     """Thrusters whose torque is negative."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Panels(Part):
-    """A hub with panels of hinged sections."""
+    """A hub with panels of hinged sections.
+
+    Args:
+        hub_inertia: Moment of inertia of the hub alone (kg m²).
+        root: Distance of the first hinge from the axis (m).
+        sections: Sections of each panel, from the hub outwards.
+        count: Number of equal panels. Default: 2.
+        kinematics: Kinematics of the sections. Default: "linear".
+        tolerance: Error tolerance of each integration step of the exact kinematics (rad). Default: 1e-12.
+        drive: Quantity that the actuator commands. Default: "torque".
+        damping: Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0.
+        keep: Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s.
+        angle: Rigid angle at the start (rad). Default: 0.0.
+        rate: Rigid rate at the start (rad/s). Default: 0.0.
+    """
 
     _tag: ClassVar[str | None] = "panels"
 
@@ -1640,9 +2219,20 @@ class Panels(Part):
     """Rigid rate at the start (rad/s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Pd(Part):
-    """Sampled proportional-derivative feedback of the angle."""
+    """Sampled proportional-derivative feedback of the angle.
+
+    Args:
+        k_p: Proportional gain (N m/rad; for a wheel, units of its command per rad).
+        k_d: Derivative gain (N m s/rad; without the second where the difference is raw).
+        period: Period of its samples (s).
+        differentiation: How the derivative is taken. Default: "exact".
+        error: How a rotation is converted into an error, on a body with three axes.
+        extra: Extra loop on the dominant mode.
+        limit: Largest torque (N m); no limit by default.
+        track: Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
+            manoeuvre.
+    """
 
     _tag: ClassVar[str | None] = "pd"
 
@@ -1656,7 +2246,7 @@ class Pd(Part):
     """How the derivative is taken. Default: "exact"."""
     error: Literal["quaternion", "rodrigues"] | None = None
     """How a rotation is converted into an error, on a body with three axes."""
-    extra: Extra | None = None
+    extra: ExtraKind | None = None
     """Extra loop on the dominant mode."""
     limit: float | None = None
     """Largest torque (N m); no limit by default."""
@@ -1666,23 +2256,34 @@ class Pd(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class PerAxis(Part):
-    """A separate law about each of three axes."""
+    """A separate law about each of three axes.
+
+    Args:
+        roll: About x.
+        pitch: About y.
+        yaw: About z.
+    """
 
     _tag: ClassVar[str | None] = "per_axis"
 
-    roll: Law
+    roll: LawKind
     """About x."""
-    pitch: Law
+    pitch: LawKind
     """About y."""
-    yaw: Law
+    yaw: LawKind
     """About z."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Periodic(Part):
-    """A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each."""
+    """A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each.
+
+    Args:
+        constant: Constant part (N m).
+        amplitude: Amplitude of the periodic part (N m).
+        period: Period (s); about 5560 s for a station in a low orbit. Default: 5560.0.
+        phase: Phase at the start (rad).
+    """
 
     constant: Vector | None = None
     """Constant part (N m)."""
@@ -1694,9 +2295,22 @@ class Periodic(Part):
     """Phase at the start (rad)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class PhasePlane(Part):
-    """A relay in the phase plane, with pulses of computed length."""
+    """A relay in the phase plane, with pulses of computed length.
+
+    Args:
+        period: Cycle of gyro, estimator, law and jets (s).
+        dead_zone: Half width of the dead zone (rad).
+        rate_limit: Largest rate at which the law turns the body (rad/s).
+        switch_on: Rate error above which the jets begin to fire (rad/s); near and beyond the edges of the
+            dead zone they begin at a smaller one.
+        switch_off: Rate error below which the jets stop (rad/s); it is also the smallest return rate.
+        slope: Largest return rate per unit of the angle beyond the dead zone (1/s). Default: 0.05.
+        braking: Fraction of the jets' acceleration used for slowing down. Default: 0.5.
+        targets: Target attitudes, in the order of their times; before the first one, the target is the
+            inertial axes.
+        damping: Active damping of elastic motion while the rigid motion needs no jets; none by default.
+    """
 
     _tag: ClassVar[str | None] = "phase_plane"
 
@@ -1723,9 +2337,20 @@ class PhasePlane(Part):
     """Active damping of elastic motion while the rigid motion needs no jets; none by default."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Planar(Part):
-    """One angle and any number of elastic modes."""
+    """One angle and any number of elastic modes.
+
+    Args:
+        inertia: Moment of inertia (kg m²); default: 1, and every torque is a reduced moment (rad/s²).
+            Default: 1.0.
+        angle: Rigid angle at the start (rad). Default: 0.0.
+        rate: Rigid rate at the start (rad/s). Default: 0.0.
+        drive: Quantity that the actuator commands. Default: "torque".
+        damping_matrix: Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`[i][j] x_j' to
+            x_i'', beside the damping ratios.
+        modes: Elastic modes.
+        outputs: Coordinates that are observed in addition to the hub's angle.
+    """
 
     _tag: ClassVar[str | None] = "planar"
 
@@ -1747,9 +2372,13 @@ class Planar(Part):
     """Coordinates that are observed in addition to the hub's angle."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Point(Part):
-    """A point of a profile."""
+    """A point of a profile.
+
+    Args:
+        time: Time (s).
+        ratio: Ratio at that time.
+    """
 
     time: float
     """Time (s)."""
@@ -1757,9 +2386,15 @@ class Point(Part):
     """Ratio at that time."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Pointing(Part):
-    """Pointing requirement over a part of the run."""
+    """Pointing requirement over a part of the run.
+
+    Args:
+        window: Start and end (s) of the interval in which the pointing error is assessed, for the metric
+            `pointing_rms_rad`.
+        rms: Largest allowed root mean square of the pointing error (rad), for the metric `requirement`;
+            default: no requirement.
+    """
 
     window: Vector
     """Start and end (s) of the interval in which the pointing error is assessed, for the metric
@@ -1771,9 +2406,12 @@ class Pointing(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Polynomial(Part):
-    """A polynomial for the angle."""
+    """A polynomial for the angle.
+
+    Args:
+        degree: Degree of the polynomial: 3, 5, 7, 9, 11 or 13.
+    """
 
     _tag: ClassVar[str | None] = "polynomial"
 
@@ -1781,9 +2419,13 @@ class Polynomial(Part):
     """Degree of the polynomial: 3, 5, 7, 9, 11 or 13."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Pulses(Part):
-    """A train of pulses: on from the start of each period."""
+    """A train of pulses: on from the start of each period.
+
+    Args:
+        period: Time from the start of one pulse to the start of the next (s).
+        on: Duration of each pulse (s).
+    """
 
     period: float
     """Time from the start of one pulse to the start of the next (s)."""
@@ -1791,9 +2433,14 @@ class Pulses(Part):
     """Duration of each pulse (s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Ramp(Part):
-    """A linear change from 1 to another ratio, which then stays constant."""
+    """A linear change from 1 to another ratio, which then stays constant.
+
+    Args:
+        time: Duration (s).
+        to: The ratio afterwards.
+        from_: Start time (s). Default: 0.0.
+    """
 
     _tag: ClassVar[str | None] = "ramp"
 
@@ -1805,9 +2452,25 @@ class Ramp(Part):
     """Start time (s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class RandomSearch(Part):
-    """Random search with learning, based on an objective over consecutive windows."""
+    """Random search with learning, based on an objective over consecutive windows.
+
+    Args:
+        step: Largest move of the gain in one window, delta `k_t`.
+        bounds: Smallest and largest gain.
+        tunes: Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a
+            PD law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
+        objective: Quantity that is measured over each window and made smaller.
+        window: Length of the windows (s); for `envelope_mean`, they are those of the
+            `[estimator.envelope]`.
+        tolerance: A relative change of the objective below this counts as settled, `delta_0`. Default:
+            0.05.
+        settled: Consecutive settled windows after which the gain is frozen (the paper's six). Default: 6.
+        memory: Consecutive falls of the objective after which one rise is ignored (the paper's four); 0 for
+            never. Default: 4.
+        earliest_freeze: The gain is not frozen before this time, `T_min` (s). Default: 10000.0.
+        freeze: Whether the gain is ever frozen. Default: true.
+    """
 
     _tag: ClassVar[str | None] = "random_search"
 
@@ -1848,9 +2511,23 @@ class RandomSearch(Part):
     """Whether the gain is ever frozen. Default: true."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Recurrence(Part):
-    """The recurrence of [Timakov14]."""
+    """The recurrence of [Timakov14].
+
+    Args:
+        damping: Damping ratio of the mode, which is not identified. Default: 0.005.
+        coast: Weights W1 to W3, for cycles in which no thruster fires.
+        active: Weights W5 to W7, for cycles in which a thruster fires.
+        frequency_gain: Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default
+            weights it converges below 0.043. Default: 0.006.
+        influence_gain: Influence gain: W8 times the absolute value of the excitation from which the
+            influence is identified. Default: 0.25.
+        gate: Amplitude of the elastic rate (rad/s) below which the frequency is not updated. Default:
+            5e-06.
+        influence_bounds: Bounds of the influence, as multiples of its initial value.
+        reach: Default bounds of a frequency: its initial value divided by this factor, and multiplied by
+            it. Default: 3.0.
+    """
 
     _tag: ClassVar[str | None] = "recurrence"
 
@@ -1878,9 +2555,14 @@ class Recurrence(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class RecurrenceWeights(Part):
-    """Fractions of an innovation by which the estimates are corrected."""
+    """Fractions of an innovation by which the estimates are corrected.
+
+    Args:
+        rigid: The rigid rate: W1 or W5.
+        elastic: The elastic rate: W2 or W6.
+        next: The elastic rate of the next sample, subtracted: W3 or W7.
+    """
 
     rigid: float
     """The rigid rate: W1 or W5."""
@@ -1890,9 +2572,17 @@ class RecurrenceWeights(Part):
     """The elastic rate of the next sample, subtracted: W3 or W7."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Reference(Part):
-    """Reference values for the metrics."""
+    """Reference values for the metrics.
+
+    Args:
+        envelope: Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the
+            mean over the run's own first window.
+        band: Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s`
+            and `settling_time_s`. Default: after a manoeuvre, a thousandth of its angle; for a PD law, 5 %
+            of the distance at the start of the goal; for a relay, the sum of its dead zone and hysteresis.
+        pointing: Pointing requirement of a body with three axes over a part of the run.
+    """
 
     envelope: float | None = None
     """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
@@ -1907,31 +2597,35 @@ class Reference(Part):
     """Pointing requirement of a body with three axes over a part of the run."""
 
 
-@dataclass(frozen=True)
-class RelativeNormal(Part):
+class RelativeNormal(Part, kw_only=False):
     """The scenario's own value times a normal factor with mean 1 and this standard deviation."""
 
     _tag: ClassVar[str | None] = "relative_normal"
-    _holds_one: ClassVar[bool] = True
 
     value: float
 
 
-@dataclass(frozen=True)
-class RelativeUniform(Part):
+class RelativeUniform(Part, kw_only=False):
     """The scenario's own value times a factor that is uniform between 1 - x and 1 + x, where x is this
     number.
     """
 
     _tag: ClassVar[str | None] = "relative_uniform"
-    _holds_one: ClassVar[bool] = True
 
     value: float
 
 
-@dataclass(frozen=True, kw_only=True)
 class Relay(Part):
-    """Relay with dead zone, hysteresis and a timed brake."""
+    """Relay with dead zone, hysteresis and a timed brake.
+
+    Args:
+        dead_zone: Half width of the dead zone, eps (rad).
+        hysteresis: Hysteresis, gamma (rad): how far back inside a boundary the brake begins.
+        strong: Strong torque `m_u` (N m; rad/s² on a body without inertia).
+        weak: Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia).
+        k_t: Braking gain: duration of the brake per second of the push.
+        sides: Which boundaries of the dead zone push back. Default: "two".
+    """
 
     _tag: ClassVar[str | None] = "relay"
 
@@ -1949,9 +2643,13 @@ class Relay(Part):
     """Which boundaries of the dead zone push back. Default: "two"."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class RigidRate(Part):
-    """The rigid rates of a spatial body."""
+    """The rigid rates of a spatial body.
+
+    Args:
+        correction: Fraction l of the innovation by which each sample corrects the rate.
+        rate: Estimated rates before the first sample (rad/s). Default: 0.0.
+    """
 
     _tag: ClassVar[str | None] = "rigid_rate"
 
@@ -1961,10 +2659,16 @@ class RigidRate(Part):
     """Estimated rates before the first sample (rad/s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Robustness(Part):
     """The weight P = w (1 + E) of `singularity_robust` steering, with w = weight exp(-decay m²) and the
     singularity measure m.
+
+    Args:
+        weight: The weight at singular angles; default: 0.01. Default: 0.01.
+        decay: Decay of the weight with the square of the singularity measure; default: 10. Default: 10.0.
+        dither: Amplitude of the elements of E beside its diagonal, below 0.5; default: 0.1. Default: 0.1.
+        frequency: Angular frequency of these elements (rad/s), whose phases are 0, 90 and 180 degrees;
+            default: pi/2. Default: 1.5707963267948966.
     """
 
     weight: float | None = None
@@ -1979,9 +2683,15 @@ class Robustness(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Rotor(Part):
-    """A wheel that stores momentum."""
+    """A wheel that stores momentum.
+
+    Args:
+        inertia: Moment of inertia (kg m²).
+        speed: Speed at the start (rad/s). Default: 0.0.
+        speed_limit: Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by
+            default.
+    """
 
     inertia: float
     """Moment of inertia (kg m²)."""
@@ -1991,9 +2701,20 @@ class Rotor(Part):
     """Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Sampled(Part):
-    """A sample at each period, held until the next: guards are tested at samples."""
+    """A sample at each period, held until the next: guards are tested at samples.
+
+    Args:
+        period: Period of the samples (s).
+        noise: Standard deviation of the white noise (rad). Default: 0.0.
+        bias: Constant error (rad). Default: 0.0.
+        resolution: Quantum of the output (rad); 0 for none. Default: 0.0.
+        rate_noise: Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro,
+            and the rate is the difference of the last two angles divided by the period.
+        point: Point of the structure at which it is mounted, on a body with three axes; default: the first
+            of the body's points.
+        faults: Intervals in which the sensor fails.
+    """
 
     _tag: ClassVar[str | None] = "sampled"
 
@@ -2013,13 +2734,22 @@ class Sampled(Part):
     """Point of the structure at which it is mounted, on a body with three axes; default: the first of the
     body's points.
     """
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the sensor fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Scaled(Part):
-    """A fraction of the commanded output."""
+    """A fraction of the commanded output.
+
+    Args:
+        from_: Start time (s).
+        factor: The fraction; a negative one reverses the output.
+        to: End time (s); default: the end of the run.
+        about: Axis that fails, on a body with three; default: all.
+        wheel: Wheel that fails, counted from 1; default: all.
+        gimbal: Gimbal of `control_moment_gyros` that fails, counted from 1; default: all.
+        thruster: Thruster of `jets` that fails; default: all.
+    """
 
     _tag: ClassVar[str | None] = "scaled"
 
@@ -2039,9 +2769,15 @@ class Scaled(Part):
     """Thruster of `jets` that fails; default: all."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SceneSpec(Part):
-    """How the scene of a run is drawn."""
+    """How the scene of a run is drawn.
+
+    Args:
+        period: Period of the frames (s); default: that of the log, and at least 0.04 s.
+        bending: Magnification of the elastic motion; default: chosen so that the motion excited by the
+            actuator or the initial state is visible.
+        turning: Magnification of the body's rotation; default: chosen so that it is visible.
+    """
 
     period: float | None = None
     """Period of the frames (s); default: that of the log, and at least 0.04 s."""
@@ -2053,21 +2789,23 @@ class SceneSpec(Part):
     """Magnification of the body's rotation; default: chosen so that it is visible."""
 
 
-@dataclass(frozen=True)
-class Schedule(Part):
+class Schedule(Part, kw_only=False):
     """A gain scheduled by the estimated frequency: linear interpolation between points, constant before the
     first and after the last.
     """
 
     _tag: ClassVar[str | None] = "schedule"
-    _holds_one: ClassVar[bool] = True
 
     value: Sequence[ScheduledGain]
 
 
-@dataclass(frozen=True, kw_only=True)
 class ScheduledGain(Part):
-    """A point of a schedule."""
+    """A point of a schedule.
+
+    Args:
+        frequency: Frequency of the dominant mode (rad/s).
+        gain: Gain at that frequency.
+    """
 
     frequency: float
     """Frequency of the dominant mode (rad/s)."""
@@ -2075,9 +2813,15 @@ class ScheduledGain(Part):
     """Gain at that frequency."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Section(Part):
-    """A section of a panel."""
+    """A section of a panel.
+
+    Args:
+        length: Length l (m).
+        mass_per_length: Mass per unit length m (kg/m).
+        hinge_stiffness: Stiffness c of the hinge at the inner end (N m/rad).
+        tip_mass: Mass mu lumped at the outer end (kg). Default: 0.0.
+    """
 
     length: float
     """Length l (m)."""
@@ -2089,9 +2833,13 @@ class Section(Part):
     """Mass mu lumped at the outer end (kg). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Shape(Part):
-    """The shape of a mode at a point."""
+    """The shape of a mode at a point.
+
+    Args:
+        translation: Displacement of the point per unit of the modal displacement (1/sqrt(kg)).
+        rotation: Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg))).
+    """
 
     translation: Vector | None = None
     """Displacement of the point per unit of the modal displacement (1/sqrt(kg))."""
@@ -2099,9 +2847,13 @@ class Shape(Part):
     """Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg)))."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Silent(Part):
-    """It gives no measurement."""
+    """It gives no measurement.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+    """
 
     _tag: ClassVar[str | None] = "silent"
 
@@ -2111,9 +2863,14 @@ class Silent(Part):
     """End time (s); default: the end of the run."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Sine(Part):
-    """amplitude sin(frequency t + phase), t from the start of the run."""
+    """amplitude sin(frequency t + phase), t from the start of the run.
+
+    Args:
+        amplitude: Amplitude (N m).
+        frequency: Frequency (rad/s).
+        phase: Phase at the start of the run (rad); pi/2 makes a cosine. Default: 0.0.
+    """
 
     amplitude: float
     """Amplitude (N m)."""
@@ -2123,9 +2880,13 @@ class Sine(Part):
     """Phase at the start of the run (rad); pi/2 makes a cosine. Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SineCommand(Part):
-    """A series of sines ([Rotation], equations (19) to (24))."""
+    """A series of sines ([Rotation], equations (19) to (24)).
+
+    Args:
+        suppress: Number of modes left at rest, lowest frequencies first. Default: 0.
+        zeros: Further zeros.
+    """
 
     _tag: ClassVar[str | None] = "sine"
 
@@ -2135,10 +2896,14 @@ class SineCommand(Part):
     """Further zeros."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Sinusoid(Part):
     """1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun on
     an orbit.
+
+    Args:
+        amplitude: Half the difference between the largest and the smallest ratio.
+        period: Period (s).
+        phase: Time shift of the cosine at the start of the run (s). Default: 0.0.
     """
 
     _tag: ClassVar[str | None] = "sinusoid"
@@ -2151,10 +2916,13 @@ class Sinusoid(Part):
     """Time shift of the cosine at the start of the run (s). Default: 0.0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SmallAngles(Part):
     """Linear rotation about a fixed target, in closed form, within bounds. The rotation of the mean axes
     about each body axis must stay within both bounds: a run that leaves them ends with an error.
+
+    Args:
+        angle: Largest rotation from the target about each axis (rad). Default: 0.1.
+        rate: Largest rate about each axis (rad/s). Default: 0.01.
     """
 
     angle: float | None = None
@@ -2163,9 +2931,17 @@ class SmallAngles(Part):
     """Largest rate about each axis (rad/s). Default: 0.01."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SolarPressure(Part):
-    """Pressure of sunlight: one `force` at a point, or `plates`."""
+    """Pressure of sunlight: one `force` at a point, or `plates`.
+
+    Args:
+        force: The force (N), constant in inertial axes.
+        at: Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a
+            spatial body.
+        plates: Plates that sunlight presses on.
+        pressure: Pressure of sunlight on the plates (N/m²); default: that at 1 au.
+        shadow: Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet.
+    """
 
     force: Vector | None = None
     """The force (N), constant in inertial axes."""
@@ -2181,10 +2957,24 @@ class SolarPressure(Part):
     """Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Spacecraft(Part):
     """A spacecraft: the rigid hub, to which appendages are clamped. Positions are measured from a point O
     of the user's choice, in the axes of the hub, which are the body's axes.
+
+    Args:
+        mass: Mass of the hub alone (kg).
+        inertia: Inertia tensor of the hub alone about its centre of mass, with wheels locked in it (kg m²),
+            row by row.
+        centre: Centre of mass of the hub alone (m).
+        attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
+            inertial ones.
+        rate: Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they
+            are the rates of the hub.
+        small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
+        whole_damping: Whether the full damping matrix of the free modes is kept even if its off-diagonal
+            terms are negligible.
+        points: Named points of the hub, at which jets and sensors are mounted; default: one at O, named
+            `hub`.
     """
 
     mass: float
@@ -2213,9 +3003,19 @@ class Spacecraft(Part):
     """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Spatial(Part):
-    """Three axes, and elastic modes with shapes at points of the structure."""
+    """Three axes, and elastic modes with shapes at points of the structure.
+
+    Args:
+        inertia: Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite.
+        attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
+            inertial ones.
+        rate: Rates at the start (rad/s), in the body's axes.
+        small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
+        points: Named points of the structure, at which jets and sensors are mounted.
+        modes: Elastic modes: a table, or the path of a CSV file.
+        disturbance: Torque of the environment; none by default.
+    """
 
     _tag: ClassVar[str | None] = "spatial"
 
@@ -2237,9 +3037,16 @@ class Spatial(Part):
     """Torque of the environment; none by default."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SpatialMode(Part):
-    """A mass-normalised elastic mode."""
+    """A mass-normalised elastic mode.
+
+    Args:
+        frequency: Natural frequency w (rad/s).
+        damping: Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0.
+        displacement: Modal displacement at the start (m sqrt(kg)). Default: 0.0.
+        rate: Modal rate at the start (m sqrt(kg)/s). Default: 0.0.
+        shapes: Shape of the mode at each point, by the name of the point.
+    """
 
     frequency: float
     """Natural frequency w (rad/s)."""
@@ -2253,10 +3060,13 @@ class SpatialMode(Part):
     """Shape of the mode at each point, by the name of the point."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SpeedBias(Part):
     """A bias speed of four wheels, two in one direction and two in the other, in addition to what the
     torque requires.
+
+    Args:
+        speed: Bias speed of the first wheel (rad/s).
+        gain: Gain with which the wheels are brought to the bias speed (1/s).
     """
 
     speed: float
@@ -2265,29 +3075,46 @@ class SpeedBias(Part):
     """Gain with which the wheels are brought to the bias speed (1/s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Stage(Part):
-    """A law that acts from a given time on."""
+    """A law that acts from a given time on.
 
-    law: Law
+    Args:
+        law: The law.
+        from_: Start time (s); 0 for the first stage. Default: 0.0.
+    """
+
+    law: LawKind
     """The law."""
     from_: float | None = None
     """Start time (s); 0 for the first stage. Default: 0.0."""
 
 
-@dataclass(frozen=True)
-class Stages(Part):
+class Stages(Part, kw_only=False):
     """Laws that act one after another."""
 
     _tag: ClassVar[str | None] = "stages"
-    _holds_one: ClassVar[bool] = True
 
     value: Sequence[Stage]
 
 
-@dataclass(frozen=True, kw_only=True)
 class StarTracker(Part):
-    """The attitude at the exposures, available after a latency."""
+    """The attitude at the exposures, available after a latency.
+
+    Args:
+        period: Period of the exposures (s).
+        point: Point of the structure at which the star tracker is mounted; default: the first of the body's
+            points.
+        noise: Standard deviation of the white noise about the star tracker's axes (rad): x and y across the
+            boresight, z about it.
+        axes: Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that
+            transforms vectors from its axes to the body's; default: the identity.
+        latency: Time from the middle of an exposure to its output (s). Default: 0.0.
+        exposure: Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at
+            an instant.
+        blackout_rate: Rate at the star tracker from which on it gives no measurement (rad/s); default: no
+            limit.
+        faults: Intervals in which the star tracker fails.
+    """
 
     _tag: ClassVar[str | None] = "star_tracker"
 
@@ -2312,13 +3139,27 @@ class StarTracker(Part):
     """
     blackout_rate: float | None = None
     """Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit."""
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the star tracker fails."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class StateSpace(Part):
-    """A sampled compensator, given by its matrices."""
+class StateSpaceLaw(Part):
+    """A sampled compensator, given by its matrices.
+
+    Args:
+        period: Period of its samples (s).
+        a: Matrix A, row by row; default: there are no states.
+        b: Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the
+            rate error (rad/s).
+        c: Matrix C: one row.
+        d: Matrix D: one row; default: it is zero.
+        of: Whether the matrices are in discrete or continuous time. Default: "samples".
+        command: Quantity that it commands. Default: "torque".
+        gain: Factor on the output.
+        limit: Largest command, in its unit; no limit by default.
+        track: Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
+            manoeuvre.
+    """
 
     _tag: ClassVar[str | None] = "state_space"
 
@@ -2348,9 +3189,19 @@ class StateSpace(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class StuckFailure(Part):
-    """A constant output, whatever the command."""
+    """A constant output, whatever the command.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+        about: Axis that fails, on a body with three; default: all.
+        wheel: Wheel that fails, counted from 1; default: all.
+        gimbal: Gimbal of `control_moment_gyros` that fails, counted from 1; default: all.
+        thruster: Thruster of `jets` that fails; default: all.
+        at: The output: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for
+            jets a fraction of their thrust; default: the output when the failure begins.
+    """
 
     _tag: ClassVar[str | None] = "stuck"
 
@@ -2372,9 +3223,13 @@ class StuckFailure(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class StuckFault(Part):
-    """It repeats the last measurement before the failure."""
+    """It repeats the last measurement before the failure.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+    """
 
     _tag: ClassVar[str | None] = "stuck"
 
@@ -2384,9 +3239,14 @@ class StuckFault(Part):
     """End time (s); default: the end of the run."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Sum(Part):
-    """A sum of coordinates that is observed."""
+    """A sum of coordinates that is observed.
+
+    Args:
+        name: Name, such as `tip`.
+        weights: Weight of each coordinate.
+        unit: Unit. Default: "rad".
+    """
 
     name: str
     """Name, such as `tip`."""
@@ -2396,9 +3256,24 @@ class Sum(Part):
     """Unit. Default: "rad"."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class SunSensor(Part):
-    """The direction to the Sun."""
+    """The direction to the Sun.
+
+    Args:
+        period: Period of its samples (s).
+        boresight: Centre of its field of view, a direction in the body's axes, of any length; default: z.
+        field_of_view: Half angle of the field of view (rad); default: all directions are visible. Default:
+            3.141592653589793.
+        point: Point of the structure at which it is mounted; default: the first of the body's points.
+        noise: Standard deviation of the white noise along each axis (rad). Default: 0.0.
+        bias: Constant error along each axis (rad). Default: 0.0.
+        resolution: Quantum of the output along each axis (rad); 0 for none. Default: 0.0.
+        scale: Relative error of the scale along each axis. Default: 0.0.
+        misalignment: Misalignment (rad): row i gives what axis i measures of the direction along the other
+            axes; the diagonal is 0.
+        latency: Time from a sample to its output (s). Default: 0.0.
+        faults: Intervals in which the Sun sensor fails.
+    """
 
     _tag: ClassVar[str | None] = "sun_sensor"
 
@@ -2426,23 +3301,28 @@ class SunSensor(Part):
     """
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the Sun sensor fails."""
 
 
-@dataclass(frozen=True)
-class Table(Part):
+class TableProfile(Part, kw_only=False):
     """Linear interpolation between points, constant before the first and after the last."""
 
     _tag: ClassVar[str | None] = "table"
-    _holds_one: ClassVar[bool] = True
 
     value: Sequence[Point]
 
 
-@dataclass(frozen=True, kw_only=True)
 class Tachometer(Part):
-    """The speeds of the wheels, for their drives; it measures nothing of the body's motion."""
+    """The speeds of the wheels, for their drives; it measures nothing of the body's motion.
+
+    Args:
+        period: Period of the readings (s).
+        pulses: Pulses per turn: a reading is the count over a period divided by the period, and the
+            remainder carries over to the next one. By default, the speed at the instant is read.
+        noise: Standard deviation of the white noise of each reading (rad/s). Default: 0.0.
+        faults: Intervals in which the tachometers fail; the drives then keep the last reading.
+    """
 
     _tag: ClassVar[str | None] = "tachometer"
 
@@ -2454,13 +3334,19 @@ class Tachometer(Part):
     """
     noise: float | None = None
     """Standard deviation of the white noise of each reading (rad/s). Default: 0.0."""
-    faults: Sequence[Fault] | None = None
+    faults: Sequence[FaultKind] | None = None
     """Intervals in which the tachometers fail; the drives then keep the last reading."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Target(Part):
-    """A zero of the command's spectrum, at a mode or near it."""
+    """A zero of the command's spectrum, at a mode or near it.
+
+    Args:
+        mode: Index of the mode.
+        shift: Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0.
+        times: Multiplicity of the zero: each additional one makes one more derivative of the spectrum
+            vanish there. Default: 1.
+    """
 
     mode: int
     """Index of the mode."""
@@ -2472,9 +3358,13 @@ class Target(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Thermal(Part):
-    """Thermal bending."""
+    """Thermal bending.
+
+    Args:
+        deflection: Steady displacement of each mode in sunlight relative to shadow (m sqrt(kg)).
+        time_constant: Time constant of that displacement (s).
+    """
 
     deflection: Vector
     """Steady displacement of each mode in sunlight relative to shadow (m sqrt(kg))."""
@@ -2482,9 +3372,16 @@ class Thermal(Part):
     """Time constant of that displacement (s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Thruster(Part):
-    """One thruster."""
+    """One thruster.
+
+    Args:
+        name: Name.
+        point: Point of the structure on which it is mounted.
+        direction: Direction of the force on the body, of length 1.
+        thrust: Thrust (N).
+        offset: Position of its nozzle relative to that point (m).
+    """
 
     name: str
     """Name."""
@@ -2498,9 +3395,17 @@ class Thruster(Part):
     """Position of its nozzle relative to that point (m)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Thrusters(Part):
-    """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold."""
+    """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
+
+    Args:
+        torque: Torque of a pulse (N m): one number for all axes, or a list of three.
+        period: Period of the pulses (s).
+        phase: Time of the first period (s); default: 0.
+        minimum_on: Shortest pulse (s). Default: 0.0.
+        quantum: Quantum of a pulse's length (s); 0 for none. Default: 0.0.
+        faults: Intervals in which the thrusters fail.
+    """
 
     _tag: ClassVar[str | None] = "thrusters"
 
@@ -2514,13 +3419,20 @@ class Thrusters(Part):
     """Shortest pulse (s). Default: 0.0."""
     quantum: float | None = None
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the thrusters fail."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Tracker(Part):
-    """Initial values of one mode in the observer of a channel."""
+    """Initial values of one mode in the observer of a channel.
+
+    Args:
+        frequency: Natural frequency (rad/s).
+        influence: Influence of each input: the jump of the elastic rate in this channel for a unit jump of
+            the rigid rate that the input makes about its own axis ([Timakov14], page 41; dimensionless).
+        bounds: Bounds `[low, high]` of the frequency (rad/s); default: the midpoints between it and its
+            neighbours.
+    """
 
     frequency: float
     """Natural frequency (rad/s)."""
@@ -2533,9 +3445,13 @@ class Tracker(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
-class Truth(Part):
-    """The true dominant mode, as an ideal observer gives it."""
+class TruthEstimator(Part):
+    """The true dominant mode, as an ideal observer gives it.
+
+    Args:
+        feeds: Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured
+            ones, `hub`, or `rigid`; default: `modes` for a law that reads the dominant mode, else `hub`.
+    """
 
     _tag: ClassVar[str | None] = "truth"
 
@@ -2545,9 +3461,13 @@ class Truth(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Turn(Part):
-    """A turn about a fixed axis."""
+    """A turn about a fixed axis.
+
+    Args:
+        about: Axis, of any nonzero length.
+        by: The angle (rad).
+    """
 
     about: Vector
     """Axis, of any nonzero length."""
@@ -2555,19 +3475,28 @@ class Turn(Part):
     """The angle (rad)."""
 
 
-@dataclass(frozen=True)
-class Uniform(Part):
+class Uniform(Part, kw_only=False):
     """Uniform between two values."""
 
     _tag: ClassVar[str | None] = "uniform"
-    _holds_one: ClassVar[bool] = True
 
     value: Vector
 
 
-@dataclass(frozen=True, kw_only=True)
 class Unloading(Part):
-    """Unloading of the wheels by jets or by magnetorquers, within the wheels."""
+    """Unloading of the wheels by jets or by magnetorquers, within the wheels.
+
+    Args:
+        above: Total momentum of the wheels above which unloading begins (N m s).
+        below: Total momentum below which unloading ends (N m s).
+        torque: Largest mean torque of the jets about each axis over a cycle (N m), which the wheels
+            counteract.
+        jets: Jets for unloading, with their own period and without a delay.
+        magnetorquers: Magnetorquers for unloading.
+        gain: For magnetorquers: the fraction of the momentum perpendicular to the field that they remove
+            per second (1/s).
+        period: For magnetorquers: the period of their commands (s).
+    """
 
     _bare: ClassVar[tuple[str, ...]] = ("jets", "magnetorquers", )
 
@@ -2589,9 +3518,19 @@ class Unloading(Part):
     """For magnetorquers: the period of their commands (s)."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Unloads(Part):
-    """How an actuator of a list unloads the wheels of the list."""
+    """How an actuator of a list unloads the wheels of the list.
+
+    Args:
+        above: Total momentum of the wheels above which unloading begins (N m s).
+        below: Total momentum below which unloading ends (N m s).
+        torque: For jets: the largest mean torque about each axis over a cycle (N m), which the wheels
+            counteract.
+        gain: For magnetorquers: the fraction of the momentum perpendicular to the field that they remove
+            per second (1/s).
+        period: For magnetorquers: the period of their commands (s).
+        phase: For magnetorquers: time of their first command (s); default: 0.
+    """
 
     above: float
     """Total momentum of the wheels above which unloading begins (N m s)."""
@@ -2609,9 +3548,34 @@ class Unloads(Part):
     """For magnetorquers: time of their first command (s); default: 0."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class UnscentedKalman(Part):
-    """An unscented Kalman filter of the motion and the natural frequencies."""
+    """An unscented Kalman filter of the motion and the natural frequencies.
+
+    Args:
+        modes: Modes of the filter's model; default: the body's own at the start.
+        moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
+            1e-13.
+        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        initial: Standard deviations of the estimate at the start.
+        prior: Initial state estimate of the filter. Default: "drawn".
+        dominant: Criterion for the dominant mode. Default: "excitability".
+        assess: Interval over which the metrics assess the filter (s); default: the whole run.
+        feeds: Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as
+            measured; `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid
+            angle and rate. By default, `modes` for a law that reads the dominant mode, else `hub`.
+        watch_only: Whether the filter runs for assessment only: the law does not read it.
+        ratios: Which frequencies drift together. Default: "common".
+        ratio: Initial estimate of the frequency ratio. Default: 1.0.
+        ratio_sd: Standard deviation of the initial ratio. Default: 0.03.
+        ratio_rate_sd: Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s).
+            Default: 0.003.
+        ratio_noise: Spectral density of the white noise in a ratio (1/s). Default: 1e-08.
+        ratio_rate_noise: Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08.
+        bounds: Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
+        substeps: Number of prediction steps per period. Default: 2.
+        gate: Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios
+            are not updated. Default: 3.0.
+    """
 
     _tag: ClassVar[str | None] = "unscented_kalman"
 
@@ -2658,9 +3622,22 @@ class UnscentedKalman(Part):
     """
 
 
-@dataclass(frozen=True, kw_only=True)
 class Wheel(Part):
-    """A flywheel on a motor with back-EMF."""
+    """A flywheel on a motor with back-EMF.
+
+    Args:
+        gain: Torque per unit of the law's command (N m; k'_u of [Wheel11, Sukhanov] times the body's
+            inertia).
+        back_emf: Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia). Default:
+            0.0.
+        opposes: The rate that the back-EMF opposes. Default: "body_rate".
+        rotor: The wheel.
+        dead_zone: Commands smaller than this are not executed. Default: 0.0.
+        quantum: Quantum of the command; 0 for none. Default: 0.0.
+        limit: Largest command; no limit by default.
+        delay: Time from a sample to the execution of the command computed from it (s). Default: 0.0.
+        faults: Intervals in which the motor fails to execute commands; its back-EMF still acts.
+    """
 
     _tag: ClassVar[str | None] = "wheel"
 
@@ -2680,13 +3657,36 @@ class Wheel(Part):
     """Largest command; no limit by default."""
     delay: float | None = None
     """Time from a sample to the execution of the command computed from it (s). Default: 0.0."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which the motor fails to execute commands; its back-EMF still acts."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Wheels(Part):
-    """Reaction wheels about axes of their own."""
+    """Reaction wheels about axes of their own.
+
+    Args:
+        inertia: Moment of inertia of each wheel about its axis (kg m²).
+        arrangement: Arrangement of the wheels; default: given by `axes`.
+        cant: For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives
+            equal torques about all three axes.
+        axes: Axis of each wheel in the body's axes, of any length.
+        torque: Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it,
+            the whole torque is scaled down and keeps its axis.
+        momentum: Largest momentum of each wheel about its axis (N m s), beyond which its motor cannot
+            accelerate it; no limit by default.
+        speed_limit: Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no
+            limit by default.
+        speeds: Speed of each wheel at the start, relative to the body (rad/s); default: 0.
+        friction: Friction of the bearings; none by default.
+        compensation: Friction compensation by the drives, from the wheel speeds available to them; none by
+            default.
+        imbalance: Imbalance of the wheels; none by default.
+        allocation: How the demanded torque is distributed over the wheels. Default: "pseudo_inverse".
+        speed_bias: For four wheels: a bias speed, maintained by torques that cancel each other; none by
+            default.
+        unloading: Unloading by jets or magnetorquers; none by default.
+        faults: Intervals in which their motors fail.
+    """
 
     _tag: ClassVar[str | None] = "wheels"
 
@@ -2726,13 +3726,16 @@ class Wheels(Part):
     """For four wheels: a bias speed, maintained by torques that cancel each other; none by default."""
     unloading: Unloading | None = None
     """Unloading by jets or magnetorquers; none by default."""
-    faults: Sequence[Failure] | None = None
+    faults: Sequence[FailureKind] | None = None
     """Intervals in which their motors fail."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Zv(Part):
-    """Zero vibration: two impulses for each mode."""
+    """Zero vibration: two impulses for each mode.
+
+    Args:
+        modes: Indices of the modes.
+    """
 
     _tag: ClassVar[str | None] = "zv"
 
@@ -2740,9 +3743,12 @@ class Zv(Part):
     """Indices of the modes."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Zvd(Part):
-    """Zero vibration and derivative: three impulses."""
+    """Zero vibration and derivative: three impulses.
+
+    Args:
+        modes: Indices of the modes.
+    """
 
     _tag: ClassVar[str | None] = "zvd"
 
@@ -2750,9 +3756,12 @@ class Zvd(Part):
     """Indices of the modes."""
 
 
-@dataclass(frozen=True, kw_only=True)
 class Zvdd(Part):
-    """Zero vibration and two derivatives: four impulses."""
+    """Zero vibration and two derivatives: four impulses.
+
+    Args:
+        modes: Indices of the modes.
+    """
 
     _tag: ClassVar[str | None] = "zvdd"
 
@@ -2760,21 +3769,30 @@ class Zvdd(Part):
     """Indices of the modes."""
 
 
-Actuator: TypeAlias = Ideal | Hold | Thrusters | Wheel | Wheels | ControlMomentGyros | Jets | Magnetorquers
+ActuatorKind: TypeAlias = (
+    Ideal
+    | HoldActuator
+    | Thrusters
+    | Wheel
+    | Wheels
+    | ControlMomentGyros
+    | Jets
+    | Magnetorquers
+)
 """The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them."""
-Adaptation: TypeAlias = RandomSearch
+AdaptationKind: TypeAlias = RandomSearch
 """The kinds of adaptation."""
-Body: TypeAlias = Planar | Matrices | Panels | Spatial
+BodyKind: TypeAlias = Planar | Matrices | Panels | Spatial
 """The kinds of body."""
-Command: TypeAlias = SineCommand | Cosine | BangBang | MinimumEnergy | MinimumPeak | Polynomial
+CommandKind: TypeAlias = SineCommand | Cosine | BangBang | MinimumEnergy | MinimumPeak | Polynomial
 """The kinds of command."""
-Distribution: TypeAlias = Uniform | LogUniform | Normal | RelativeUniform | RelativeNormal | Choice
+DistributionKind: TypeAlias = Uniform | LogUniform | Normal | RelativeUniform | RelativeNormal | Choice
 """The distribution of one key of the scenario."""
-Drift: TypeAlias = Common | Each
+DriftKind: TypeAlias = Common | Each
 """How the frequencies of a body drift."""
-Estimator: TypeAlias = (
+EstimatorKind: TypeAlias = (
     Envelope
-    | Truth
+    | TruthEstimator
     | Kalman
     | ExtendedKalman
     | UnscentedKalman
@@ -2783,25 +3801,33 @@ Estimator: TypeAlias = (
     | Adaptive
 )
 """The kinds of estimator."""
-Extra: TypeAlias = Gain | Schedule
+ExtraKind: TypeAlias = Gain | Schedule
 """The extra loop on the dominant mode; its gain is k_d of the papers."""
-Failure: TypeAlias = Dead | Scaled | StuckFailure | Added
+FailureKind: TypeAlias = Dead | Scaled | StuckFailure | Added
 """A failure of an actuator."""
-Fault: TypeAlias = StuckFault | Silent
+FaultKind: TypeAlias = StuckFault | Silent
 """A failure of the sensor, gyro included."""
-Filter: TypeAlias = Notch | LowPass | Lead | Biquad
-"""The kinds of filter."""
-FilterForm: TypeAlias = Complementary
+FilterFormKind: TypeAlias = Complementary
 """How the gains are computed."""
-Law: TypeAlias = Relay | Pd | AttitudeLaw | StateSpace | Open | PhasePlane | PerAxis | BDot | Stages
+FilterKind: TypeAlias = Notch | LowPass | Lead | Biquad
+"""The kinds of filter."""
+LawKind: TypeAlias = Relay | Pd | AttitudeLaw | StateSpaceLaw | Open | PhasePlane | PerAxis | BDot | Stages
 """The kinds of law."""
-ObserverForm: TypeAlias = Gradient | Recurrence
+ObserverFormKind: TypeAlias = Gradient | Recurrence
 """The forms of an observer."""
-Profile: TypeAlias = Ramp | Sinusoid | Table
+ProfileKind: TypeAlias = Ramp | Sinusoid | TableProfile
 """A profile of the ratio over time."""
-Sensor: TypeAlias = Sampled | Gyro | StarTracker | Magnetometer | SunSensor | Tachometer | Accelerometer
+SensorKind: TypeAlias = (
+    Sampled
+    | Gyro
+    | StarTracker
+    | Magnetometer
+    | SunSensor
+    | Tachometer
+    | Accelerometer
+)
 """The kinds of sensor."""
-Shaper: TypeAlias = Zv | Zvd | Zvdd | Ei
+ShaperKind: TypeAlias = Zv | Zvd | Zvdd | Ei
 """The kinds of shaper."""
 
 
@@ -2820,7 +3846,7 @@ class Keys(TypedDict, total=False):
     epoch: datetime
     """Date and time of the start; a log counts its time from here."""
 
-    body: Body
+    body: BodyKind
     """The controlled body, unless it is a `spacecraft`."""
 
     spacecraft: Spacecraft
@@ -2829,25 +3855,27 @@ class Keys(TypedDict, total=False):
     appendage: Sequence[Appendage]
     """Appendages clamped to the hub of the spacecraft."""
 
-    drift: Drift
+    drift: DriftKind
     """Drift of the natural frequencies; default: none."""
 
-    sensor: Sensor | Literal["continuous"] | Sequence[Sensor | Literal["continuous"]]
+    sensor: SensorKind | Literal["continuous"] | Sequence[SensorKind | Literal["continuous"]]
     """The sensor, or an array of several."""
 
-    estimator: Estimator
+    estimator: EstimatorKind
     """The estimator."""
 
-    adaptation: Adaptation
+    adaptation: AdaptationKind
     """The adaptation."""
 
     manoeuvre: Manoeuvre
     """The planned manoeuvre."""
 
-    law: Law
+    law: LawKind
     """The control law. Only a scenario with a manoeuvre can omit it."""
 
-    actuator: Actuator | Assigned | Literal["ideal"] | Sequence[Actuator | Assigned | Literal["ideal"]]
+    actuator: (
+        ActuatorKind | Assigned | Literal["ideal"] | Sequence[ActuatorKind | Assigned | Literal["ideal"]]
+    )
     """The actuator, which executes the commanded torque, or an array of several."""
 
     disturbance: Sequence[Disturbance]
@@ -2856,7 +3884,7 @@ class Keys(TypedDict, total=False):
     environment: Environment
     """Environment of a body with three axes; default: none."""
 
-    log: Log
+    log: LogContents
     """Contents of a full log."""
 
     target: Sequence[AttitudeTarget]
@@ -2867,7 +3895,7 @@ class Keys(TypedDict, total=False):
     reference: Reference
     """Reference values for the metrics."""
 
-    uncertain: Mapping[str, Distribution]
+    uncertain: Mapping[str, DistributionKind]
     """Distributions of keys from which a campaign draws a value for each run."""
 
     correlated: Sequence[Correlated]

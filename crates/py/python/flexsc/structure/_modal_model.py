@@ -183,3 +183,6 @@ def _of_axis(what: str, value: float | Mapping[str, float], axis: str) -> float:
             raise ValueError(f"{what}: must be given for {axis}, got {dict(value)}")
         return float(value[axis])
     return float(value)
+
+
+StateSpace.__module__ = "flexsc.structure"

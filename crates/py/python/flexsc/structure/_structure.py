@@ -182,3 +182,6 @@ def write_modes(path: str | os.PathLike[str], modes: Sequence[Mapping[str, Any]]
     writer.writerow(kept)
     writer.writerows(map(repr, row) for row in zip(*kept.values(), strict=True))
     engine.write(path, text.getvalue())
+
+
+Structure.__module__ = "flexsc.structure"

@@ -1,0 +1,96 @@
+"""Logs in files: topics as mappings of columns."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+from flexsc._result import Topics
+from flexsc._topic import Topic
+from flexsc._values import arrays
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.figure import Figure, SubFigure
+
+    from flexsc._scenario import Scenario
+
+
+class Log(Topics):
+    """A log file in memory.
+
+    >>> import flexsc, pathlib, tempfile
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).simulate()
+    >>> with tempfile.TemporaryDirectory() as out:
+    ...     size = run.to_mcap(pathlib.Path(out) / "run.mcap")
+    ...     log = flexsc.read_log(pathlib.Path(out) / "run.mcap")
+    >>> log.metadata["end"], log["command"].rows == run["command"].rows
+    ('complete', True)
+    """
+
+    def __init__(self, native: engine.Log) -> None:
+        self._native = native
+        self._names = {name.removeprefix("/"): name for name in native.topics}
+        self._read: dict[str, Topic] = {}
+
+    @property
+    def topics(self) -> list[str]:
+        """The names of the topics, without their slash."""
+        return list(self._names)
+
+    @property
+    def metadata(self) -> dict[str, str]:
+        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
+        return self._native.metadata
+
+    @cached_property
+    def scenario(self) -> Scenario | None:
+        """The simulated scenario, if the log contains it.
+
+        Raises:
+            ScenarioError: This version does not accept it.
+        """
+        from flexsc._scenario import Scenario
+
+        text = self._native.scenario
+        return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
+
+    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
+        """Draw a figure of the run in the log with Matplotlib: see `Result.plot`.
+
+        >>> import flexsc
+        >>> figure = flexsc.read_log("run.mcap").plot("angle")          # doctest: +SKIP
+
+        Raises:
+            ValueError: There is no such figure.
+            ImportError: Matplotlib is not installed.
+        """
+        from flexsc import plot
+
+        return plot.at_a_glance(self, name, on)
+
+    def _topic(self, name: str) -> Topic:
+        if name not in self._read:
+            columns = arrays(self._native.columns(self._names[name]))
+            about = {key: text for key in ("scenario", "seed", "run") if (text := self.metadata.get(key))}
+            self._read[name] = Topic(name, columns, self._known(), about)
+        return self._read[name]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _from_bytes, (self._native.path, self._native.contents)
+
+    def _known(self) -> Scenario | None:
+        try:
+            return self.scenario
+        except engine.ScenarioError:
+            return None
+
+    def __repr__(self) -> str:
+        return f"<flexsc.Log: {', '.join(self.topics)}>"
+
+
+def _from_bytes(path: Path, contents: bytes) -> Log:
+    """Create the log of a pickle."""
+    return Log(engine.Log.read(path, contents))

@@ -1,0 +1,46 @@
+"""Names that are looked up: errors that list what there is, and dictionaries with them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from typing import Any, TypeVar
+
+_Value = TypeVar("_Value")
+
+
+def no_such(what: str, name: object, names: Iterable[str]) -> KeyError:
+    """Return the error of a name that does not exist, with the nearest one and all that there are.
+
+    `what` is the beginning of its text, such as `no metric`.
+    """
+    from difflib import get_close_matches
+
+    known = list(names)
+    near = get_close_matches(name, known, 1) if isinstance(name, str) else []
+    hint = f"did you mean {near[0]!r}? there are" if near else "there are"
+    return KeyError(f"{what} {name!r}; {hint} {', '.join(known) or 'none'}")
+
+
+class Named(dict[str, _Value]):
+    """A dictionary whose KeyError lists its keys."""
+
+    _what = "no key"
+
+    @classmethod
+    def of(cls, values: dict[str, _Value], what: str) -> Named[_Value]:
+        """Return a dictionary with the beginning of its errors, such as `no column`."""
+        named = cls(values)
+        named._what = what
+        return named
+
+    def __missing__(self, name: object) -> _Value:
+        raise no_such(self._what, name, self)
+
+
+def library(name: str, user: str) -> Any:
+    """Import an optional library for a method, or raise an ImportError that says how to install it."""
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise ImportError(f"{user} needs {name}: pip install {name}") from error

@@ -1,0 +1,41 @@
+"""Parts in Python by their roles in a scenario."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from operator import index
+from typing import Any
+
+from flexsc import parts
+
+
+def by_role(
+    law: parts.Law | parts.ThreeAxisLaw | None,
+    estimator: parts.Estimator | None,
+    adaptation: parts.Adaptation | None,
+    actuator: parts.Actuator | Mapping[int, parts.Actuator] | None,
+    sensor: parts.Sensor | Mapping[int, parts.Sensor] | None,
+) -> list[tuple[str, object]]:
+    """Return the parts that are given, each with its role, such as `sensor 0`.
+
+    Raises:
+        TypeError: An object is not of the class of its role.
+    """
+    sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
+    actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
+    given: list[tuple[str, type[Any], object]] = [
+        ("law", parts.ThreeAxisLaw if isinstance(law, parts.ThreeAxisLaw) else parts.Law, law),
+        ("estimator", parts.Estimator, estimator),
+        ("adaptation", parts.Adaptation, adaptation),
+        *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
+        *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
+    ]
+    brought = []
+    for role, kind, part in given:
+        if part is None:
+            continue
+        if not isinstance(part, kind):
+            found = part.__name__ if isinstance(part, type) else type(part).__name__
+            raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
+        brought.append((role, part))
+    return brought
