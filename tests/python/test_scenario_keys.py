@@ -15,6 +15,13 @@ from flexsc import LogError, Scenario, ScenarioError
 from own import Relay
 
 
+def test_remarks_are_those_of_the_command() -> None:
+    quiet = Scenario.example("wheel-scheduled-gain")
+    assert quiet.remarks == []
+    (remark,) = quiet.with_("body.planar.modes[0].damping", 5.0).remarks
+    assert remark.startswith("`body.planar.modes[0].damping` is a ratio")
+
+
 def test_the_value_of_a_key_is_read(sampled: Scenario) -> None:
     values = sampled.to_dict()
     assert sampled.get("law.relay.k_t") == values["law"]["relay"]["k_t"]

@@ -139,8 +139,9 @@ class Scenario:
 
         The command prints them as notes before a run.
 
-        >>> flexsc.Scenario.example("relay-fixed").with_("body.planar.modes[0].damping", 5.0).remarks
-        ['body.planar.modes[0].damping: 5 is a ratio and not in percent']
+        >>> scenario = flexsc.Scenario.example("wheel-scheduled-gain")
+        >>> scenario.with_("body.planar.modes[0].damping", 5.0).remarks[0].partition(" and ")[0]
+        '`body.planar.modes[0].damping` is a ratio,'
         """
         return self._native.remarks
 
