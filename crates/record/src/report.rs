@@ -105,12 +105,6 @@ struct ValueSlot {
     is_set: bool,
 }
 
-impl ValueSlot {
-    fn is_free_for<T: ReportValue>(&self) -> bool {
-        !self.is_set && self.kind == TypeId::of::<T>()
-    }
-}
-
 impl Report {
     /// Creates an empty report.
     pub fn new() -> Self {
@@ -161,28 +155,31 @@ impl Report {
     pub fn add_value<T: ReportValue>(&mut self, value: T) {
         match self.free_value() {
             Some(place) => *place = value,
-            None => self.push_value(value, true),
+            None => self.push_value(value),
         }
     }
 
-    /// Adds a value that metrics and figures read, and returns it to be overwritten: the default, or an earlier value
-    /// whose memory is used again.
-    pub fn value_mut<T: ReportValue + Default>(&mut self) -> &mut T {
-        if !self.values.iter().any(|slot| slot.is_free_for::<T>()) {
-            self.push_value(T::default(), false);
+    /// Adds a value that metrics and figures read, as `write` writes it over the default or over an earlier value, whose
+    /// memory is used again. Returns what `write` returns.
+    pub fn write_value<T: ReportValue + Default, R>(&mut self, write: impl FnOnce(&mut T) -> R) -> R {
+        if let Some(place) = self.free_value() {
+            return write(place);
         }
-        self.free_value().expect("a value of this type is free")
+        let mut value = T::default();
+        let returned = write(&mut value);
+        self.push_value(value);
+        returned
     }
 
     /// Returns the first free value of a type, which belongs to the report from now on.
     fn free_value<T: ReportValue>(&mut self) -> Option<&mut T> {
-        let slot = self.values.iter_mut().find(|slot| slot.is_free_for::<T>())?;
+        let slot = self.values.iter_mut().find(|slot| !slot.is_set && slot.kind == TypeId::of::<T>())?;
         slot.is_set = true;
         (&mut *slot.value as &mut dyn Any).downcast_mut()
     }
 
-    fn push_value<T: ReportValue>(&mut self, value: T, is_set: bool) {
-        self.values.push(ValueSlot { kind: TypeId::of::<T>(), value: Box::new(value), is_set });
+    fn push_value<T: ReportValue>(&mut self, value: T) {
+        self.values.push(ValueSlot { kind: TypeId::of::<T>(), value: Box::new(value), is_set: true });
     }
 
     /// Returns the first row or value of this type.

@@ -115,10 +115,12 @@ pub struct JetCycle {
 impl JetCycle {
     /// Adds the current cycle of jets, and its rows, which are logged if pulses have begun since the last ones.
     pub fn report(jets: &dyn PulsedActuator, report: &mut Report) {
-        let cycle: &mut Self = report.value_mut();
-        jets.write_cycle(cycle);
-        let ([roll_on_s, pitch_on_s, yaw_on_s], fuel_kg, pulses) = (cycle.on, cycle.fuel, cycle.pulses);
-        let thrusters: Vec<_> = cycle.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
+        let (on, fuel_kg, pulses, thrusters) = report.write_value(|cycle: &mut Self| {
+            jets.write_cycle(cycle);
+            let each = cycle.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s });
+            (cycle.on, cycle.fuel, cycle.pulses, each.collect::<Vec<_>>())
+        });
+        let [roll_on_s, pitch_on_s, yaw_on_s] = on;
         report.add_revision(pulses, flexsc_record::Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg });
         if !thrusters.is_empty() {
             report.add_revision(pulses, Thrusters { thrusters });

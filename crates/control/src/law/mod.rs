@@ -31,11 +31,9 @@ mod tunable;
 
 use std::any::Any;
 use std::ops::Deref;
-use std::sync::Arc;
 
 use flexsc_dynamics::guard::Guard;
 use flexsc_formats::document::ConfigError;
-use flexsc_record::CustomTopic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -108,11 +106,6 @@ pub trait LawSpec {
     /// about one axis.
     fn start_three_axis(&self, _authorities: &[Authority]) -> Option<Box<dyn ThreeAxisLaw>> {
         None
-    }
-
-    /// Returns the topics of the rows that a law of the engine reports beyond those of the engine.
-    fn topics(&self) -> Vec<Arc<CustomTopic>> {
-        Vec::new()
     }
 
     /// Returns the offers of the law to the other parts of a scenario; by default those of a law without a period that

@@ -79,7 +79,11 @@ impl LawKind {
 
     /// Returns the topics of the rows that the law reports beyond those of the engine.
     pub fn custom_topics(&self) -> Vec<Arc<CustomTopic>> {
-        self.custom().map_or_else(|| self.topics(), |own| own.topics().to_vec())
+        match self {
+            Self::StateSpace(law) => law.topics(),
+            Self::Own(own) => own.topics().to_vec(),
+            _ => Vec::new(),
+        }
     }
 
     /// Returns the law of another crate, if it is one.

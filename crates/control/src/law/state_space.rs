@@ -112,6 +112,12 @@ fn first_repetition(names: &[String]) -> Option<ConfigError> {
 }
 
 impl StateSpace {
+    /// Returns the topics of the rows that the law reports beyond those of the engine.
+    pub fn topics(&self) -> Vec<Arc<CustomTopic>> {
+        let topic = self.is_three_axis().then(|| states_topic(self.a.len()));
+        topic.flatten().into_iter().collect()
+    }
+
     /// Returns true if the law acts about three axes together.
     fn is_three_axis(&self) -> bool {
         !(self.inputs.is_empty() && self.outputs.is_empty())
@@ -318,11 +324,6 @@ impl LawSpec for StateSpace {
             is_three_axis: self.is_three_axis(),
             ..LawOffers::new(Some(self.period), EstimateNeeds::Motion)
         }
-    }
-
-    fn topics(&self) -> Vec<Arc<CustomTopic>> {
-        let topic = self.is_three_axis().then(|| states_topic(self.a.len()));
-        topic.flatten().into_iter().collect()
     }
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {

@@ -119,7 +119,9 @@ impl Part for ThreeAxisStateSpace {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         let row = self.topic.as_ref().filter(|_| at.occasion == Occasion::Period);
         let row = row.and_then(|topic| topic.row(self.state.as_slice()).ok());
-        row.into_iter().for_each(|row| report.add(row));
+        if let Some(row) = row {
+            report.add(row);
+        }
     }
 }
 

@@ -77,7 +77,9 @@ impl Signals {
         let Some(signals) = signals.filter(|_| at.occasion == Occasion::Period) else { return };
         let values = Python::attach(|py| method.other(py, |part| signals.values(part, axis)));
         let row = values.and_then(|values| signals.topic.row(values).ok());
-        row.into_iter().for_each(|row| report.add(row));
+        if let Some(row) = row {
+            report.add(row);
+        }
     }
 
     /// Returns the values of the signals.
