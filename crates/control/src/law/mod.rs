@@ -11,6 +11,7 @@ mod error_measure;
 mod filter;
 mod frame;
 mod law_state;
+mod one_axis_state_space;
 mod open_loop;
 mod pd;
 mod per_axis_laws;

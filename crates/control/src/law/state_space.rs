@@ -9,22 +9,18 @@ use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::{Finite, Positive};
-use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time::Span;
 use flexsc_record::CustomTopic;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::discrete_matrices::{DiscreteMatrices, matrix};
+use super::one_axis_state_space::OneAxisStateSpace;
 use super::three_axis_state_space::{CompensatorInput, ThreeAxisStateSpace, states_topic};
-use super::{
-    Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
-    LawState, Phase, ReferenceNeeds, Setpoint, ThreeAxisLaw, TorqueConditions, Tunable,
-};
+use super::{Authority, ErrorBand, EstimateNeeds, Law, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable};
 use crate::offers::{LawOffers, LawPlace, Offers};
-use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
-use crate::state_estimate::StateEstimate;
 
 /// Largest number of states.
 const MOST: usize = 64;
@@ -276,7 +272,10 @@ impl LawSpec for StateSpace {
             OutputQuantity::Torque => conditions.torque_per_command,
             OutputQuantity::Acceleration => conditions.inertia,
         };
-        unit * self.first_command(conditions.angle)
+        let first = unit * self.first_command(conditions.angle);
+        // About three axes a slew along a profile commands its acceleration.
+        let slew = conditions.profile_acceleration.filter(|_| self.is_three_axis());
+        slew.map_or(first, |acceleration| first.max(conditions.inertia * acceleration))
     }
 
     fn start(&self, _: &Authority) -> Box<dyn Law> {
@@ -288,7 +287,7 @@ impl LawSpec for StateSpace {
             d: DMatrix::zeros(1, 1),
         };
         let matrices = self.sampled().unwrap_or_else(|_| none());
-        Box::new(StateSpaceState {
+        Box::new(OneAxisStateSpace {
             state: DMatrix::zeros(matrices.a.nrows(), 1),
             period: self.period,
             command: self.command,
@@ -359,75 +358,5 @@ impl LawSpec for StateSpace {
 
     fn tunable(&self) -> Vec<Tunable> {
         vec![Tunable::positive("gain", self.gain)]
-    }
-}
-
-/// Run-time state of the compensator about an axis.
-#[derive(Clone, Debug)]
-struct StateSpaceState {
-    matrices: DiscreteMatrices,
-    /// State x, a column.
-    state: DMatrix<f64>,
-    period: Span,
-    command: OutputQuantity,
-    /// Factor on the output, and its last tuned value.
-    gain: f64,
-    tuned: f64,
-    limit: f64,
-    track: bool,
-    active: bool,
-}
-
-impl Part for StateSpaceState {}
-
-impl Law for StateSpaceState {
-    fn decide(
-        &mut self,
-        now: Instant,
-        _: DecisionCause,
-        goal: &Setpoint,
-        state_estimate: &StateEstimate,
-    ) -> ControlOutput {
-        self.active = now >= goal.from;
-        if !self.active {
-            return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
-        }
-        let (angle, rate) = goal.at(now);
-        let DiscreteMatrices { a, b, c, d } = &self.matrices;
-        let errors = [angle - state_estimate.angle, rate - state_estimate.rate];
-        let error = DMatrix::from_column_slice(b.ncols(), 1, &errors[..b.ncols()]);
-        let mut output = (d * &error)[(0, 0)];
-        if !self.state.is_empty() {
-            output += (c * &self.state)[(0, 0)];
-            self.state = a * &self.state + b * &error;
-        }
-        output *= self.gain;
-        let command = match self.command {
-            OutputQuantity::Torque => Command::Torque(output.clamp(-self.limit, self.limit)),
-            OutputQuantity::Acceleration => {
-                Command::Acceleration(output.clamp(-self.limit, self.limit) + goal.acceleration)
-            }
-        };
-        ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
-    }
-
-    fn state(&self) -> LawState<'_> {
-        LawState::with_tuned(if self.active { Phase::Feedback } else { Phase::Open }, self.tuned)
-    }
-
-    fn reference_needs(&self) -> ReferenceNeeds {
-        // Accelerations have a reference to follow.
-        let tracks_manoeuvre = self.track || self.command == OutputQuantity::Acceleration;
-        ReferenceNeeds { tracks_manoeuvre, ..ReferenceNeeds::default() }
-    }
-
-    fn copy(&self) -> Box<dyn Law> {
-        Box::new(self.clone())
-    }
-
-    fn tune(&mut self, key: &str, value: f64) {
-        if key == "gain" {
-            (self.gain, self.tuned) = (value, value);
-        }
     }
 }

@@ -3149,10 +3149,12 @@ class StateSpaceLaw(Part):
     Args:
         period: Period of its samples (s).
         a: Matrix A, row by row; default: there are no states.
-        b: Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the
-            rate error (rad/s).
-        c: Matrix C: one row.
-        d: Matrix D: one row; default: it is zero.
+        b: Matrix B: one row per state; one column for each input, or for the angle error (rad) and
+            optionally a second for the rate error (rad/s).
+        c: Matrix C: one row, or one for each output.
+        d: Matrix D: one row, or one for each output; default: it is zero.
+        inputs: Names of the inputs of one law about three axes together; default: a law about each axis.
+        outputs: Axes of the outputs of one law about three axes together; default: roll, pitch and yaw.
         of: Whether the matrices are in discrete or continuous time. Default: "samples".
         command: Quantity that it commands. Default: "torque".
         gain: Factor on the output.
@@ -3168,13 +3170,17 @@ class StateSpaceLaw(Part):
     a: Rows | None = None
     """Matrix A, row by row; default: there are no states."""
     b: Rows | None = None
-    """Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the
-    rate error (rad/s).
+    """Matrix B: one row per state; one column for each input, or for the angle error (rad) and optionally a
+    second for the rate error (rad/s).
     """
     c: Rows | None = None
-    """Matrix C: one row."""
+    """Matrix C: one row, or one for each output."""
     d: Rows | None = None
-    """Matrix D: one row; default: it is zero."""
+    """Matrix D: one row, or one for each output; default: it is zero."""
+    inputs: Sequence[str] | None = None
+    """Names of the inputs of one law about three axes together; default: a law about each axis."""
+    outputs: Sequence[str] | None = None
+    """Axes of the outputs of one law about three axes together; default: roll, pitch and yaw."""
     of: Literal["samples", "held", "tustin"] | None = None
     """Whether the matrices are in discrete or continuous time. Default: "samples"."""
     command: Literal["torque", "acceleration"] | None = None
