@@ -103,7 +103,13 @@ def test_public_classes_have_public_names() -> None:
         if inspect.isclass(thing):
             places = ("flexsc", "flexsc.parts", "flexsc.structure")
             # Classes of the engine have the name of its module.
-            assert thing.__module__ in places or name in ("Effort", "Hold", "Reading"), name
+            assert thing.__module__ in places or name in (
+                "Effort",
+                "Hold",
+                "Reading",
+                "ThreeAxisEvent",
+                "ThreeAxisHold",
+            ), name
     assert b"_scenario" not in pickle.dumps(shipped("relay-fixed"))
 
 

@@ -4,7 +4,7 @@ use flexsc_numerics::time::{Instant, Span};
 use nalgebra::DMatrix;
 
 use super::discrete_matrices::DiscreteMatrices;
-use super::state_space::OutputQuantity;
+use super::output_quantity::OutputQuantity;
 use super::{Command, ControlOutput, DecisionCause, Guards, Law, LawState, Phase, ReferenceNeeds, Setpoint};
 use crate::part::Part;
 use crate::state_estimate::StateEstimate;

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::discrete_matrices::{DiscreteMatrices, matrix};
 use super::one_axis_state_space::OneAxisStateSpace;
+use super::output_quantity::OutputQuantity;
 use super::three_axis_state_space::{CompensatorInput, ThreeAxisStateSpace, states_topic};
 use super::{Authority, ErrorBand, EstimateNeeds, Law, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable};
 use crate::offers::{LawOffers, LawPlace, Offers};
@@ -87,18 +88,6 @@ pub enum TimeDomain {
     Held,
     /// Continuous time, discretised by Tustin's rule.
     Tustin,
-}
-
-/// Quantity that the output commands.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Commands")]
-pub enum OutputQuantity {
-    /// A torque (N m; for a wheel, units of its command).
-    #[default]
-    Torque,
-    /// An angular acceleration (rad/s²): that of the reference is added, and the sum is multiplied by the whole inertia.
-    Acceleration,
 }
 
 /// Returns the index of the first name that occurs earlier, as an error.
@@ -275,7 +264,7 @@ impl LawSpec for StateSpace {
         let first = unit * self.first_command(conditions.angle);
         // About three axes a slew along a profile commands its acceleration.
         let slew = conditions.profile_acceleration.filter(|_| self.is_three_axis());
-        slew.map_or(first, |acceleration| first.max(conditions.inertia * acceleration))
+        slew.map_or(first, |acceleration| conditions.inertia * acceleration)
     }
 
     fn start(&self, _: &Authority) -> Box<dyn Law> {
