@@ -31,6 +31,8 @@ __all__ = [
     "Simulators",
     "Stream",
     "Taken",
+    "ThreeAxisEvent",
+    "ThreeAxisHold",
     "Truth",
     "Work",
     "__version__",
