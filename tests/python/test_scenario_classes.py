@@ -164,7 +164,7 @@ def test_parts_are_dataclasses_to_those_who_ask() -> None:
     assert [field.name for field in dataclasses.fields(Uniform)] == ["value"]
     assert dataclasses.asdict(mode)["frequency"] == 0.5
     with pytest.raises(dataclasses.FrozenInstanceError):
-        del mode.gain
+        delattr(mode, "gain")
     match Uniform([0.1, 0.2]):
         case Uniform(limits):
             assert limits == [0.1, 0.2]

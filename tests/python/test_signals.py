@@ -79,7 +79,13 @@ class Actuator(flexsc.Actuator):
 
 
 def own(text: str = PLANAR, **parts: Any) -> flexsc.Scenario:
-    given = {"law": Law(), "estimator": Estimator(), "sensor": Sensor(), "actuator": Actuator(), **parts}
+    given: dict[str, Any] = {
+        "law": Law(),
+        "estimator": Estimator(),
+        "sensor": Sensor(),
+        "actuator": Actuator(),
+        **parts,
+    }
     return flexsc.Scenario.parse(text, "own").with_parts(**given)
 
 

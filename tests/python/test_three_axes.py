@@ -73,8 +73,8 @@ def plant() -> tuple[Matrix, Matrix, Matrix]:
         c[:3, at], c[3:, at + 1] = bench, bench
     whole = np.zeros((order + 3, order + 3))
     whole[:order] = np.hstack([a, b]) * PERIOD
-    whole = expm(whole)
-    return whole[:order, :order], whole[:order, order:], c
+    held: Any = expm(whole)
+    return held[:order, :order], held[:order, order:], c
 
 
 def coupled(outputs: int, inputs: int, order: int = 3) -> tuple[Matrix, Matrix, Matrix, Matrix]:

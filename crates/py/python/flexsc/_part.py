@@ -100,7 +100,7 @@ class Part:
     def _with_position(self, values: tuple[object, ...], keys: dict[str, object]) -> dict[str, object]:
         """The keys, with the value of a kind that holds one given by its position."""
         name = type(self).__name__
-        if not self._holds_one or len(values) > 1:
+        if not self._holds_one or len(values) != 1:
             raise TypeError(f"{name} takes keywords only: {', '.join(self._names)}")
         if self._names[0] in keys:
             raise TypeError(f"{name} got {self._names[0]!r} twice")
