@@ -124,7 +124,7 @@ fn filters(c: &mut Criterion) {
     for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
         let body = scenario(MODES).model;
         let setting = FilterContext {
-            body: body.planar().expect("a body with one angle"),
+            body: body.one_axis().expect("a body with one angle"),
             back_emf: (1e-4, true),
             period: 0.3,
             angle_noise: 1e-5,

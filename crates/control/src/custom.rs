@@ -1,5 +1,6 @@
 //! Custom parts: kinds of a role that another crate provides, and that a scenario file cannot name.
 
+use std::any::Any;
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt;
@@ -14,6 +15,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub struct Custom<T: ?Sized> {
     part: Arc<T>,
     topics: Arc<[Arc<CustomTopic>]>,
+    /// Object of the program from which the part was made.
+    origin: Option<Arc<dyn Any + Send + Sync>>,
 }
 
 impl<T: ?Sized> Custom<T> {
@@ -24,7 +27,18 @@ impl<T: ?Sized> Custom<T> {
 
     /// Wraps a custom part with the topics of the rows that it reports.
     pub fn with_topics(part: Arc<T>, topics: Vec<Arc<CustomTopic>>) -> Self {
-        Self { part, topics: topics.into() }
+        Self { part, topics: topics.into(), origin: None }
+    }
+
+    /// Returns the part with the object of the program from which it was made.
+    #[must_use]
+    pub fn with_origin(self, origin: impl Any + Send + Sync) -> Self {
+        Self { origin: Some(Arc::new(origin)), ..self }
+    }
+
+    /// Returns the object of the program from which the part was made; `None` if none was given.
+    pub fn origin(&self) -> Option<&(dyn Any + Send + Sync)> {
+        self.origin.as_deref()
     }
 
     /// Returns the topics of the rows that the part reports.
@@ -42,7 +56,7 @@ impl<T: ?Sized> Deref for Custom<T> {
 
 impl<T: ?Sized> Clone for Custom<T> {
     fn clone(&self) -> Self {
-        Self { part: Arc::clone(&self.part), topics: Arc::clone(&self.topics) }
+        Self { part: Arc::clone(&self.part), topics: Arc::clone(&self.topics), origin: self.origin.clone() }
     }
 }
 

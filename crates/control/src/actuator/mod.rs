@@ -33,8 +33,6 @@ mod wheels;
 mod wheels_state;
 mod zero_order_hold;
 
-use std::any::Any;
-
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::quantity::{Share, Time};
 use flexsc_numerics::time::{Instant, Span};
@@ -119,11 +117,6 @@ pub trait ActuatorSpec: Send + Sync {
 
     /// Returns the actuator's largest torque about an axis (N m); `None` without a limit.
     fn limit(&self, _axis: usize) -> Option<f64> {
-        None
-    }
-
-    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
-    fn any(&self) -> Option<&dyn Any> {
         None
     }
 }

@@ -3,8 +3,6 @@
 mod objective;
 mod random_search;
 
-use std::any::Any;
-
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
@@ -48,11 +46,6 @@ pub trait AdaptationSpec: Send + Sync {
 
     /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
     fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation>;
-
-    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
-    fn any(&self) -> Option<&dyn Any> {
-        None
-    }
 }
 
 /// Run-time state of an adaptation.

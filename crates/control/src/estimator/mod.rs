@@ -15,7 +15,6 @@ mod rigid_rate;
 mod sample_cost;
 mod sampled;
 
-use std::any::Any;
 use std::borrow::Cow;
 
 use flexsc_dynamics::AxisState;
@@ -74,11 +73,6 @@ pub enum EstimatorKind {
 pub trait EstimatorSpec: Send + Sync {
     /// Returns the run-time state of the estimator in a scenario.
     fn start(&self, known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator>;
-
-    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
-    fn any(&self) -> Option<&dyn Any> {
-        None
-    }
 }
 
 /// An ideal observer.

@@ -31,7 +31,6 @@ mod three_axis_state_space;
 mod torque_conditions;
 mod tunable;
 
-use std::any::Any;
 use std::ops::Deref;
 
 use flexsc_dynamics::guard::Guard;
@@ -133,11 +132,6 @@ pub trait LawSpec {
     /// Returns the parameters that an adaptation may tune.
     fn tunable(&self) -> Vec<Tunable> {
         Vec::new()
-    }
-
-    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
-    fn any(&self) -> Option<&dyn Any> {
-        None
     }
 }
 

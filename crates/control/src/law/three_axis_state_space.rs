@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use flexsc_numerics::attitude::AXES;
+use flexsc_numerics::attitude::{AXES, Vector, rotation};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{CustomField, CustomTopic, Report};
 use nalgebra::DMatrix;
@@ -102,13 +102,12 @@ impl ThreeAxisStateSpace {
     /// Returns the inputs as a column.
     fn column(&self, now: Instant, input: &ThreeAxisInput<'_>) -> DMatrix<f64> {
         let errors = input.errors(now);
-        let angle = errors.iter().map(|[angle, _]| angle * angle).sum::<f64>().sqrt();
-        let share = if angle == 0.0 { 0.5 } else { libm::sin(0.5 * angle) / angle };
+        let turn = rotation(&Vector::from(errors.map(|[angle, _]| angle))).vector().into_owned();
         let reads_wheels = self.inputs.iter().any(|input| matches!(input, CompensatorInput::WheelSpeed(_)));
         let speeds = if reads_wheels { (input.wheel_speeds)() } else { Vec::new() };
         DMatrix::from_fn(self.inputs.len(), 1, |row, _| match self.inputs[row] {
             CompensatorInput::Angle(axis) => errors[axis][0],
-            CompensatorInput::VectorPart(axis) => share * errors[axis][0],
+            CompensatorInput::VectorPart(axis) => turn[axis],
             CompensatorInput::Rate(axis) => errors[axis][1],
             CompensatorInput::WheelSpeed(wheel) => speeds.get(wheel).copied().unwrap_or(0.0),
         })

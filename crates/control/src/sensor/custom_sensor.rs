@@ -1,7 +1,5 @@
 //! Settings of a sensor that another crate provides.
 
-use std::any::Any;
-
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
 
@@ -22,11 +20,6 @@ pub trait SensorSpec: Send + Sync {
 
     /// Returns the standard deviation of the measured rate (rad/s), if rates are measured.
     fn rate_noise(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
-    fn any(&self) -> Option<&dyn Any> {
         None
     }
 }

@@ -1,7 +1,5 @@
 //! Actuators written in Python: they make torques of what is demanded, about each axis.
 
-use std::any::Any;
-
 use flexsc_core::control::actuator::{
     Actuator, ActuatorEvent, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
 };
@@ -186,10 +184,6 @@ impl ActuatorSpec for PythonActuator {
 
     fn limit(&self, axis: usize) -> Option<f64> {
         self.limits.get(axis).copied()
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

@@ -1,7 +1,5 @@
 //! Adaptations written in Python: after each window they tune a number of the law.
 
-use std::any::Any;
-
 use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::part::{Part, ReportContext};
@@ -65,10 +63,6 @@ impl AdaptationSpec for PythonAdaptation {
             Method::new(started, "learn")
         });
         Box::new(Learning { method, value, last: f64::NAN, signals: self.signals.clone() })
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

@@ -1,7 +1,5 @@
 //! Laws that are compiled functions, called by their address: what numba's `cfunc` and C compilers make.
 
-use std::any::Any;
-
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
@@ -17,7 +15,6 @@ use pyo3::prelude::*;
 
 use super::hold::{PHASES, never};
 use super::law::positive;
-use super::object::Object;
 
 /// The function: now and the time since its last call (s), the cause, angle and rate, those of the goal, its states, its hold.
 type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64, *mut f64);
@@ -25,7 +22,6 @@ type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64
 /// A law as a scenario has it.
 #[derive(Debug)]
 pub struct CompiledLaw {
-    object: Object,
     function: Function,
     period: Option<Span>,
     promise: Option<f64>,
@@ -46,7 +42,6 @@ impl CompiledLaw {
         }
         let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {
-            object: Object::new(part),
             function: from_address(address),
             period: period.map(|period| positive(period, "period")).transpose()?,
             promise: part.getattr("promise")?.extract()?,
@@ -82,10 +77,6 @@ impl LawSpec for CompiledLaw {
 
     fn expected_band(&self) -> ErrorBand {
         self.promise.map_or(ErrorBand::None, ErrorBand::Absolute)
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

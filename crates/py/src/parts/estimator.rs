@@ -1,7 +1,5 @@
 //! Estimators written in Python: at samples they make beliefs of readings.
 
-use std::any::Any;
-
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::estimator::{
     Estimator, EstimatorContext as EngineKnown, EstimatorSpec, SampleContext as EngineTaken,
@@ -214,10 +212,6 @@ impl EstimatorSpec for PythonEstimator {
             )
         });
         Box::new(Observing { method, also: self.also, signals: self.signals.clone() })
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

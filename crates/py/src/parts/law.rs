@@ -1,6 +1,5 @@
 //! Laws written in Python: asked at events, they answer with a hold.
 
-use std::any::Any;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -256,10 +255,6 @@ impl LawSpec for PythonLaw {
 
     fn tunable(&self) -> Vec<Tunable> {
         self.tunable.iter().map(|(key, value)| Tunable::unbounded(*key, *value)).collect()
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

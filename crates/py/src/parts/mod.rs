@@ -21,6 +21,7 @@ use std::sync::Arc;
 
 use flexsc_core::control::actuator::ActuatorSpec;
 use flexsc_core::control::custom::Custom;
+use flexsc_core::control::law::LawSpec;
 use flexsc_core::scenario::CustomParts;
 use pyo3::prelude::*;
 
@@ -46,37 +47,23 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
         // The caller may change his object: a scenario does not.
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
-            Some(("actuator", place)) => {
-                own.actuators.push((place.parse()?, actuator(&part, place)?));
-            }
+            Some(("actuator", place)) => own.actuators.push((place.parse()?, actuator(&part, place)?)),
             Some((_, place)) => {
                 let role = if place == "0" { "sensor".to_owned() } else { format!("sensor{place}") };
                 let sensor = sensor::PythonSensor::from_python(&part, &role)?;
-                let topics = Signals::topics(sensor.signals.as_ref());
-                own.sensors.push((place.parse()?, Custom::with_topics(Arc::new(sensor), topics)));
+                let signals = sensor.signals.clone();
+                own.sensors.push((place.parse()?, custom(Arc::new(sensor), signals.as_ref(), &part)));
             }
-            None if role == "law" && part.hasattr("address")? => {
-                own.law = Some(Custom::new(Arc::new(compiled::CompiledLaw::from_python(&part)?)));
-            }
-            None if role == "law" && is_of(&part, "ThreeAxisLaw")? => {
-                let law = three_axis_law::PythonThreeAxisLaw::from_python(&part)?;
-                let topics = Signals::topics(law.signals.as_ref());
-                own.law = Some(Custom::with_topics(Arc::new(law), topics));
-            }
-            None if role == "law" => {
-                let law = law::PythonLaw::from_python(&part)?;
-                let topics = Signals::topics(law.signals.as_ref());
-                own.law = Some(Custom::with_topics(Arc::new(law), topics));
-            }
+            None if role == "law" => own.law = Some(law(&part)?),
             None if role == "estimator" => {
                 let estimator = estimator::PythonEstimator::from_python(&part)?;
-                let topics = Signals::topics(estimator.signals.as_ref());
-                own.estimator = Some(Custom::with_topics(Arc::new(estimator), topics));
+                let signals = estimator.signals.clone();
+                own.estimator = Some(custom(Arc::new(estimator), signals.as_ref(), &part));
             }
             None if role == "adaptation" => {
                 let adaptation = adaptation::PythonAdaptation::from_python(&part)?;
-                let topics = Signals::topics(adaptation.signals.as_ref());
-                own.adaptation = Some(Custom::with_topics(Arc::new(adaptation), topics));
+                let signals = adaptation.signals.clone();
+                own.adaptation = Some(custom(Arc::new(adaptation), signals.as_ref(), &part));
             }
             None => own.actuators.push((0, actuator(&part, "0")?)),
         }
@@ -89,34 +76,53 @@ fn is_of(part: &Bound<'_, PyAny>, class: &str) -> PyResult<bool> {
     part.is_instance(&part.py().import("flexsc.parts")?.getattr(class)?)
 }
 
-/// The engine's actuator of a Python object at a place in a list.
+/// Returns the engine's part of a Python object, with the topics of its signals.
+fn custom<T: ?Sized>(part: Arc<T>, signals: Option<&Signals>, object: &Bound<'_, PyAny>) -> Custom<T> {
+    Custom::with_topics(part, Signals::topics(signals)).with_origin(object::Object::new(object))
+}
+
+/// Returns the engine's law of a Python object: compiled, about three axes together, or about each axis.
+fn law(part: &Bound<'_, PyAny>) -> PyResult<Custom<dyn LawSpec + Send + Sync>> {
+    if part.hasattr("address")? {
+        return Ok(custom(Arc::new(compiled::CompiledLaw::from_python(part)?), None, part));
+    }
+    if is_of(part, "ThreeAxisLaw")? {
+        let law = three_axis_law::PythonThreeAxisLaw::from_python(part)?;
+        let signals = law.signals.clone();
+        return Ok(custom(Arc::new(law), signals.as_ref(), part));
+    }
+    let law = law::PythonLaw::from_python(part)?;
+    let signals = law.signals.clone();
+    Ok(custom(Arc::new(law), signals.as_ref(), part))
+}
+
+/// Returns the engine's actuator of a Python object at a place in a list.
 fn actuator(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn ActuatorSpec>> {
     let role = if place == "0" { "actuator".to_owned() } else { format!("actuator{place}") };
     let actuator = actuator::PythonActuator::from_python(part, &role)?;
-    let topics = Signals::topics(actuator.signals.as_ref());
-    Ok(Custom::with_topics(Arc::new(actuator), topics))
+    let signals = actuator.signals.clone();
+    Ok(custom(Arc::new(actuator), signals.as_ref(), part))
 }
 
 /// Python's objects of a scenario's parts.
 pub fn named(py: Python<'_>, own: &CustomParts) -> Vec<Named> {
-    let object = |any: Option<&dyn Any>| -> Option<Py<PyAny>> {
-        Some(any?.downcast_ref::<object::Object>()?.clone_ref(py))
+    let mut named = Vec::new();
+    let mut add = |role: String, origin: Option<&(dyn Any + Send + Sync)>| {
+        if let Some(object) = origin.and_then(|origin| origin.downcast_ref::<object::Object>()) {
+            named.push((role, object.clone_ref(py)));
+        }
     };
-    let roles = [
-        ("law", own.law.as_ref().and_then(|law| object(law.any()))),
-        ("estimator", own.estimator.as_ref().and_then(|estimator| object(estimator.any()))),
-        ("adaptation", own.adaptation.as_ref().and_then(|adaptation| object(adaptation.any()))),
-    ];
-    let roles = roles.into_iter().filter_map(|(role, part)| Some((role.to_owned(), part?)));
-    let sensors = own.sensors.iter();
-    let sensors =
-        sensors.filter_map(|(place, sensor)| Some((format!("sensor {place}"), object(sensor.any())?)));
-    let actuators = own.actuators.iter();
-    let actuators = actuators.filter_map(|(place, actuator)| {
+    add("law".to_owned(), own.law.as_ref().and_then(Custom::origin));
+    add("estimator".to_owned(), own.estimator.as_ref().and_then(Custom::origin));
+    add("adaptation".to_owned(), own.adaptation.as_ref().and_then(Custom::origin));
+    for (place, sensor) in &own.sensors {
+        add(format!("sensor {place}"), sensor.origin());
+    }
+    for (place, actuator) in &own.actuators {
         let role = if *place == 0 { "actuator".to_owned() } else { format!("actuator {place}") };
-        Some((role, object(actuator.any())?))
-    });
-    roles.chain(sensors).chain(actuators).collect()
+        add(role, actuator.origin());
+    }
+    named
 }
 
 /// Work with parts written in Python, without the interpreter's lock: a thread that is known to it gets the lock back faster.

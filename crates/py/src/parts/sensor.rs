@@ -1,7 +1,5 @@
 //! Sensors written in Python: they read at samples.
 
-use std::any::Any;
-
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::control::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
@@ -60,10 +58,6 @@ impl SensorSpec for PythonSensor {
 
     fn rate_noise(&self) -> Option<f64> {
         self.rate_noise
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 

@@ -1,7 +1,5 @@
 //! Laws about three axes together that are written in Python: asked at samples, they answer with commands about all axes.
 
-use std::any::Any;
-
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::law::{
     Authority as EngineAuthority, Command, DecisionCause, ErrorBand, Law, LawSpec, LawState, Open, Phase,
@@ -11,6 +9,7 @@ use flexsc_core::control::offers::{LawOffers, LawPlace, Offers};
 use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::control::requirement::{Requirements, Rule};
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
+use flexsc_core::numerics::attitude::{Vector, rotation};
 use flexsc_core::numerics::time::{Instant as Exact, Span};
 use flexsc_core::record::Report;
 use pyo3::exceptions::PyValueError;
@@ -78,9 +77,8 @@ impl ThreeAxisEvent {
     #[getter]
     fn quaternion(&self) -> Four {
         let (x, y, z) = self.angles();
-        let angle = (x * x + y * y + z * z).sqrt();
-        let share = if angle == 0.0 { 0.5 } else { (0.5 * angle).sin() / angle };
-        ((0.5 * angle).cos(), share * x, share * y, share * z)
+        let q = rotation(&Vector::new(x, y, z));
+        (q.w, q.i, q.j, q.k)
     }
 
     /// Goal of the angles (rad).
@@ -300,10 +298,6 @@ impl LawSpec for PythonThreeAxisLaw {
 
     fn tunable(&self) -> Vec<Tunable> {
         self.tunable.iter().map(|(key, value)| Tunable::unbounded(*key, *value)).collect()
-    }
-
-    fn any(&self) -> Option<&dyn Any> {
-        Some(&self.object)
     }
 }
 
