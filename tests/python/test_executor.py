@@ -356,23 +356,6 @@ def test_the_death_of_a_scheduler_is_an_error(study: Scenario, tmp_path: Path) -
         assert ran.returncode == 0, ran.stderr.decode()
 
 
-def test_a_client_that_closes_between_two_checks_is_a_lost_scheduler(study: Scenario) -> None:
-    class Closed:
-        """A client that has given up its scheduler: it takes no tasks any more."""
-
-        status = "closed"
-
-        def nthreads(self) -> dict[str, int]:
-            return {"worker": 1}
-
-        def submit(self, *_: object, **__: object) -> None:
-            raise RuntimeError("Client is closed. Can't send update-graph message.")
-
-    dask = pytest.importorskip("flexsc.dask")
-    with pytest.raises(OSError, match="the connection to the scheduler is lost"):
-        dask.campaign(Closed(), study, 10)
-
-
 @pytest.mark.parametrize("signal_number", [signal.SIGTERM, signal.SIGKILL])
 def test_a_command_that_ends_takes_its_python_along(
     study: Scenario, tmp_path: Path, signal_number: signal.Signals

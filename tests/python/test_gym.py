@@ -1,9 +1,11 @@
 """Environments: accepted by the checkers, many as each alone, ends of episodes, a study's table."""
 
 import doctest
+import sys
 import warnings
 from collections.abc import Iterator
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 import flexsc
@@ -15,7 +17,13 @@ from test_stepping import UNCERTAIN
 
 gymnasium = pytest.importorskip("gymnasium")
 
-from flexsc.gym import Beyond, Quadratic, SpacecraftEnv, SpacecraftVectorEnv  # noqa: E402
+from flexsc.gym import (  # noqa: E402
+    Beyond,
+    Quadratic,
+    SpacecraftEnv,
+    SpacecraftVectorEnv,
+    stable_baselines,
+)
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 
 UNBOUNDED = "ignore:.*A Box observation space m"
@@ -213,3 +221,54 @@ def test_the_examples_of_the_docstrings_run() -> None:
     told = doctest.testmod(module, extraglobs={"flexsc": flexsc})
     assert told.attempted > 8
     assert not told.failed
+
+
+class _VecEnv:
+    """The base class of Stable-Baselines3's vector environments: what its constructor does."""
+
+    def __init__(self, num_envs: int, observation_space: Any, action_space: Any) -> None:
+        self.num_envs, self.observation_space, self.action_space = num_envs, observation_space, action_space
+        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(num_envs)]
+        self._seeds: list[int | None] = [None] * num_envs
+        self._options: list[dict[str, Any]] = [{} for _ in range(num_envs)]
+        self.render_mode = self.get_attr("render_mode")[0]
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        raise NotImplementedError
+
+
+def test_episodes_of_stable_baselines_are_those_of_the_vector_environment(
+    uncertain: flexsc.Scenario, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    module: Any = ModuleType("stable_baselines3.common.vec_env")
+    module.VecEnv = _VecEnv
+    for name in ("stable_baselines3", "stable_baselines3.common"):
+        monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    venv = stable_baselines(uncertain, 3, dt=1.0, metrics=["goal"])
+    envs = SpacecraftVectorEnv(uncertain, 3, dt=1.0, autoreset_mode="SameStep", metrics=["goal"])
+    venv._seeds = [4, 5, 6]
+    expected, info = envs.reset(seed=4)
+    np.testing.assert_array_equal(venv.reset(), expected)
+    assert [each["run"] for each in venv.reset_infos] == info["run"].tolist()
+    actions = np.zeros((3, 3))
+    for step in range(5):
+        venv.step_async(actions)
+        observations, rewards, done, infos = venv.step_wait()
+        expected, expected_rewards, terminated, truncated, info = envs.step(actions)
+        np.testing.assert_array_equal(observations, expected)
+        np.testing.assert_array_equal(rewards, expected_rewards.astype(np.float32))
+        assert done.tolist() == (terminated | truncated).tolist() == [step == 4] * 3
+    for index, told in enumerate(infos):
+        np.testing.assert_array_equal(told["terminal_observation"], info["final_obs"][index])
+        assert told["TimeLimit.truncated"]
+        assert told["metrics"]["goal"] == info["final_info"]["metrics"]["goal"][index]
+        assert venv.reset_infos[index] == {"run": info["run"][index]}
+    assert venv.get_attr("num_envs", 1) == [3]
+    assert venv.env_is_wrapped(_VecEnv) == [False] * 3
+
+
+def test_stable_baselines_must_be_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "stable_baselines3", None)
+    with pytest.raises(ImportError, match=r"needs stable-baselines3: pip install stable-baselines3"):
+        stable_baselines("four-clamped-modes", dt=1.0, limit=1.0)

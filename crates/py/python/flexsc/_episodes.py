@@ -239,6 +239,17 @@ class Task:
         return {name: of_run[name] for name in self.metrics}
 
 
+def drawn_run(random: np.random.Generator) -> int:
+    """Return the run number of the next episode."""
+    return int(random.integers(2**63))
+
+
+def with_success(metrics: dict[str, Any]) -> dict[str, Any]:
+    """Return the info of an episode that has ended: its metrics, and whether its goal is met."""
+    goal = {"is_success": metrics["goal"] == "met"} if "goal" in metrics else {}
+    return {"metrics": metrics, **goal}
+
+
 class QuickStep:
     """A step of one environment with named observations, a quadratic reward and limits, in few NumPy calls.
 

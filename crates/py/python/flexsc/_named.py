@@ -38,9 +38,13 @@ class Named(dict[str, _Value]):
         raise no_such(self._what, name, self)
 
 
-def library(name: str, user: str) -> Any:
-    """Import an optional library for a method, or raise an ImportError that says how to install it."""
+def library(name: str, user: str, package: str | None = None) -> Any:
+    """Import an optional library for a method, or raise an ImportError that says how to install it.
+
+    `package` is the name under which it is installed, if that is not `name`.
+    """
     try:
         return import_module(name)
     except ImportError as error:
-        raise ImportError(f"{user} needs {name}: pip install {name}") from error
+        package = package or name
+        raise ImportError(f"{user} needs {package}: pip install {package}") from error

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
 def adapted(envs: SpacecraftVectorEnv) -> Any:
     """Return environments that start their next episode in the same step as a `VecEnv`."""
-    vec_env = library("stable_baselines3.common.vec_env", "flexsc.gym.stable_baselines")
+    user, package = "flexsc.gym.stable_baselines", "stable-baselines3"
+    vec_env = library("stable_baselines3.common.vec_env", user, package)
     kind: Any = type("StableBaselines", (_Methods, vec_env.VecEnv), {})
     return kind(envs)
 
