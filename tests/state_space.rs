@@ -278,7 +278,7 @@ fn names_that_do_not_fit_are_refused() {
     }
 }
 
-/// The shipped LQG law meets its goal, and damps the mode of 2.07 rad/s.
+/// The shipped LQG law ends at its goal, and its states are in the log.
 #[test]
 fn the_shipped_law_meets_its_goal() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/earth-observer-lqg.toml");

@@ -272,3 +272,38 @@ def test_stable_baselines_must_be_installed(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setitem(sys.modules, "stable_baselines3", None)
     with pytest.raises(ImportError, match=r"needs stable-baselines3: pip install stable-baselines3"):
         stable_baselines("four-clamped-modes", dt=1.0, limit=1.0)
+
+
+def test_the_result_of_an_episode_is_that_of_its_commands(uncertain: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(uncertain, dt=1.0, metrics=["goal", "pointing_error_end_rad"])
+    _, info = env.reset(seed=2)
+    sim = flexsc.Simulator(uncertain.draw(info["run"]), info["run"])
+    for step in range(5):
+        action = np.array([0.2, -0.1, 0.05]) * (-1.0) ** step
+        *_, truncated, told = env.step(action)
+        sim.step(action * sim.command_limit, 1.0)
+        assert truncated == (step == 4)
+    expected = sim.result("none").metrics
+    assert env.result("none").metrics == expected
+    assert told["metrics"] == {name: expected[name] for name in ("goal", "pointing_error_end_rad")}
+    assert told["is_success"] == (expected["goal"] == "met")
+    envs = SpacecraftVectorEnv(uncertain, 2, dt=1.0)
+    envs.reset(seed=2)
+    envs.step(np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="keep_commands"):
+        envs.result(0)
+
+
+def test_scales_are_those_of_the_fastest_way_to_the_goal() -> None:
+    scenario = shipped("four-clamped-modes")
+    observed = SpacecraftEnv(scenario, dt=1.0, limit=1.0).observed
+    assert isinstance(observed, dict)
+    sim = flexsc.Simulator(scenario)
+    error, rate = np.linalg.norm(sim.state["error"]), np.linalg.norm(sim.state["rate"])
+    # From the error at rest to rest at the goal: half the way at full torque, half against it.
+    inertia = np.array(scenario.get("spacecraft.inertia"))
+    slowest, fastest = 1.0 / np.linalg.eigvalsh(inertia)[[-1, 0]]
+    assert set(observed) == {"believed.error", "believed.rate"}
+    assert observed["believed.error"] >= 0.95 * error
+    assert observed["believed.rate"] >= 0.95 * rate
+    assert np.sqrt(error * slowest) / 2.0 < observed["believed.rate"] < 2.0 * np.sqrt(3.0 * error * fastest)
