@@ -251,7 +251,7 @@ def test_episodes_of_stable_baselines_are_those_of_the_vector_environment(
     expected, info = envs.reset(seed=4)
     np.testing.assert_array_equal(venv.reset(), expected)
     assert [each["run"] for each in venv.reset_infos] == info["run"].tolist()
-    actions = np.zeros((3, 3))
+    actions, infos = np.zeros((3, 3)), []
     for step in range(5):
         venv.step_async(actions)
         observations, rewards, done, infos = venv.step_wait()
@@ -278,6 +278,7 @@ def test_the_result_of_an_episode_is_that_of_its_commands(uncertain: flexsc.Scen
     env = SpacecraftEnv(uncertain, dt=1.0, metrics=["goal", "pointing_error_end_rad"])
     _, info = env.reset(seed=2)
     sim = flexsc.Simulator(uncertain.draw(info["run"]), info["run"])
+    told: dict[str, Any] = {}
     for step in range(5):
         action = np.array([0.2, -0.1, 0.05]) * (-1.0) ** step
         *_, truncated, told = env.step(action)
