@@ -254,10 +254,7 @@ def test_the_command_hands_a_campaign_to_a_scheduler(study: Scenario, whole: Tab
     worker = ("worker", "--no-nanny", "--nthreads", "1")
     try:
         start("scheduler", "--host", "127.0.0.1", "--port", "0")
-        deadline = time.monotonic() + 60.0
-        while not told.exists() and time.monotonic() < deadline:
-            time.sleep(0.1)
-        address = json.loads(told.read_text())["address"]
+        address = _address(told)
         first = start(*worker)
         start(*worker)
         command = [command_path(), "simulate", "study.toml", "--runs", "600", "-o", "out"]
@@ -283,6 +280,14 @@ def test_the_command_hands_a_campaign_to_a_scheduler(study: Scenario, whole: Tab
     assert b"leave out --json" in ran.stderr
 
 
+def _address(told: Path) -> str:
+    """Return the address in a scheduler's file, which exists a moment before it is written."""
+    deadline = time.monotonic() + 60.0
+    while not (told.exists() and told.read_text().rstrip().endswith("}")) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    return str(json.loads(told.read_text())["address"])
+
+
 def _scheduler(path: Path) -> tuple[list[subprocess.Popen[bytes]], str]:
     """Start a scheduler and a worker, each a process of its own; the scheduler is the first."""
     told = path / "scheduler.json"
@@ -294,10 +299,7 @@ def _scheduler(path: Path) -> tuple[list[subprocess.Popen[bytes]], str]:
         )
         for arguments in (("scheduler", "--host", "127.0.0.1", "--port", "0"), ("worker", "--no-nanny"))
     ]
-    deadline = time.monotonic() + 60.0
-    while not told.exists() and time.monotonic() < deadline:
-        time.sleep(0.1)
-    return begun, json.loads(told.read_text())["address"]
+    return begun, _address(told)
 
 
 def _impatient() -> dict[str, str]:
