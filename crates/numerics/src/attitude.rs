@@ -19,6 +19,11 @@ pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 pub struct Attitude(Quaternion<f64>);
 
 impl Attitude {
+    /// Returns the attitude of a quaternion of about length 1.
+    pub fn new(quaternion: Quaternion<f64>) -> Self {
+        Self(quaternion / quaternion.norm())
+    }
+
     /// Returns the quaternion, of length 1.
     pub const fn get(self) -> Quaternion<f64> {
         self.0

@@ -10,8 +10,8 @@ use super::run_events::RunEvents;
 use super::three_axis::{self, CycleData};
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drives, envelope, estimate,
-    extra_loop, flywheel, frequency, gain, gimbals, hinges, identified_frequencies, magnetorquers,
-    manoeuvre_torque, modes, orbit, outputs, phase_plane, pointing, torque, torques, wheels,
+    extra_loop, flywheel, frequency, gain, gimbals, hinges, identified_frequencies, line_of_sight,
+    magnetorquers, manoeuvre_torque, modes, orbit, outputs, phase_plane, pointing, torque, torques, wheels,
 };
 
 /// A figure.
@@ -57,6 +57,8 @@ pub enum FigureKind {
     Magnetorquers,
     /// Three axes: readings of the accelerometers
     Accelerations,
+    /// Three axes: error of each line of sight, and displacement of its point
+    LineOfSight,
     /// Three axes in orbit: magnetic field, nadir and Sun in body axes, and the eclipse
     Orbit,
     /// Rotating appendages: drive angles and natural frequencies
@@ -120,6 +122,7 @@ impl FigureKind {
             Self::Drives => story.scenario.study.articulation().is_some(),
             Self::Hinges => story.scenario.study.hinges() > 0,
             Self::Accelerations => accelerations::applies_to(story),
+            Self::LineOfSight => line_of_sight::applies_to(story),
             Self::Consistency if is_three_axis => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
             }
@@ -163,6 +166,7 @@ impl FigureKind {
             Self::Drives => drives::figure(story, cycles),
             Self::Hinges => hinges::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),
+            Self::LineOfSight => line_of_sight::figure(story, cycles),
             Self::Frequency if cycles.rows::<ElasticEstimates>().next().is_some() => {
                 identified_frequencies::figure(story, cycles)
             }

@@ -23,6 +23,7 @@ mod gimbals;
 mod hinges;
 mod identified_frequencies;
 mod interpolation;
+mod line_of_sight;
 mod magnetorquers;
 mod manoeuvre_torque;
 mod modes;

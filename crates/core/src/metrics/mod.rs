@@ -5,6 +5,7 @@ mod attitude;
 mod envelope;
 mod filter;
 pub mod goal;
+mod line_of_sight;
 mod rotation;
 mod selection;
 mod switchings;
@@ -27,6 +28,7 @@ use adaptation::AdaptationMetrics;
 use attitude::AttitudeMetrics;
 use envelope::EnvelopeMetrics;
 use filter::FilterMetrics;
+use line_of_sight::LineOfSightMetrics;
 use rotation::ManoeuvreMetrics;
 pub use rotation::{LaneManoeuvreMetrics, LanePiece};
 use switchings::RelayMetrics;
@@ -191,6 +193,14 @@ metrics! {
         "Whether pointing_rms_rad is at most reference.pointing.rms: met or missed, none without cycles in the window";
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
         "Root mean square reading of each accelerometer (norm over its axes)";
+    SIGHT_RMS = "line_of_sight_rms_rad", "rad",
+        "Root mean square angle between each line of sight and its target direction, over the samples in its window; null without samples";
+    SIGHT_PEAK = "line_of_sight_peak_rad", "rad",
+        "Largest angle between each line of sight and its target direction, over the samples in its window; null without samples";
+    SIGHT_JITTER = "line_of_sight_jitter_rms_rad", "rad",
+        "Root mean square deviation of each line of sight from its mean over each jitter_window, over the whole windows; null without one";
+    POINT_DISPLACEMENT = "point_displacement_peak_m", "m",
+        "Largest displacement of the point of each line of sight by vibration, relative to the hub, over the samples in its window; null without samples";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
         "Estimated natural frequency of each mode, at the last cycle: those tracked by an adaptive observer, ordered by axis, then by frequency, or those that an attitude filter identifies";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",
@@ -238,6 +248,7 @@ pub struct MetricsCollector {
     adapted: Option<AdaptationMetrics>,
     windows: Option<EnvelopeMetrics>,
     tracked: ObserverMetrics,
+    sights: LineOfSightMetrics,
 }
 
 /// Collector for the kind of the run.
@@ -275,6 +286,7 @@ impl MetricsCollector {
             adapted: AdaptationMetrics::new(scenario),
             windows: EnvelopeMetrics::if_not_collected_elsewhere(scenario),
             tracked: ObserverMetrics::new(scenario),
+            sights: LineOfSightMetrics::new(scenario),
         }
     }
 
@@ -299,6 +311,7 @@ impl MetricsCollector {
             RunKind::Rotation(rotation) => rotation.finish(),
             RunKind::ThreeAxis(rotation) => rotation.finish(),
         };
+        metrics.extend(self.sights.finish());
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
         metrics.extend(self.known.into_iter().flat_map(AttitudeMetrics::finish));
@@ -366,6 +379,7 @@ impl Record for MetricsCollector {
                 } else {
                     sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
+                    sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                 }
                 sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
                 Ok(())

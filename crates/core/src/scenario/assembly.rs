@@ -3,9 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_control::law::AttitudeProfile;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::craft::{AssembledSpacecraft, Spacecraft};
-use flexsc_spacecraft::body::{Body, BodyModel};
+use flexsc_spacecraft::body::{Body, BodyModel, StartValue};
 
 use super::{Scenario, ScenarioSpec};
 
@@ -20,7 +22,7 @@ impl ScenarioSpec {
     ) -> Result<BodyModel, ScenarioError> {
         let refused = |fault: ConfigError| document.at_key(&fault);
         let key = self.body_key();
-        match (&mut self.body, self.spacecraft.clone()) {
+        let mut model = match (&mut self.body, self.spacecraft.clone()) {
             (_, None) if !self.appendage.is_empty() => {
                 let why = "is clamped to the hub of a `[spacecraft]`, and there is none";
                 Err(refused(ConfigError::new("appendage", why)))
@@ -33,6 +35,27 @@ impl ScenarioSpec {
                 single_body(body, parent, directory).map_err(|fault| refused(fault.within(&key)))
             }
             (None, Some(spacecraft)) => self.craft(&spacecraft, parent, directory).map_err(refused),
+        }?;
+        self.place_at_start(&mut model);
+        Ok(model)
+    }
+
+    /// Sets the attitude and the rates of a three-axis model at the start, which can be those of the target.
+    fn place_at_start(&self, model: &mut BodyModel) {
+        let spatial = || match self.body.as_ref()? {
+            Body::Spatial(body) => Some(body.initial_motion()),
+            _ => None,
+        };
+        let Some(initial) = self.spacecraft.as_ref().map(Spacecraft::initial_motion).or_else(spatial) else {
+            return;
+        };
+        if matches!((initial.attitude, initial.rate), (StartValue::Written(_), StartValue::Written(_))) {
+            return;
+        }
+        let profile = AttitudeProfile::new(self.targets(), &self.orbit_environment(), &model.free_modes());
+        let motion = initial.resolve(&profile.at(Instant::START));
+        if let Some(body) = model.three_axis_mut() {
+            (body.attitude, body.rate) = motion;
         }
     }
 

@@ -139,6 +139,11 @@ impl ScenarioSpec {
         let tables = [
             ("target", !self.target.is_empty(), "a `[manoeuvre]` turns a body with one angle"),
             ("environment", self.environment.is_some(), "a `[[disturbance]]` acts on a body with one angle"),
+            (
+                "line_of_sight",
+                !self.line_of_sight.is_empty(),
+                "the angle, or an output, is that of a body with one angle",
+            ),
         ];
         let (key, _, instead) = tables.into_iter().find(|(_, is_given, _)| *is_given)?;
         let kind = self.body_kind();

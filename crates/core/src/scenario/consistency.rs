@@ -13,7 +13,7 @@ use flexsc_spacecraft::body::craft::RateLimit;
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
-use super::{Scenario, file_name, meant};
+use super::{LineOfSight, Scenario, file_name, meant};
 
 impl Scenario {
     /// Checks that the keys are consistent with each other.
@@ -110,8 +110,17 @@ impl Scenario {
             .or_else(|| self.timing_inconsistency(unmet))
             .or_else(|| self.rate_inconsistency())
             .or_else(|| self.validate_drift())
+            .or_else(|| self.validate_lines_of_sight(body, offers))
             .or_else(|| unmet.first_of(Rule::EnvelopeModes..=Rule::Filter))
             .or_else(|| self.validate_adaptation(offers))
+    }
+
+    /// Checks the lines of sight.
+    fn validate_lines_of_sight(&self, body: &ThreeAxisModel, offers: &Offers) -> Option<ConfigError> {
+        let fault = |(index, line): (usize, &LineOfSight)| {
+            Some(line.fault(body, offers)?.within(&format!("line_of_sight[{index}]")))
+        };
+        self.line_of_sight.iter().enumerate().find_map(fault)
     }
 
     /// Checks that a spacecraft does not rotate faster than the limit of its modal model.

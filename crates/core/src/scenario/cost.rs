@@ -232,6 +232,9 @@ impl Scenario {
                 }
             }
         }
+        for (index, line) in self.line_of_sight.iter().enumerate() {
+            each(format!("line_of_sight[{index}].period"), duration, line.period);
+        }
         for axis in 0..self.axis_count() {
             if let Some(period) = self.law.about(axis).period() {
                 each(format!("{}.period", self.law.key_about(axis)), duration, period);

@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
-use super::{LogSpec, Reference, epoch};
+use super::{LineOfSight, LogSpec, Reference, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
@@ -85,6 +85,9 @@ pub struct ScenarioSpec {
     /// inertial axes. A law `phase_plane` may have targets of its own.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub target: Vec<AttitudeTarget>,
+    /// Lines of sight of instruments on a body with three axes, which are recorded and assessed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub line_of_sight: Vec<LineOfSight>,
     /// Reference values for the metrics.
     #[serde(default, skip_serializing_if = "Reference::is_empty")]
     pub reference: Reference,

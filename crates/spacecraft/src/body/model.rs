@@ -51,6 +51,15 @@ impl BodyModel {
         if let BodyAxes::Three(body) = self.axes() { Some(body) } else { None }
     }
 
+    /// Returns the body in free modes for a change, if it has three axes.
+    pub fn three_axis_mut(&mut self) -> Option<&mut ThreeAxisModel> {
+        match self {
+            Self::OneAxis(_) | Self::Chain(..) => None,
+            Self::ThreeAxis(body) => Some(Arc::make_mut(body)),
+            Self::Spacecraft(craft) => Some(&mut Arc::make_mut(craft).model),
+        }
+    }
+
     /// Returns the exact chain, if the panels bend by any angles.
     pub fn chain(&self) -> Option<&Chain> {
         if let Self::Chain(_, chain) = self { Some(chain) } else { None }

@@ -55,6 +55,17 @@ pub fn tabs(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<Tab> {
         let title = format!("Specific force at {name} (m/s²)");
         motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
+    for sight in scenario.line_of_sight.iter().take(1) {
+        let axis = |(axis, name): (usize, &str)| {
+            line(format!("/line_of_sight.axes[{axis}].error_rad"), format!("about {name}"))
+        };
+        let title = format!("Error of the line of sight of {} (rad)", sight.point);
+        motion.push(LayoutPanel::plot(
+            "line of sight",
+            title,
+            ["x", "y", "z"].into_iter().enumerate().map(axis).collect(),
+        ));
+    }
     if scenario.study.wheels.is_some() {
         let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len());
         motion.extend(declared::panels(&Wheels::TOPIC, count));

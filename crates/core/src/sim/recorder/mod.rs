@@ -6,6 +6,7 @@ mod cycle_rows;
 mod failures;
 mod journal;
 mod journal_events;
+mod lines_of_sight;
 mod manoeuvre_end;
 mod motion_rows;
 mod reports;
@@ -24,6 +25,7 @@ use bearing_rows::BearingRows;
 use cycle_rows::CycleRows;
 use failures::Failures;
 use journal_events::JournalEvents;
+use lines_of_sight::LinesOfSight;
 use manoeuvre_end::ManoeuvreEnd;
 use motion_rows::MotionRows;
 use scene_frames::SceneFrames;
@@ -38,6 +40,7 @@ pub struct Recorder {
     /// Pending end of the manoeuvre, if any.
     manoeuvre_end: Option<ManoeuvreEnd>,
     accelerometers: Accelerometers,
+    lines_of_sight: LinesOfSight,
     failures: Failures,
     frames: SceneFrames,
 }
@@ -52,6 +55,7 @@ impl Recorder {
             bearings: BearingRows::default(),
             manoeuvre_end: ManoeuvreEnd::new(scenario, &guidance.setpoint),
             accelerometers: Accelerometers::new(scenario, run),
+            lines_of_sight: LinesOfSight::new(scenario),
             failures: Failures::new(scenario),
             frames: SceneFrames::default(),
         }
@@ -65,6 +69,7 @@ impl Recorder {
             self.frames.due(),
             self.failures.due(),
             self.accelerometers.due(),
+            self.lines_of_sight.due(),
         ];
         due.into_iter().flatten().min()
     }
@@ -119,6 +124,7 @@ impl Recorder {
         self.bearings.record_events(run, &self.journal, record)?;
         self.failures.record_due(run.now, &self.journal, record)?;
         self.accelerometers.record_due(run, record)?;
+        self.lines_of_sight.record_due(run, record)?;
         if is_cycle {
             self.cycles.record(run, &mut self.journal, record)?;
         }

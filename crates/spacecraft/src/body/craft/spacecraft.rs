@@ -6,8 +6,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mass::MassProperties;
-use crate::body::SmallAngles;
+use crate::body::initial_motion::is_zero;
 use crate::body::spatial::NamedPoint;
+use crate::body::{InitialMotion, SmallAngles, StartValue};
 
 /// A spacecraft: the rigid hub, to which appendages are clamped.
 ///
@@ -22,13 +23,20 @@ pub struct Spacecraft {
     pub centre: [Finite; 3],
     /// Inertia tensor of the hub alone about its centre of mass, with wheels locked in it (kg m²), row by row.
     pub inertia: [[Finite; 3]; 3],
-    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones.
+    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones, or
+    /// `"target"` for that of the target.
     #[serde(default)]
-    pub attitude: Attitude,
-    /// Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they are the rates of the
-    /// hub.
+    pub attitude: StartValue<Attitude>,
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub attitude_error: [Finite; 3],
+    /// Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of the target;
+    /// without vibration they are the rates of the hub.
     #[serde(default)]
-    pub rate: [Finite; 3],
+    pub rate: StartValue<[Finite; 3]>,
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rate_error: [Finite; 3],
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,
@@ -41,6 +49,17 @@ pub struct Spacecraft {
 }
 
 impl Spacecraft {
+    /// Returns the attitude and rates at the start, as written.
+    pub const fn initial_motion(&self) -> InitialMotion {
+        let Self { attitude, attitude_error, rate, rate_error, .. } = self;
+        InitialMotion {
+            attitude: *attitude,
+            attitude_error: *attitude_error,
+            rate: *rate,
+            rate_error: *rate_error,
+        }
+    }
+
     /// Returns the mass properties of the hub.
     pub(super) fn mass_properties(&self) -> MassProperties {
         MassProperties { mass: self.mass.get(), centre: vector(&self.centre), inertia: tensor(&self.inertia) }

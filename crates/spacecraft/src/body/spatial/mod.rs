@@ -19,7 +19,9 @@ use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::SmallAngles;
+use super::initial_motion::is_zero;
+use super::{InitialMotion, SmallAngles, StartValue};
+use crate::manoeuvre::AttitudeMotion;
 
 pub use disturbance::Periodic;
 pub use modes::SpatialModes;
@@ -30,12 +32,19 @@ pub use modes::SpatialModes;
 pub struct Spatial {
     /// Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite.
     pub inertia: [[Finite; 3]; 3],
-    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones.
+    /// Attitude at the start, a unit quaternion \[w, x, y, z\] that turns vectors of the body into inertial ones, or
+    /// `"target"` for that of the target.
     #[serde(default)]
-    pub attitude: Attitude,
-    /// Rates at the start (rad/s), in the body's axes.
+    pub attitude: StartValue<Attitude>,
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub attitude_error: [Finite; 3],
+    /// Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
     #[serde(default)]
-    pub rate: [Finite; 3],
+    pub rate: StartValue<[Finite; 3]>,
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rate_error: [Finite; 3],
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,
@@ -98,10 +107,12 @@ impl From<&Spatial> for ThreeAxisModel {
             position: vector(&point.position),
             shapes: body.modes.iter().map(|mode| shape(mode, point)).collect(),
         };
+        let (attitude, rate) =
+            body.initial_motion().resolve(&AttitudeMotion::at_rest(Attitude::default().get()));
         Self {
             inertia: tensor(&body.inertia),
-            attitude: body.attitude,
-            rate: body.rate,
+            attitude,
+            rate,
             points: body.points.iter().map(point).collect(),
             modes: body.modes.iter().map(mode).collect(),
             small_angles: body.small_angles.map(Into::into),
@@ -113,6 +124,17 @@ impl From<&Spatial> for ThreeAxisModel {
 }
 
 impl Spatial {
+    /// Returns the attitude and rates at the start, as written.
+    pub const fn initial_motion(&self) -> InitialMotion {
+        let Self { attitude, attitude_error, rate, rate_error, .. } = self;
+        InitialMotion {
+            attitude: *attitude,
+            attitude_error: *attitude_error,
+            rate: *rate,
+            rate_error: *rate_error,
+        }
+    }
+
     /// Returns the model of the body, after checking that its values are consistent with each other.
     ///
     /// # Errors

@@ -1,0 +1,80 @@
+//! Line of sight of a point of the structure: where an instrument looks, how often it is recorded, and its assessment.
+
+use flexsc_control::offers::Offers;
+use flexsc_control::requirement::OFF_HUB;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, Positive, Time};
+use flexsc_numerics::time::Span;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Part of a sample by which a rounded window may miss the next one.
+const ROUNDING: f64 = 1e-9;
+
+/// Line of sight of an instrument at a named point of a three-axis body, which is recorded and assessed. Nothing in the
+/// control loop reads it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LineOfSight {
+    /// Point of the structure at which the instrument is mounted.
+    pub point: String,
+    /// Direction of the line of sight, of any length, in the body's axes with the structure undeformed.
+    #[serde(default = "z_axis")]
+    pub axis: [Finite; 3],
+    /// Period of its samples (s).
+    pub period: Span,
+    /// Start and end (s) of the interval in which it is assessed; default: the whole run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window: Option<[Time; 2]>,
+    /// Length (s) of the windows within which jitter is assessed, such as an exposure time: the deviation from the
+    /// mean over each window. Default: no jitter is assessed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub jitter_window: Option<Positive>,
+}
+
+fn z_axis() -> [Finite; 3] {
+    [Finite::default(), Finite::default(), Finite::new(1.0).unwrap_or_default()]
+}
+
+impl LineOfSight {
+    /// Returns the direction of the line of sight in the undeformed body, as a unit vector.
+    pub fn direction(&self) -> Vector {
+        vector(&self.axis).normalize()
+    }
+
+    /// Returns true if a sample at a time (s) is assessed.
+    pub fn is_assessed(&self, t: f64) -> bool {
+        self.window.is_none_or(|[from, to]| from.get() <= t && t <= to.get())
+    }
+
+    /// Returns the number of samples in a window of the jitter, if it is assessed.
+    pub fn jitter_samples(&self) -> Option<u64> {
+        self.jitter_window.map(|window| (window.get() / self.period.seconds() + ROUNDING) as u64)
+    }
+
+    /// Checks the line of sight on a three-axis body; returns the inconsistent key and the reason.
+    pub(super) fn fault(&self, body: &ThreeAxisModel, offers: &Offers) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        if body.point(&self.point).is_none() {
+            let points = body.point_names();
+            return at("point", format!("must be one of the body's points, {points}, got `{}`", self.point));
+        }
+        if !offers.body.has_motion_at(&self.point) {
+            return at("point", OFF_HUB.to_owned());
+        }
+        if self.axis.iter().all(|part| part.get() == 0.0) {
+            return at("axis", "must not be zero, got [0, 0, 0]".to_owned());
+        }
+        if let Some([from, to]) = self.window.map(|window| window.map(Time::get))
+            && from >= to
+        {
+            return at("window", format!("must be [from, to] in this order, got [{from}, {to}]"));
+        }
+        self.jitter_samples().filter(|samples| *samples < 2)?;
+        let (window, period) = (self.jitter_window?.get(), self.period.seconds());
+        let why = format!("must contain at least two samples, which are {period} s apart, got {window} s");
+        at("jitter_window", why)
+    }
+}
