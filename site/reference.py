@@ -54,7 +54,7 @@ class Keys:
         text = (
             "# Every key of a scenario\n\n"
             "This page is made from the JSON Schema that `flexsc schema` prints, so no key is missing. "
-            "[The scenario file](../scenario.md) explains how the parts work together.\n\n"
+            "[The scenario file](../scenario/index.md) explains how the parts work together.\n\n"
             f"## At the top\n\n{rows}\n"
         )
         for title, doc, body in self.sections:
