@@ -38,9 +38,7 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Puts an anchor at each key, drops the marks of numbers, and turns links to files outside docs/ into links
-    to the repository.
-    """
+    """Adds anchors of keys, drops the marks of numbers, and links files outside docs/ in the repository."""
     if page.file.src_uri.startswith("scenario/"):
         markdown = KEYS.anchored(page.file.name + ".md", markdown)
     above = "../" * (1 + page.file.src_uri.count("/"))

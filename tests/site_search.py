@@ -33,7 +33,7 @@ def keys() -> Iterator[str]:
 class Search:
     """The index, with the order that matters here.
 
-    First is the title with the most words searched for, then with the fewest others, then the page that ranks higher.
+    First is the title with the most words searched for, then with the fewest others, then the higher page.
     """
 
     def __init__(self, path: Path) -> None:
@@ -86,7 +86,7 @@ def main() -> None:
         if search.best(query)["location"] != location:
             sys.exit(f"a search for {query} finds {search.best(query)['location']}")
     for entry in search.entries:
-        # Made pages repeat the names of keys: an attribute `bandwidth` has a shorter title than the key's path.
+        # Made pages repeat the names of keys: an attribute `bandwidth` is shorter than the key's path.
         if re.match(r"reference/(keys|python)\.", entry["location"]) and entry.get("boost", 1) > 0.5:
             sys.exit(f"{entry['location']} ranks as high as the reference of scenarios")
         if re.match(r"scenario/.*#.*\.", entry["location"]):
