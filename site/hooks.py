@@ -3,27 +3,32 @@
 from __future__ import annotations
 
 import html
+import json
 import re
 import sys
 from pathlib import Path
 from typing import Any
 
+import flexsc
 from latex2mathml.converter import convert
+from mkdocs.plugins import event_priority
 from mkdocs.structure.files import File, Files
 
 sys.path.insert(0, str(Path(__file__).parent))
 import reference
 import tutorials
+from scenario_keys import Keys
 
 ROOT = Path(__file__).resolve().parents[1]
 MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 # Comments that mark the numbers of a page for its test.
 MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
+KEYS = Keys(flexsc.schema())
 
 
 def on_files(files: Files, config: Any) -> Files:
     """Adds the pages that are made."""
-    for path, text in {**reference.pages(), "changelog.md": (ROOT / "CHANGELOG.md").read_text()}.items():
+    for path, text in {**reference.pages(KEYS), "changelog.md": (ROOT / "CHANGELOG.md").read_text()}.items():
         files.append(File.generated(config, path, content=text))
     for source in sorted((ROOT / "docs/tutorials").glob("*.py")):
         for path, content in tutorials.made(source).items():
@@ -33,7 +38,9 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Drops the marks of numbers, and turns links to files outside docs/ into links to the repository."""
+    """Adds anchors of keys, drops the marks of numbers, and links files outside docs/ in the repository."""
+    if page.file.src_uri.startswith("scenario/"):
+        markdown = KEYS.anchored(page.file.name + ".md", markdown)
     above = "../" * (1 + page.file.src_uri.count("/"))
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
 
@@ -56,3 +63,13 @@ def on_page_content(content: str, **_: Any) -> str:
         return f'<div class="formula">{drawn}</div>' if display == "block" else drawn
 
     return MATH.sub(formula, content)
+
+
+# After the index is written, and before it becomes a script.
+@event_priority(-50)
+def on_post_build(config: Any, **_: Any) -> None:
+    """Adds each key of a scenario to the index of the search."""
+    path = Path(config.site_dir) / "search/search_index.json"
+    index = json.loads(path.read_text("utf-8"))
+    index["docs"] += KEYS.entries()
+    path.write_text(json.dumps(index, separators=(",", ":")), "utf-8")

@@ -11,14 +11,17 @@ from pathlib import Path
 from typing import Any
 
 import flexsc
+from scenario_keys import Keys
 
 Schema = dict[str, Any]
+# A search finds the pages that describe a key before those that list it.
+BEHIND = "---\nsearch:\n  boost: 0.2\n---\n\n"
 
 
-def pages() -> dict[str, str]:
+def pages(keys: Keys) -> dict[str, str]:
     """The pages by their paths."""
     made = {
-        "keys": Keys(flexsc.schema()).page(),
+        "keys": Tables(keys).page(),
         "metrics": metrics(),
         "topics": topics(),
         "command": command(),
@@ -35,26 +38,28 @@ def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     )
 
 
-class Keys:
+class Tables:
     """A walk over the schema: a section for each table of a scenario, at the first place that has it."""
 
-    def __init__(self, schema: Schema) -> None:
-        self.schema = schema
+    def __init__(self, keys: Keys) -> None:
+        self.keys = keys
+        self.schema = keys.schema
         self.places: dict[str, str] = {}
         self.sections: list[tuple[str, str, str]] = []
 
     def page(self) -> str:
         top = [
-            self._row(key, of, key in self.schema.get("required", ()))
+            self._row("", key, of, key in self.schema.get("required", ()))
             for key, of in self.schema["properties"].items()
         ]
         for key, of in self.schema["properties"].items():
             self._inside(key, of)
         rows = table(("key", "form", "default", "meaning"), top)
         text = (
-            "# Every key of a scenario\n\n"
+            f"{BEHIND}# Every key of a scenario\n\n"
             "This page is made from the JSON Schema that `flexsc schema` prints, so no key is missing. "
-            "[The scenario file](../scenario.md) explains how the parts work together.\n\n"
+            "A key leads to its place in [the scenario file](../scenario/index.md), which explains how the "
+            "parts work together.\n\n"
             f"## At the top\n\n{rows}\n"
         )
         for title, doc, body in self.sections:
@@ -97,19 +102,23 @@ class Keys:
                 self._inside(path, variant)
         if "properties" in whole:
             required = whole.get("required", ())
-            rows = [self._row(key, value, key in required) for key, value in whole["properties"].items()]
+            rows = [
+                self._row(path, key, value, key in required) for key, value in whole["properties"].items()
+            ]
             if rows and (path, own) not in [(place, doc) for place, doc, _ in self.sections]:
                 body = table(("key", "form", "default", "meaning"), rows)
                 self.sections.append((f"`{header(path)}`", own, body))
             for key, value in whole["properties"].items():
                 self._inside(f"{path}.{key}", value)
 
-    def _row(self, key: str, of: Schema, needed: bool) -> tuple[str, ...]:
+    def _row(self, path: str, key: str, of: Schema, needed: bool) -> tuple[str, ...]:
         whole, _ = self._resolved(of)
         default = (
             "needed" if needed else short(whole["default"]) if whole.get("default") not in (None, "") else ""
         )
-        return f"`{key}`", self._form(of), default, of.get("description", whole.get("description", ""))
+        link = self.keys.link(f"{path}.{key}".replace("[]", "").lstrip("."))
+        name = f"[`{key}`]({link})" if link else f"`{key}`"
+        return name, self._form(of), default, of.get("description", whole.get("description", ""))
 
     def _form(self, of: Schema) -> str:
         whole, _ = self._resolved(of)
@@ -220,7 +229,7 @@ def command() -> str:
 
 def python() -> str:
     """A line for each public name, which mkdocstrings fills in."""
-    text = "# The Python module\n\n[Python](../python.md) is the way in; here is every name.\n\n"
+    text = f"{BEHIND}# The Python module\n\n[Python](../python.md) is the way in; here is every name.\n\n"
     for name in sorted(flexsc.__all__, key=str.lower):
         if not name.startswith("__"):
             text += f"::: flexsc.{name}\n\n"

@@ -5,11 +5,11 @@
 //! and a reason. The tables in docs/combinations.md are made here.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 use flexsc_core::numerics::attitude::{Vector, vector};
 use flexsc_core::{Scenario, ScenarioError};
 
+use crate::combination_tables::{Accepted, section, total};
 use crate::invariants::{
     External, Flown, energy_does_not_grow, metrics_are_numbers, momentum_is_that_of_rates_and_rotors,
     pieces_give_the_whole, torque_changes_the_momentum, torque_changes_the_rate,
@@ -63,55 +63,33 @@ struct Body<'a> {
     tolerance: f64,
 }
 
-/// The tables of what is accepted on a body, one of each law, and how many combinations that are; each is run.
-fn tables(body: &Body) -> (String, usize) {
+/// Returns what is accepted on a body; each combination is run.
+fn accepted(body: &Body) -> Accepted {
     // By what is wrong: how many, and the last of them.
-    let (mut accepted, mut wrong) = (0, BTreeMap::<String, (usize, String)>::new());
-    let mut tables = String::new();
-    for law in LAWS {
-        let mut rows = String::new();
-        for actuator in ACTUATORS {
-            let mut row = format!("| {} |", actuator.0);
-            let before = accepted;
-            for estimator in ESTIMATORS {
-                row.push(' ');
-                for sensor in SENSORS {
-                    match combined(body.text, law, sensor, estimator, actuator) {
-                        Ok(scenario) => {
-                            if let Err(why) = run(&scenario, body, law.0, actuator.0) {
-                                let (count, name) = wrong.entry(why).or_default();
-                                *count += 1;
-                                *name = [law.0, sensor.0, estimator.0, actuator.0].join(", ");
-                            }
-                            accepted += 1;
-                            row += sensor.1;
+    let mut wrong = BTreeMap::<String, (usize, String)>::new();
+    let accepted = LAWS.map(|law| {
+        ACTUATORS.map(|actuator| {
+            ESTIMATORS.map(|estimator| {
+                SENSORS.map(|sensor| match combined(body.text, law, sensor, estimator, actuator) {
+                    Ok(scenario) => {
+                        if let Err(why) = run(&scenario, body, law.0, actuator.0) {
+                            let (count, name) = wrong.entry(why).or_default();
+                            *count += 1;
+                            *name = [law.0, sensor.0, estimator.0, actuator.0].join(", ");
                         }
-                        Err(error) => {
-                            let text = error.to_string();
-                            assert!(text.contains('`') && text.len() > 40, "no reason: {text}");
-                        }
+                        true
                     }
-                }
-                row += if row.ends_with(' ') { "|" } else { " |" };
-            }
-            // An actuator that goes with nothing has no row.
-            if accepted > before {
-                rows += &row;
-                rows.push('\n');
-            }
-        }
-        if rows.is_empty() {
-            writeln!(tables, "### {}\n\nNot on this body.\n", law.0).expect("a text");
-            continue;
-        }
-        let head = ESTIMATORS.map(|kind| format!(" {} |", kind.0)).concat();
-        let rule = "---|".repeat(ESTIMATORS.len());
-        writeln!(tables, "### {}\n\n| actuator |{head}\n|---|{rule}\n{rows}", law.0).expect("a text");
-    }
+                    Err(error) => {
+                        let text = error.to_string();
+                        assert!(text.contains('`') && text.len() > 40, "no reason: {text}");
+                        false
+                    }
+                })
+            })
+        })
+    });
     assert!(wrong.is_empty(), "{}: {wrong:#?}", body.name);
-    tables.truncate(tables.trim_end().len());
-    tables.push('\n');
-    (tables, accepted)
+    accepted
 }
 
 /// Returns the torques of the jets on a body with this centre of mass (N m).
@@ -167,7 +145,6 @@ fn run(scenario: &Scenario, body: &Body, law: &str, actuator: &str) -> Result<()
 
 #[test]
 fn parts_combine_as_the_documents_say() {
-    let all = LAWS.len() * SENSORS.len() * ESTIMATORS.len() * ACTUATORS.len();
     let turning =
         SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =") + HINGED;
     let small = SPACECRAFT.replace("points =", "small_angles = {}\npoints =");
@@ -214,19 +191,19 @@ fn parts_combine_as_the_documents_say() {
             tolerance: 3e-3,
         },
     ];
-    let all_tables: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = bodies.iter().map(|body| scope.spawn(|| tables(body))).collect();
+    let all_accepted: Vec<Accepted> = std::thread::scope(|scope| {
+        let threads: Vec<_> = bodies.iter().map(|body| scope.spawn(|| accepted(body))).collect();
         threads
             .into_iter()
             .map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
             .collect()
     });
     let mut made = Vec::new();
-    for (body, (tables, accepted)) in bodies.iter().zip(all_tables) {
-        assert!(accepted >= body.least, "{}: {accepted}", body.name);
-        made.push(format!("## {}\n\n{accepted} of {all} combinations.\n\n{tables}", body.name));
+    for (body, accepted) in bodies.iter().zip(&all_accepted) {
+        assert!(total(accepted) >= body.least, "{}: {}", body.name, total(accepted));
+        made.push(section(body.name, accepted));
     }
-    let made = made.join("\n");
+    let made = format!("{}\n", made.concat().trim_end());
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/combinations.md");
     let kept = std::fs::read_to_string(path).expect("the document");
     let made_file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("combinations.md");

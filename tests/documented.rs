@@ -1,13 +1,13 @@
-//! Every key of a scenario is in docs/scenario.md, in the section that it belongs to.
+//! Every key of a scenario is in docs/scenario, in the section that it belongs to.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use flexsc_core::Scenario;
 use serde_json::Value as Json;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenario.md");
+const PAGES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenario");
 
-/// Section of a page: the tables of a scenario that its heading names, and the words in its code.
+/// Section of the reference: the tables of a scenario that its heading names, and the words in its code.
 struct Section {
     names: Vec<String>,
     words: BTreeSet<String>,
@@ -16,6 +16,13 @@ struct Section {
 /// Returns the words in a code.
 fn words(code: &str) -> impl Iterator<Item = String> + '_ {
     code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').map(str::to_owned)
+}
+
+/// Returns the pages of the reference, one after the other.
+fn pages() -> String {
+    let mut paths: Vec<_> = std::fs::read_dir(PAGES).expect("a folder").flatten().map(|e| e.path()).collect();
+    paths.sort();
+    paths.iter().map(|path| std::fs::read_to_string(path).expect("a page")).collect()
 }
 
 /// Returns the sections of a page.
@@ -84,12 +91,12 @@ fn walk(
 
 #[test]
 fn every_key_is_documented() {
-    let page = std::fs::read_to_string(PAGE).expect("documentation");
+    let page = pages();
     let (schema, mut keys) = (Scenario::schema(), BTreeMap::new());
     walk((&schema, &schema), ("", "Scenario"), &[], &sections(&page), &mut keys);
     let missing: Vec<&String> = keys.values().filter(|(known, _)| !known).map(|(_, path)| path).collect();
-    assert!(missing.is_empty(), "docs/scenario.md does not have {missing:?}");
-    // A key that is removed from the page is reported.
+    assert!(missing.is_empty(), "docs/scenario does not have {missing:?}");
+    // A key that is removed from its page is reported.
     let without = page.replace("`noise`", "`noises`");
     assert!(without != page && !has(&sections(&without), "sensor.sampled.noise"));
     assert!(keys.len() > 250 && has(&sections(&page), "sensor.sampled.noise"), "{}", keys.len());

@@ -74,6 +74,7 @@ mod unloading;
 
 // Semantics of the loop: instants, records, pieces, batches, failures, custom parts, every combination.
 mod beside;
+mod combination_tables;
 mod combinations;
 mod determinism;
 mod events;

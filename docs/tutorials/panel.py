@@ -70,7 +70,7 @@ assert abs(frequencies[0] / theory - 1) < 1e-4
 # ## The spacecraft
 #
 # The spacecraft has a hub, two such panels, three wheels, a gyro, a star tracker, an attitude filter and a law. The
-# scenario is given as a dictionary, whose keys are those of [the scenario file](../scenario.md).
+# scenario is given as a dictionary, whose keys are those of [the scenario file](../scenario/index.md).
 
 # %%
 modes = [

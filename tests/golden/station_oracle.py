@@ -72,7 +72,7 @@ def quaternion(roll, pitch, yaw):
 
 
 class Lines:
-    """Switching lines about an axis, as docs/scenario.md states them."""
+    """Switching lines about an axis, as docs/scenario/laws.md states them."""
 
     def __init__(self, law, jets, strength):
         self.slope, self.limit = 0.05, law["rate_limit"]

@@ -185,8 +185,8 @@ fn readme_has_the_numbers_of_its_commands() {
 }
 
 #[test]
-fn scenario_page_has_the_numbers_of_its_commands() {
-    tested("docs/scenario.md");
+fn page_of_estimators_has_the_numbers_of_its_commands() {
+    tested("docs/scenario/estimators.md");
 }
 
 #[test]
