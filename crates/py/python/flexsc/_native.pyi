@@ -273,23 +273,33 @@ class Hold:
         moment: float | None = None,
     ) -> Hold: ...
     @property
-    def torque(self) -> float | None: ...
+    def torque(self) -> float | None:
+        """Torque (N m; rad/s² for a body without inertia; for a wheel, units of its command), if it is
+        commanded."""
     @property
-    def acceleration(self) -> float | None: ...
+    def acceleration(self) -> float | None:
+        """Acceleration (rad/s²), if it is commanded."""
     @property
-    def change(self) -> float | None: ...
+    def change(self) -> float | None:
+        """Change of the rigid rate (rad/s), if it is commanded."""
     @property
-    def moment(self) -> float | None: ...
+    def moment(self) -> float | None:
+        """Magnetic moment (A m²), if it is commanded."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
     @property
-    def until(self) -> Instant | None: ...
+    def until(self) -> Instant | None:
+        """The instant of the next call, if it is given."""
     @property
-    def at_least(self) -> float | None: ...
+    def at_least(self) -> float | None:
+        """Angle (rad) from which on the law is called again, if it is given."""
     @property
-    def at_most(self) -> float | None: ...
+    def at_most(self) -> float | None:
+        """Angle (rad) down to which the law is called again, if it is given."""
     @property
-    def state(self) -> str: ...
+    def state(self) -> str:
+        """State of the law in the log, such as `PD`."""
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
     def __deepcopy__(self, _memo: object) -> Hold: ...
 
@@ -353,17 +363,23 @@ class ThreeAxisHold:
         state: str = "PD",
     ) -> ThreeAxisHold: ...
     @property
-    def torques(self) -> _Three | None: ...
+    def torques(self) -> _Three | None:
+        """Torques about each axis (N m), if they are commanded."""
     @property
-    def accelerations(self) -> _Three | None: ...
+    def accelerations(self) -> _Three | None:
+        """Accelerations about each axis (rad/s²), if they are commanded."""
     @property
-    def moments(self) -> _Three | None: ...
+    def moments(self) -> _Three | None:
+        """Magnetic moments along each axis (A m²), if they are commanded."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
     @property
-    def until(self) -> Instant | None: ...
+    def until(self) -> Instant | None:
+        """The instant of the next call, if it is given."""
     @property
-    def state(self) -> str: ...
+    def state(self) -> str:
+        """State of the law in the log, such as `PD`."""
     def __deepcopy__(self, _memo: object) -> ThreeAxisHold: ...
 
 @final
@@ -371,7 +387,9 @@ class Truth:
     """The true quantities that a sensor can measure at an instant."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `truth.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -420,17 +438,23 @@ class Reading:
         is_direction: bool = False,
     ) -> Reading: ...
     @property
-    def angle(self) -> float | None: ...
+    def angle(self) -> float | None:
+        """Measured angle (rad), of a sensor that measures it."""
     @property
-    def attitude(self) -> _Four | None: ...
+    def attitude(self) -> _Four | None:
+        """Measured attitude (w, x, y, z), of a sensor that measures it."""
     @property
-    def rate(self) -> _Three | None: ...
+    def rate(self) -> _Three | None:
+        """Measured rates about each axis (rad/s), of a sensor that measures them."""
     @property
-    def vector(self) -> _Three | None: ...
+    def vector(self) -> _Three | None:
+        """Measured vector in the body frame, of a sensor that measures one."""
     @property
-    def inertial(self) -> _Three | None: ...
+    def inertial(self) -> _Three | None:
+        """The same vector in the inertial frame."""
     @property
-    def is_direction(self) -> bool: ...
+    def is_direction(self) -> bool:
+        """True if the vector is a direction, whose length means nothing."""
     def __deepcopy__(self, _memo: object) -> Reading: ...
 
 @final
@@ -468,7 +492,9 @@ class Taken:
     """A sample with its context."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `taken.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -517,7 +543,9 @@ class Demanded:
     """The demands of the laws from now on."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `demanded.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -543,9 +571,11 @@ class Effort:
         cls, torques: Sequence[float] | npt.NDArray[np.float64], *, after: float | None = None
     ) -> Effort: ...
     @property
-    def torques(self) -> list[float]: ...
+    def torques(self) -> list[float]:
+        """Torques about each axis (N m)."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
 
 @final
 class Design:
