@@ -233,3 +233,12 @@ def test_logs_are_the_commands(sampled: Scenario, command: Command, tmp_path: Pa
     for wrong in ({"log": "events"}, {"log": "events", "out": "s3://bucket/a"}, {"log": "everything"}):
         with pytest.raises(ValueError, match="log "):
             flexsc.campaign(short, 3, **wrong)
+
+
+def test_a_row_has_the_plan_of_the_nominal_body() -> None:
+    slew = flexsc.Scenario.example("rotation-robust")
+    table = flexsc.campaign(slew, 3)
+    for place in range(3):
+        again = table.row(place).simulate("none").metrics
+        for name in ("angle_error_peak_rad", "settling_time_s", "peak_torque_nm"):
+            np.testing.assert_array_equal(again[name], table[name][place])
