@@ -315,35 +315,3 @@ def test_bad_arguments_are_told(uncertain: flexsc.Scenario) -> None:
 def test_the_number_of_copies_is_bounded() -> None:
     with pytest.raises(ValueError, match="runs must be at most 10000000"):
         flexsc.Simulators(shipped("relay-fixed"), 10**12)
-
-
-def test_many_continue_from_a_snapshot() -> None:
-    scenario = flexsc.Scenario(UNCERTAIN)
-    drawn = scenario.draw(7)
-    sim, sims = Simulator(drawn, 7), Simulators(scenario, 4, keep_commands=True)
-    sim.step([0.1, 0.0, -0.1], 1.3)
-    rng = np.random.default_rng(1)
-    commands = rng.uniform(-0.3, 0.3, (3, 4, 3))
-    restored = sims.restore(sim.snapshot())
-    assert sims.runs.tolist() == [7] * 4
-    for values in everything(sims).values():
-        assert (values == values[0]).all()
-    np.testing.assert_array_equal(restored["rate"][0], sim.state["rate"])
-    clones = [sim.clone() for _ in range(4)]
-    for step in commands:
-        sims.step(step, 0.4)
-        for clone, command in zip(clones, step, strict=True):
-            clone.step(command, 0.4)
-    for place, clone in enumerate(clones):
-        for name, values in everything(clone).items():
-            np.testing.assert_array_equal(everything(sims)[name][place], values)
-    np.testing.assert_array_equal(sims[2].metrics["pointing_rms_rad"], clones[2].metrics["pointing_rms_rad"])
-    # Others go on, and one that has failed goes on from a snapshot again.
-    before = sims.state["rate"].copy()
-    sims.restore(sim.snapshot(), np.array([True, False, False, False]))
-    np.testing.assert_array_equal(sims.state["rate"][1:], before[1:])
-    np.testing.assert_array_equal(sims.state["rate"][0], sim.state["rate"])
-    with pytest.raises(ValueError, match="of another scenario"):
-        sims.restore(Simulator(scenario, 7).snapshot())
-    with pytest.raises(ValueError, match="a mask must be 4 of bool"):
-        sims.restore(sim.snapshot(), np.array([True]))

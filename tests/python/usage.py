@@ -61,7 +61,6 @@ sim.restore(before)
 sims: flexsc.Simulators = flexsc.Simulators(scenario, 4, jobs=1)
 moved: flexsc.Quantities = sims.step(np.zeros(4), 0.5)
 angles: npt.NDArray[np.float64] = sims.reset(sims.done)["angle"]
-rolled: flexsc.Quantities = sims.restore(flexsc.Simulator(scenario.draw(1), 1).snapshot())
 turn: flexsc.Scenario = flexsc.Scenario.load(path.with_name("rotation-sine.toml"))
 turn = turn.with_({"manoeuvre.command": {"sine": {"suppress": 1}}, "manoeuvre.time": 40.0})
 plan: flexsc.Plan = turn.plan(band=0.05)

@@ -219,23 +219,6 @@ impl Simulators {
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
 
-    /// Puts copies of a simulator, which is that of a run, in place of those in the mask.
-    fn restore<'py>(
-        &mut self,
-        py: Python<'py>,
-        simulator: &Simulator,
-        number: u64,
-        mask: Option<PyReadonlyArray1<'py, bool>>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        for (index, flight) in self.flights.iter_mut().enumerate() {
-            if mask.as_ref().is_none_or(|mask| mask.as_array()[index]) {
-                let (simulation, commands, failed) = simulator.state();
-                *flight = Flight { number, simulation: Some(simulation), commands, failed };
-            }
-        }
-        self.look(py)
-    }
-
     /// Commands, one row a copy, the length of the step (s), and which copies take it.
     fn step<'py>(
         &mut self,

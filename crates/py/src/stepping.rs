@@ -121,11 +121,6 @@ impl Simulator {
         }
     }
 
-    /// Returns a copy of the simulation, its commands if they were kept, and why it cannot go on.
-    pub fn state(&self) -> (Simulation, Option<CommandLog>, Option<String>) {
-        (self.simulation.clone(), self.commands.clone(), self.failed.clone())
-    }
-
     /// Advances the simulation until Python's signals stop it.
     fn advance<T: Send>(
         &mut self,

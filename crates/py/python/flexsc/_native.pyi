@@ -728,9 +728,6 @@ class Simulators:
     def reset(
         self, mask: npt.NDArray[np.bool_] | None, runs: npt.NDArray[np.uint64] | None
     ) -> npt.NDArray[np.float64]: ...
-    def restore(
-        self, simulator: Simulator, number: int, mask: npt.NDArray[np.bool_] | None
-    ) -> npt.NDArray[np.float64]: ...
     def step(
         self, values: npt.NDArray[np.float64] | None, dt: float, mask: npt.NDArray[np.bool_] | None
     ) -> npt.NDArray[np.float64]: ...

@@ -88,15 +88,6 @@ class OneCopy:
         """Return the row of the present time, of shape (1, numbers)."""
         return self.row.reshape(1, -1)
 
-    def restore(
-        self, simulator: engine.Simulator, run: int, mask: npt.NDArray[np.bool_] | None
-    ) -> npt.NDArray[np.float64]:
-        """Continue from a simulator, which is that of a run; return its row."""
-        if mask is None or mask[0]:
-            self._run, self.failed, self.simulator = run, [], simulator.copy()
-            self.row = self.simulator.look()
-        return self.look()
-
     def one(self, index: int) -> engine.Simulator:
         """Return a copy of the simulator."""
         return self.simulator.copy()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
 from flexsc._scenario import Scenario
-from flexsc._simulator import Simulator, Snapshot
+from flexsc._simulator import Simulator
 from flexsc._values import run_number
 
 if TYPE_CHECKING:
@@ -229,36 +229,6 @@ class Simulators:
                 raise ValueError(f"runs must be {len(self)} whole numbers from 0, got {runs!r}")
             numbers = numbers.astype(np.uint64)
         self._keep(self._native.reset(_mask(mask, len(self)), numbers))
-        self._raise()
-        return self.state
-
-    def restore(self, snapshot: Snapshot, mask: npt.NDArray[np.bool_] | None = None) -> Quantities:
-        """Continue copies from the state of a run: roll-outs of a sampling predictive controller.
-
-        All these copies have the state and the future noise of that run; what differs are the commands that
-        they are given next. The snapshot can be used again.
-
-        Args:
-            snapshot: The state, from `Simulator.snapshot`.
-            mask: The copies that continue from it, of shape (n,); if omitted, all.
-
-        Returns:
-            The states of all copies.
-
-        Raises:
-            ValueError: It is of another scenario, or the mask has another shape.
-
-        >>> scenario = flexsc.Scenario.example("four-clamped-modes")
-        >>> sim, sims = flexsc.Simulator(scenario), flexsc.Simulators(scenario, 16)
-        >>> sim.step([0.5, 0.0, -0.5], 2.0)
-        >>> state = sims.restore(sim.snapshot())
-        >>> state = sims.step(numpy.linspace(-0.5, 0.5, 48).reshape(16, 3), 0.1)
-        >>> sims.time[0], state["rate"].shape
-        (2.1, (16, 3))
-        """
-        if snapshot.scenario != self.scenario.draw(snapshot.run):
-            raise ValueError(f"the snapshot is of another scenario, {snapshot.scenario.name}")
-        self._keep(self._native.restore(snapshot._native, snapshot.run, _mask(mask, len(self))))
         self._raise()
         return self.state
 
