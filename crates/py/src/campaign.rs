@@ -32,7 +32,7 @@ type Span = (u64, u64);
 fn failed(error: DirectoryError) -> PyErr {
     match error {
         DirectoryError::Io { source, .. } if run_logs::refusal(&source).is_some() => {
-            PyValueError::new_err(run_logs::refusal(&source))
+            PyValueError::new_err(run_logs::refusal(&source).unwrap_or_default())
         }
         DirectoryError::Io { path, source } => no_file(&path)(source),
         DirectoryError::Busy { .. } => PyOSError::new_err(error.to_string()),

@@ -61,7 +61,8 @@ impl Design {
 
     /// Adds points of any values, each as a text in TOML.
     fn add_values(&mut self, keys: Vec<String>, points: Vec<Vec<String>>) -> PyResult<()> {
-        let point = |texts: Vec<String>| texts.iter().map(|text| value(text)).collect();
+        let point =
+            |texts: Vec<String>| texts.iter().map(|text| value(text)).collect::<PyResult<Vec<Value>>>();
         let points = points.into_iter().map(point).collect::<PyResult<_>>()?;
         self.0.blocks.push(DesignBlock::Values { keys, points });
         Ok(())

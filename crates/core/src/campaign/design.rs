@@ -159,9 +159,11 @@ impl DesignBlock {
 
     /// Returns the first and the last values: of each key alone, and of a table's keys together.
     fn ends(&self) -> Vec<Vec<(&str, Value)>> {
-        let single = |key, value: f64| vec![(key, Value::Float(value))];
+        fn single(key: &str, value: f64) -> Vec<(&str, Value)> {
+            vec![(key, Value::Float(value))]
+        }
         match self {
-            Self::Even { key, first, last, .. } => vec![single(key.as_str(), *first), single(key, *last)],
+            Self::Even { key, first, last, .. } => vec![single(key, *first), single(key, *last)],
             Self::List { key, values } => {
                 values.first().into_iter().chain(values.last()).map(|value| single(key, *value)).collect()
             }
@@ -171,7 +173,7 @@ impl DesignBlock {
             }
             Self::Sample { ranges, .. } => ranges
                 .iter()
-                .flat_map(|range| [single(range.key.as_str(), range.from), single(&range.key, range.to)])
+                .flat_map(|range| [single(&range.key, range.from), single(&range.key, range.to)])
                 .collect(),
         }
     }

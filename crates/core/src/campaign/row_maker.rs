@@ -90,8 +90,8 @@ impl RowMaker {
         let work = move |run: &CampaignRun| -> Result<Metrics, RunError> {
             Ok(simulate(run, &selection, record.clone())?)
         };
-        let mut rows = self.rows();
-        let report = |outcome| self.push(&mut rows, outcome, &mut poll.clone());
+        let (mut rows, mut poll) = (self.rows(), poll);
+        let report = |outcome| self.push(&mut rows, outcome, &mut poll);
         self.campaign.for_each_run_in_batches(runs, threads, &self.selection, work, report)?;
         Ok(rows)
     }
@@ -111,8 +111,8 @@ impl RowMaker {
         let work = move |run: &CampaignRun| -> Result<Metrics, RunError> {
             Ok(selection.select(simulate(run, record.clone())?))
         };
-        let mut rows = self.rows();
-        let report = |outcome| self.push(&mut rows, outcome, &mut poll.clone());
+        let (mut rows, mut poll) = (self.rows(), poll);
+        let report = |outcome| self.push(&mut rows, outcome, &mut poll);
         self.campaign.for_each_run(runs, threads, work, report)?;
         Ok(rows)
     }
