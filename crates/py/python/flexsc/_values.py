@@ -51,7 +51,11 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, (date, time)):
         return value.isoformat().replace("+00:00", "Z")
     if isinstance(value, Part):
-        return toml(origin, key, value.to_dict(), depth + 1)
+        values = value.to_dict()
+        # A path may have the name of the kind: `actuator.wheels`.
+        kind = key.rpartition(".")[2]
+        inner = values[kind] if kind == value._tag and kind in values else values
+        return toml(origin, key, inner, depth + 1)
     if isinstance(value, Mapping):
         pairs = []
         for name, inner in value.items():
