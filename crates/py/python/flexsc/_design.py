@@ -116,9 +116,12 @@ def _range(values: object) -> tuple[float, float] | None:
 
 
 def _is_number(value: object) -> bool:
+    """True for a number that a float holds exactly, as a seed above 2**53 is not."""
     import numpy as np
 
-    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+        return abs(int(value)) <= 2**53
+    return isinstance(value, (float, np.floating))
 
 
 def _column(key: str, values: object) -> list[Any]:
@@ -141,7 +144,7 @@ def _columns(points: Points) -> dict[str, list[Any]]:
         return {key: _column(key, values) for key, values in points.items()}
     if hasattr(points, "columns"):  # a frame of pandas or Polars
         return {str(key): _column(str(key), points[key]) for key in points.columns}
-    rows = list(points)
+    rows = list(points) if isinstance(points, Iterable) else [points]
     if not all(isinstance(row, Mapping) for row in rows):
         kinds = "a sequence of mappings, a mapping of columns, a data frame or the path of a CSV file"
         raise TypeError(f"points must be {kinds}")
