@@ -66,6 +66,9 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, (list, tuple)):
         items = (toml(origin, f"{key}[{index}]", inner, depth + 1) for index, inner in enumerate(value))
         return f"[{', '.join(items)}]"
+    if hasattr(type(value), "to_base_units"):  # of pint
+        # Units of other libraries do not tell Hz from rad/s.
+        raise refused("found a quantity, expected its number in SI units, or a text such as '0.02 Hz'")
     as_list = getattr(value, "tolist", None)
     if as_list is not None:  # an array or a scalar of numpy
         return toml(origin, key, as_list(), depth + 1)
