@@ -83,8 +83,8 @@ def test_own_parts_are_evaluated(fixed: Scenario) -> None:
             return flexsc.Hold(-1e-3 * event.rate)
 
     own = fixed.with_("duration", 50.0).with_parts(law=Damper())
-    angles = flexsc.evaluate(own, [ANGLE], [[1e-3], [2e-3]], "envelope_mean_rad")
-    alone = own.with_(ANGLE, 2e-3).simulate(log="none").metrics["envelope_mean_rad"]
+    angles = flexsc.evaluate(own, [ANGLE], [[1e-3], [2e-3]], "angle_error_peak_rad")
+    alone = own.with_(ANGLE, 2e-3).simulate(log="none").metrics["angle_error_peak_rad"]
     assert angles[1] == alone
 
 

@@ -159,7 +159,7 @@ def test_words_flags_and_arrays_are_values(tmp_path: Path) -> None:
     assert words[key].tolist() == ["pseudo_inverse", "least_largest"]
     for place, word in enumerate(words[key]):
         alone = observer.with_(key, word.item()).simulate(log="none")
-        assert alone.metrics["pointing_rms_rad"] == words["pointing_rms_rad"][place]
+        assert alone.metrics["pointing_error_end_rad"] == words["pointing_error_end_rad"][place]
         assert words.row(place).scenario.get(key) == word
     read = flexsc.read_campaign(tmp_path / "words")
     assert read[key].tolist() == words[key].tolist()
@@ -178,7 +178,10 @@ def test_arrays_and_tables_are_values(fixed: Scenario) -> None:
     for place, inertia in enumerate(inertias):
         alone = hold.with_("body.spatial.inertia", inertia)
         assert table.row(place).scenario == alone
-        assert table["pointing_rms_rad"][place] == alone.simulate(log="none").metrics["pointing_rms_rad"]
+        assert (
+            table["pointing_error_end_rad"][place]
+            == alone.simulate(log="none").metrics["pointing_error_end_rad"]
+        )
     rates = np.array([[0.0, 0.0, 1e-3], [1e-3, 0.0, 0.0]])
     rated = flexsc.sweep(hold, "body.spatial.rate", rates)
     assert [row.tolist() for row in rated["body.spatial.rate"]] == rates.tolist()
@@ -190,7 +193,7 @@ def test_arrays_and_tables_are_values(fixed: Scenario) -> None:
     assert set(parts["error"]) == {""}
     for place in (0, 1, 18, 19):
         alone = short.with_("body.planar.modes", modes[place % 2]).simulate(log="none")
-        assert parts["envelope_mean_rad"][place] == alone.metrics["envelope_mean_rad"]
+        assert parts["torque_impulse_per_hour_nm_s"][place] == alone.metrics["torque_impulse_per_hour_nm_s"]
 
 
 def test_a_value_of_another_type_is_refused(short: Scenario) -> None:

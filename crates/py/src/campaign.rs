@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, ColumnCells, Directory as Parts, DirectoryError, ERROR, MANIFEST, Manifest,
-    RowMaker as Whole, RunRows, SECONDS,
+    Campaign, CampaignRun, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR, MANIFEST,
+    Manifest, RowMaker as Whole, RunRows, SECONDS,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -174,6 +174,23 @@ impl Work {
         let names = self.0.fields().iter().map(|field| field.name.as_str());
         // No two campaigns take the same time.
         names.filter(|name| *name != SECONDS).collect()
+    }
+
+    /// The keys all of whose values are booleans.
+    #[getter]
+    fn flags(&self) -> Vec<String> {
+        let of_block = |block: &DesignBlock| match block {
+            DesignBlock::Values { keys, points } => {
+                let is_flag = |place: usize| points.iter().all(|point| point[place].is_bool());
+                keys.iter()
+                    .enumerate()
+                    .filter(|(place, _)| is_flag(*place))
+                    .map(|(_, key)| key.clone())
+                    .collect()
+            }
+            _ => Vec::new(),
+        };
+        self.0.campaign.design().blocks.iter().flat_map(of_block).collect()
     }
 
     /// The design, whose text can be kept.

@@ -50,6 +50,7 @@ class Table(Columns):
     ) -> None:
         self.scenario = Scenario._of(work.scenario)
         self.varied = work.keys
+        self._flags = work.flags
         self._names = work.names
         self._read = read
         self._summaries = summaries
@@ -85,8 +86,8 @@ class Table(Columns):
             raise no_such("no column", column, self._names)
         if column not in self._columns:
             values = _array(column in ("run", "seed", *self.varied), self._read(column))
-            if column in self.varied and values.dtype.kind == "U":
-                values = _flags(self.scenario, column, values)
+            if column in self._flags:
+                values = values == "true"
             read_only([values])
             self._columns[column] = values
         return self._columns[column]
@@ -373,11 +374,3 @@ def _array(is_given: bool, column: Any) -> npt.NDArray[Any]:
         return np.array(column, dtype=np.str_)
     array: npt.NDArray[Any] = column
     return array if is_given or array.dtype != np.int64 else array.astype(np.float64)
-
-
-def _flags(scenario: Scenario, key: str, words: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return the values of a key that is true or false as booleans, and other words as they are."""
-    import numpy as np
-
-    is_flag = np.isin(words, ("true", "false")).all() and isinstance(scenario.get(key), bool)
-    return words == "true" if is_flag else words
