@@ -252,3 +252,13 @@ def test_scenarios_are_keys_of_a_dictionary() -> None:
     positive, negative = (fixed.with_("body.planar.rate", zero) for zero in (0.0, -0.0))
     assert positive == negative
     assert hash(positive) == hash(negative)
+
+
+def test_a_path_may_have_the_name_of_the_kind() -> None:
+    observer = flexsc.Scenario.example("earth-observer")
+    wheels = scenario.Wheels(arrangement="pyramid", inertia=0.05, torque=0.3, momentum=10.0)
+    by_kind = observer.with_("actuator.wheels", wheels)
+    assert by_kind == observer.with_("actuator", wheels)
+    assert by_kind.get("actuator.wheels.torque") == 0.3
+    with pytest.raises(flexsc.ScenarioError, match="actuator"):
+        observer.with_("actuator.torque", wheels)

@@ -119,3 +119,17 @@ def test_the_keys_of_a_scenario_are_in_its_signature() -> None:
     assert {"duration", "body", "law", "sensor", "uncertain"} <= set(parameters)
     assert set(parameters) - {"values"} == set(flexsc.schema()["properties"])
     assert parameters["law"].annotation == "LawKind"
+
+
+def test_a_quantity_of_pint_is_refused(fixed: Scenario) -> None:
+    class Quantity:
+        """A number with a unit as pint has it."""
+
+        def to_base_units(self) -> "Quantity":
+            return self
+
+        def tolist(self) -> list[float]:
+            raise AttributeError("Magnitude 'float' does not support tolist")
+
+    with pytest.raises(ScenarioError, match=r"`duration`: found a quantity, expected its number in SI units"):
+        fixed.with_("duration", Quantity())

@@ -47,6 +47,10 @@ mean: float = table.statistics()["duty"]["mean"]
 duty: npt.NDArray[Any] = flexsc.sweep(scenario, "law.relay.k_t", np.linspace(0.3, 0.35, 3))["duty"]
 swept: flexsc.Table = flexsc.sweep(scenario, "law.relay.k_t", [0.3, 0.35])
 both: flexsc.Table = flexsc.sweep(scenario, {"law.relay.k_t": [0.3], "body.planar.angle": np.zeros(2)})
+pairs: flexsc.Table = flexsc.sweep(scenario, points=[{"law.relay.k_t": 0.3, "seed": 2}])
+ranges = {"law.relay.k_t": (0.28, 0.40), "body.planar.angle": (0.0, 1e-3)}
+sobol: flexsc.Table = flexsc.sweep(scenario, ranges, sample=("sobol", 4), metrics=["duty"])
+duties: npt.NDArray[np.float64] = flexsc.evaluate(scenario, ["law.relay.k_t"], [[0.3], [0.31]], "duty")
 unit = flexsc.metrics()["duty"]["unit"]
 sim: flexsc.Simulator = flexsc.Simulator(scenario, run=1)
 switched: bool = sim.run_until("switching", limit=100.0)

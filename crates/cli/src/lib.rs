@@ -53,7 +53,10 @@ use std::io::Write;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+pub use campaign::logs::simulate_to_log;
+pub use campaign::part_files::write_statistics_of;
 use error::CliError;
+pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft

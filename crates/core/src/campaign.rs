@@ -84,7 +84,7 @@ impl Grid {
 /// Run of a campaign: its scenario with the drawn keys set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignRun {
-    /// Number of the run.
+    /// Number of the run whose noise it has: its own, unless the design gives another.
     pub number: u64,
     /// Scenario of the run.
     pub scenario: Scenario,
@@ -116,7 +116,21 @@ impl Campaign {
     }
 
     /// Returns the campaign of a scenario over its `[uncertain]` keys and the points of a design.
-    pub fn from_design(mut scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
+    pub fn from_design(scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
+        let campaign = Self::from_unchecked_points(scenario, origin, design)?;
+        // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
+        for keys in campaign.design.ends() {
+            campaign.scenario_with(&campaign.alike(keys))?;
+        }
+        Ok(campaign)
+    }
+
+    /// Returns the campaign of a design, any point of which may be one that the scenario does not accept.
+    pub fn from_unchecked_points(
+        mut scenario: Scenario,
+        origin: &str,
+        design: Design,
+    ) -> Result<Self, ScenarioError> {
         scenario.written.inline_files();
         // A key with values is not drawn.
         let varied = design.keys();
@@ -138,12 +152,7 @@ impl Campaign {
         if let Some(why) = design.validate(scenario.uncertain.len()) {
             return Err(ScenarioError::Key { origin: origin.to_owned(), key: "design".to_owned(), why });
         }
-        let campaign = Self { scenario, table, origin: origin.to_owned(), design };
-        // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
-        for (key, value) in campaign.design.bounds() {
-            campaign.scenario_with(&[(key, campaign.like(key, value))])?;
-        }
-        Ok(campaign)
+        Ok(Self { scenario, table, origin: origin.to_owned(), design })
     }
 
     /// A scenario whose `[uncertain]` keys keep their own values.
@@ -162,9 +171,11 @@ impl Campaign {
             return Err(format!("must be at most {MOST_RUNS} runs, got {runs}"));
         }
         let mut cost = self.scenario.cost(log, false);
-        for (key, value) in self.design.bounds() {
-            let ends = self.scenario_with(&[(key, self.like(key, value))]);
-            cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
+        for keys in self.design.ends() {
+            // Values that are not accepted cost nothing.
+            if let Ok(end) = self.scenario_with(&self.alike(keys)) {
+                cost = cost.max(end.cost(log, false));
+            }
         }
         let side_by_side = runs > 1
             && log.is_none()
@@ -197,6 +208,7 @@ impl Campaign {
     /// Returns a run with its keys drawn. The result does not depend on other runs.
     pub fn run(&self, number: u64) -> Result<CampaignRun, ScenarioError> {
         let drawn = self.draw(number);
+        let number = self.design.noise_run.unwrap_or(number);
         if drawn.is_empty() {
             let scenario = Self::undrawn(self.scenario.clone());
             return Ok(CampaignRun { number, scenario, drawn });
@@ -210,7 +222,8 @@ impl Campaign {
             keys.push(("manoeuvre.model", model));
         }
         // The body of a plan is more than numbers.
-        let scenario = if self.plans_first() { self.scenario_with(&keys)? } else { self.drawn_with(&keys)? };
+        let is_numeric = self.design.is_numeric() && !self.plans_first();
+        let scenario = if is_numeric { self.drawn_with(&keys)? } else { self.scenario_with(&keys)? };
         Ok(CampaignRun { number, scenario, drawn })
     }
 
@@ -296,9 +309,16 @@ impl Campaign {
         matches!(key::get(&self.table, key), Some(Value::Integer(_)))
     }
 
-    /// Converts a number to the type of a key's value in the scenario.
-    fn like(&self, key: &str, value: f64) -> Value {
-        if self.is_integer(key) { Value::Integer(libm::round(value) as i64) } else { Value::Float(value) }
+    /// Converts a number to the type of a key's value in the scenario; any other value stays.
+    fn like(&self, key: &str, value: Value) -> Value {
+        match value {
+            Value::Float(number) if self.is_integer(key) => Value::Integer(libm::round(number) as i64),
+            other => other,
+        }
+    }
+
+    fn alike<'a>(&self, keys: Vec<(&'a str, Value)>) -> Vec<(&'a str, Value)> {
+        keys.into_iter().map(|(key, value)| (key, self.like(key, value))).collect()
     }
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {

@@ -7,7 +7,7 @@ use ::arrow_schema::ffi::FFI_ArrowSchema;
 use ::arrow_schema::{ArrowError, Field, Schema};
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{
-    Array, ArrayRef, FixedSizeListArray, Float64Array, Int64Array, ListArray, RecordBatch,
+    Array, ArrayRef, BooleanArray, FixedSizeListArray, Float64Array, Int64Array, ListArray, RecordBatch,
     RecordBatchIterator, StringArray, UInt64Array,
 };
 use arrow_buffer::{OffsetBuffer, ScalarBuffer};
@@ -23,7 +23,7 @@ fn refused(error: ArrowError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// Numbers, where NaN stands for none, whole numbers, or texts.
+/// Numbers, where NaN stands for none, whole numbers, flags, or texts.
 fn values(object: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
     if let Ok(numbers) = object.extract::<PyReadonlyArray1<'_, f64>>() {
         let numbers = numbers.as_array();
@@ -40,6 +40,9 @@ fn values(object: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
     }
     if let Ok(counts) = object.extract::<PyReadonlyArray1<'_, u64>>() {
         return Ok(Arc::new(UInt64Array::from(counts.as_array().to_vec())));
+    }
+    if let Ok(flags) = object.extract::<PyReadonlyArray1<'_, bool>>() {
+        return Ok(Arc::new(BooleanArray::from(flags.as_array().to_vec())));
     }
     match object.extract::<Vec<String>>() {
         Ok(texts) => Ok(Arc::new(StringArray::from(texts))),

@@ -6,21 +6,23 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, ColumnCells, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest,
-    RowMaker as Whole, RunRows, SECONDS, Sampling,
+    Campaign, CampaignRun, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR, MANIFEST,
+    Manifest, RowMaker as Whole, RunRows, SECONDS,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
-use numpy::IntoPyArray;
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-use super::Scenario;
-use super::aside::aside;
+use super::aside::{Stop, aside};
+use super::design::Design;
 use super::error::{allowed, no_file, scenario_error};
 use super::parts::known_thread;
+use super::run_logs;
 use super::table::column;
+use super::{Scenario, detail};
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
 type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
@@ -29,6 +31,9 @@ type Span = (u64, u64);
 
 fn failed(error: DirectoryError) -> PyErr {
     match error {
+        DirectoryError::Io { source, .. } if run_logs::refusal(&source).is_some() => {
+            PyValueError::new_err(run_logs::refusal(&source).unwrap_or_default())
+        }
         DirectoryError::Io { path, source } => no_file(&path)(source),
         DirectoryError::Busy { .. } => PyOSError::new_err(error.to_string()),
         DirectoryError::Scenario(error) => scenario_error(error),
@@ -80,39 +85,28 @@ impl Work {
 
 #[pymethods]
 impl Work {
-    /// The work of some runs; `part_s` is the work of a part (s), in place of about 4 s, and `drawn` whether `[uncertain]` keys
-    /// are drawn.
+    /// The work of some runs; `part_s` is the work of a part (s), in place of about 4 s, `drawn` whether `[uncertain]` keys
+    /// are drawn, and `log` the detail of the log of each run.
     #[staticmethod]
     #[expect(clippy::too_many_arguments, reason = "the arguments of Python's functions")]
     fn create(
         scenario: &Scenario,
         runs: Span,
-        grids: Vec<(String, Vec<f64>)>,
-        sampling: &str,
-        replicas: u64,
+        design: &Design,
         metrics: Option<Vec<String>>,
         part_s: Option<f64>,
         yes: bool,
         drawn: bool,
+        log: &str,
     ) -> PyResult<Self> {
         let wrong = PyValueError::new_err::<String>;
-        let known = Sampling::ALL.into_iter().find(|(name, _)| *name == sampling);
-        let names = Sampling::ALL.map(|(name, _)| format!("'{name}'")).join(", ");
-        let (_, draws) =
-            known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
-        let hypercube = if draws == Sampling::LatinHypercube { runs.1.div_ceil(replicas.max(1)) } else { 0 };
-        let design = Design {
-            draws,
-            hypercube,
-            replicas,
-            ..Design::from_blocks(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
-        };
         let selection = metrics.map_or(Ok(Selection::ALL), Selection::from_names).map_err(wrong)?;
         let inner = scenario.inner.clone();
         let inner = if drawn { inner } else { Campaign::undrawn(inner) };
-        let campaign = Campaign::from_design(inner, &scenario.origin, design).map_err(scenario_error)?;
+        let campaign = Campaign::from_design(inner, &scenario.origin, design.0.clone());
+        let campaign = campaign.map_err(scenario_error)?;
         let count = runs.1.saturating_sub(runs.0);
-        let cost = campaign.cost(count, None).map_err(|why| wrong(format!("runs {why}")))?;
+        let cost = campaign.cost(count, detail(log)?).map_err(|why| wrong(format!("runs {why}")))?;
         allowed(&cost, yes)?;
         if scenario.inner.has_custom_parts() {
             let whole = Whole::in_memory(campaign, runs.0..runs.1, selection).map_err(wrong)?;
@@ -123,6 +117,21 @@ impl Work {
             manifest.limit_part_size(part_s);
         }
         Ok(Self(Arc::new(Whole::from_manifest(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+    }
+
+    /// The work of points that need not be accepted: each that is not is a row with an error. `[uncertain]` keys keep their
+    /// values.
+    #[staticmethod]
+    fn for_points(scenario: &Scenario, design: &Design, metrics: Vec<String>, yes: bool) -> PyResult<Self> {
+        let wrong = PyValueError::new_err::<String>;
+        let selection = Selection::from_names(metrics).map_err(wrong)?;
+        let (inner, design) = (Campaign::undrawn(scenario.inner.clone()), design.0.clone());
+        let campaign = Campaign::from_unchecked_points(inner, &scenario.origin, design);
+        let campaign = campaign.map_err(scenario_error)?;
+        let count = campaign.design().runs().unwrap_or_default();
+        let cost = campaign.cost(count, None).map_err(|why| wrong(format!("points {why}")))?;
+        allowed(&cost, yes)?;
+        Ok(Self(Arc::new(Whole::in_memory(campaign, 0..count, selection).map_err(wrong)?)))
     }
 
     /// The work that a manifest describes.
@@ -167,10 +176,39 @@ impl Work {
         names.filter(|name| *name != SECONDS).collect()
     }
 
+    /// The keys all of whose values are booleans.
+    #[getter]
+    fn flags(&self) -> Vec<String> {
+        let of_block = |block: &DesignBlock| match block {
+            DesignBlock::Values { keys, points } => {
+                let is_flag = |place: usize| points.iter().all(|point| point[place].is_bool());
+                keys.iter()
+                    .enumerate()
+                    .filter(|(place, _)| is_flag(*place))
+                    .map(|(_, key)| key.clone())
+                    .collect()
+            }
+            _ => Vec::new(),
+        };
+        self.0.campaign.design().blocks.iter().flat_map(of_block).collect()
+    }
+
+    /// The design, whose text can be kept.
+    #[getter]
+    fn design(&self) -> Design {
+        Design(self.0.campaign.design().clone())
+    }
+
     #[getter]
     fn scenario(&self) -> Scenario {
         let inner = self.0.campaign.scenario().clone();
         Scenario { origin: inner.name.clone(), inner }
+    }
+
+    /// The scenario of a run, and the number of the run whose noise it has.
+    fn run(&self, number: u64) -> PyResult<(Scenario, u64)> {
+        let run = self.0.campaign.run(number).map_err(scenario_error)?;
+        Ok((Scenario { origin: run.scenario.name.clone(), inner: run.scenario }, run.number))
     }
 
     /// Returns this campaign with the runs of another manifest of it too.
@@ -196,11 +234,7 @@ impl Work {
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>)> {
         let work = self.0.clone();
         let (rows, statistics) = aside(py, move |stop| {
-            let is_own = work.campaign.scenario().has_custom_parts();
-            let simulate = move |run: &CampaignRun, selection: &Selection, stop| {
-                known_thread(is_own, || Campaign::simulate_metrics(run, selection, stop))
-            };
-            let rows = work.make_rows_with(runs.0..runs.1, jobs, stop, simulate)?;
+            let rows = rows(&work, runs, jobs, stop)?;
             let columns = |names: &[&str]| -> Result<_, DirectoryError> {
                 Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
             };
@@ -216,12 +250,48 @@ impl Work {
         Ok((reported, statistics.into_iter().map(summary).collect()))
     }
 
+    /// Makes runs: metrics as numbers, of shape (runs, metrics), and the first error.
+    fn numbers<'py>(
+        &self,
+        py: Python<'py>,
+        runs: Span,
+        jobs: usize,
+        metrics: Vec<String>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Option<String>)> {
+        let work = self.0.clone();
+        let rows = aside(py, move |stop| rows(&work, runs, jobs, stop))?.map_err(failed)?;
+        let columns = metrics.iter().map(|name| match rows.column(name) {
+            None => Err(PyValueError::new_err(format!("the scenario has no metric {name:?}"))),
+            Some(ColumnCells::Lists(_)) => {
+                Err(PyValueError::new_err(format!("the metric {name:?} is a list, and not a number")))
+            }
+            Some(column) => Ok(column.numbers()),
+        });
+        let columns = columns.collect::<PyResult<Vec<_>>>()?;
+        let row = |row: usize| columns.iter().map(|column| column[row]).collect::<Vec<_>>();
+        let numbers: Vec<Vec<f64>> = (0..rows.len()).map(row).collect();
+        let error = rows.column(ERROR).and_then(|column| match column {
+            ColumnCells::Words(errors) => errors.iter().flatten().next().cloned(),
+            _ => None,
+        });
+        Ok((PyArray2::from_vec2(py, &numbers)?, error))
+    }
+
     /// Makes a part: the name of its file, and its bytes.
     fn part<'py>(&self, py: Python<'py>, runs: Span, jobs: usize) -> PyResult<(String, Bound<'py, PyBytes>)> {
         let work = self.0.clone();
         let (name, bytes) = aside(py, move |stop| work.part(runs.0..runs.1, jobs, stop))?.map_err(failed)?;
         Ok((name, PyBytes::new(py, &bytes)))
     }
+}
+
+/// Simulates runs, on threads that Python knows if parts are written in it.
+fn rows(work: &Whole, runs: Span, jobs: usize, stop: Stop) -> Result<RunRows, DirectoryError> {
+    let is_own = work.campaign.scenario().has_custom_parts();
+    let simulate = move |run: &CampaignRun, selection: &Selection, stop| {
+        known_thread(is_own, || Campaign::simulate_metrics(run, selection, stop))
+    };
+    work.make_rows_with(runs.0..runs.1, jobs, stop, simulate)
 }
 
 /// The statistics of a campaign's columns.
@@ -272,9 +342,32 @@ impl Directory {
         Work(Arc::new(self.0.work().clone()))
     }
 
-    fn write_part(&self, py: Python<'_>, runs: Span, jobs: usize) -> PyResult<PathBuf> {
+    /// Makes a part, with the log of each run unless `log` is `none`.
+    fn write_part(
+        &self,
+        py: Python<'_>,
+        runs: Span,
+        jobs: usize,
+        log: &str,
+        force: bool,
+    ) -> PyResult<PathBuf> {
+        let (directory, runs) = (self.0.clone(), runs.0..runs.1);
+        let work: Box<dyn FnOnce(Stop) -> _ + Send> = match detail(log)? {
+            None => Box::new(move |stop| directory.write_part(runs, jobs, stop)),
+            Some(detail) => {
+                Box::new(move |stop| run_logs::write_part(&directory, runs, jobs, (detail, force), stop))
+            }
+        };
+        aside(py, work)?.map_err(failed)
+    }
+
+    /// Writes the table of the statistics.
+    fn write_statistics(&self, py: Python<'_>) -> PyResult<()> {
         let directory = self.0.clone();
-        aside(py, move |stop| directory.write_part(runs.0..runs.1, jobs, stop))?.map_err(failed)
+        let written = aside(py, move |_| {
+            flexsc_cli::write_statistics_of(&directory).map_err(|error| error.to_string())
+        })?;
+        written.map_err(PyOSError::new_err)
     }
 
     /// A column of all rows.

@@ -12,6 +12,7 @@ mod columns;
 mod commands;
 mod copies;
 mod damping;
+mod design;
 mod error;
 mod figures;
 mod instants;
@@ -19,6 +20,7 @@ mod linear;
 mod log;
 mod mcap_log;
 mod parts;
+mod run_logs;
 mod sampled;
 mod stepping;
 mod table;
@@ -63,6 +65,8 @@ mod _native {
     use super::damping::{
         identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
     };
+    #[pymodule_export]
+    use super::design::Design;
     #[pymodule_export]
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]

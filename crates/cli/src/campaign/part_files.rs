@@ -202,3 +202,9 @@ pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignRepo
     let (points, table) = (points.filter(|_| is_whole), Some(directory.path().to_owned()));
     Ok(CampaignReport { runs, statistics, points, failed, only: None, table })
 }
+
+/// Writes the table of the statistics of a directory.
+pub fn write_statistics_of(directory: &Directory) -> Result<(), CliError> {
+    let CampaignSummary { statistics, .. } = directory.summary().map_err(failure)?;
+    write_statistics(&directory.path().join(STATISTICS), &statistics)
+}

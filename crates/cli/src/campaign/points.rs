@@ -143,6 +143,9 @@ fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a
 
 /// Returns the value of a key as text.
 fn value(cells: &ColumnCells, index: usize) -> String {
+    if let ColumnCells::Words(words) = cells {
+        return words.get(index).cloned().flatten().unwrap_or_default();
+    }
     let number = cells.numbers().get(index).copied().unwrap_or(f64::NAN);
     let text = format!("{number}");
     if text.len() <= 10 { text } else { short(number) }

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use flexsc_numerics::random::fnv1a;
 use serde::{Deserialize, Serialize};
+use toml::Value;
 
 use super::Grid;
 use super::sampling::{Dimension, MOST_DIMENSIONS, Sampling};
@@ -26,6 +27,9 @@ pub struct Design {
     pub hypercube: u64,
     /// Number of runs of each point, which differ only in their noise.
     pub replicas: u64,
+    /// Number of the run whose noise every run has; if not given, each has that of its own number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub noise_run: Option<u64>,
     /// Blocks whose points are combined.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blocks: Vec<DesignBlock>,
@@ -33,7 +37,7 @@ pub struct Design {
 
 impl Default for Design {
     fn default() -> Self {
-        Self { draws: Sampling::Random, hypercube: 0, replicas: 1, blocks: Vec::new() }
+        Self { draws: Sampling::Random, hypercube: 0, replicas: 1, noise_run: None, blocks: Vec::new() }
     }
 }
 
@@ -65,6 +69,13 @@ pub enum DesignBlock {
         keys: Vec<String>,
         /// The values of each point.
         points: Vec<Vec<f64>>,
+    },
+    /// Points, each with a value of any type of every key.
+    Values {
+        /// The keys.
+        keys: Vec<String>,
+        /// The values of each point.
+        points: Vec<Vec<Value>>,
     },
     /// Points that are spread over ranges of keys.
     Sample {
@@ -108,6 +119,7 @@ impl DesignBlock {
             Self::Even { count, .. } => u64::from(*count),
             Self::List { values, .. } => values.len() as u64,
             Self::Table { points, .. } => points.len() as u64,
+            Self::Values { points, .. } => points.len() as u64,
             Self::Sample { count, .. } => *count,
         }
     }
@@ -116,46 +128,52 @@ impl DesignBlock {
     pub fn keys(&self) -> Vec<&str> {
         match self {
             Self::Even { key, .. } | Self::List { key, .. } => vec![key],
-            Self::Table { keys, .. } => keys.iter().map(String::as_str).collect(),
+            Self::Table { keys, .. } | Self::Values { keys, .. } => keys.iter().map(String::as_str).collect(),
             Self::Sample { ranges, .. } => ranges.iter().map(|range| range.key.as_str()).collect(),
         }
     }
 
     /// Returns the values of a point, in the order of the keys; NaN if there is no such point.
-    fn values(&self, point: u64, seed: u64) -> Vec<f64> {
+    fn values(&self, point: u64, seed: u64) -> Vec<Value> {
         if point >= self.count() {
-            return vec![f64::NAN; self.keys().len()];
+            return vec![Value::Float(f64::NAN); self.keys().len()];
         }
         let index = point as usize;
         match self {
-            Self::Even { first, last, count, .. } => vec![linspace(*first, *last, *count, point as u32)],
-            Self::List { values, .. } => vec![values[index]],
-            Self::Table { points, .. } => points[index].clone(),
+            Self::Even { first, last, count, .. } => {
+                vec![Value::Float(linspace(*first, *last, *count, point as u32))]
+            }
+            Self::List { values, .. } => vec![Value::Float(values[index])],
+            Self::Table { points, .. } => points[index].iter().copied().map(Value::Float).collect(),
+            Self::Values { points, .. } => points[index].clone(),
             Self::Sample { sampling, count, ranges } => {
                 let value = |(place, KeyRange { key, from, to }): (usize, &KeyRange)| {
                     let name = format!("design {key}");
                     let part = sampling.number(Dimension { seed, name: &name, place }, point, *count);
-                    from * (1.0 - part) + to * part
+                    Value::Float(from * (1.0 - part) + to * part)
                 };
                 ranges.iter().enumerate().map(value).collect()
             }
         }
     }
 
-    /// Returns the first and the last value of each key.
-    fn bounds(&self) -> Vec<(&str, f64)> {
+    /// Returns the first and the last values: of each key alone, and of a table's keys together.
+    fn ends(&self) -> Vec<Vec<(&str, Value)>> {
+        fn single(key: &str, value: f64) -> Vec<(&str, Value)> {
+            vec![(key, Value::Float(value))]
+        }
         match self {
-            Self::Even { key, first, last, .. } => vec![(key, *first), (key, *last)],
+            Self::Even { key, first, last, .. } => vec![single(key, *first), single(key, *last)],
             Self::List { key, values } => {
-                values.first().into_iter().chain(values.last()).map(|value| (key.as_str(), *value)).collect()
+                values.first().into_iter().chain(values.last()).map(|value| single(key, *value)).collect()
             }
-            Self::Table { keys, points } => {
-                let ends = points.first().into_iter().chain(points.last());
-                ends.flat_map(|point| keys.iter().map(String::as_str).zip(point.iter().copied())).collect()
+            Self::Table { .. } | Self::Values { .. } => {
+                let point = |point| self.keys().into_iter().zip(self.values(point, 0)).collect();
+                [0, self.count().saturating_sub(1)].into_iter().map(point).collect()
             }
             Self::Sample { ranges, .. } => ranges
                 .iter()
-                .flat_map(|range| [(range.key.as_str(), range.from), (range.key.as_str(), range.to)])
+                .flat_map(|range| [single(&range.key, range.from), single(&range.key, range.to)])
                 .collect(),
         }
     }
@@ -172,6 +190,7 @@ impl DesignBlock {
             Self::Table { points, .. } => {
                 points.iter().all(|p| p.len() == keys.len() && p.iter().all(|v| v.is_finite()))
             }
+            Self::Values { points, .. } => points.iter().all(|point| point.len() == keys.len()),
             Self::Sample { ranges, .. } => ranges
                 .iter()
                 .all(|range| range.from < range.to && range.from.is_finite() && range.to.is_finite()),
@@ -179,12 +198,13 @@ impl DesignBlock {
         if !finite {
             return Some(match self {
                 Self::Sample { .. } => "a range needs two numbers, the lower one first".to_owned(),
+                Self::Values { .. } => "each point needs a value of every key".to_owned(),
                 _ => "the values of keys must be finite numbers".to_owned(),
             });
         }
         let held = match self {
             Self::List { values, .. } => values.len(),
-            Self::Table { points, .. } => points.len() * keys.len(),
+            Self::Table { .. } | Self::Values { .. } => count as usize * keys.len(),
             Self::Even { .. } | Self::Sample { .. } => 0,
         };
         if held > MOST_NUMBERS {
@@ -209,9 +229,13 @@ impl DesignBlock {
                 let (count, hash) = (values.len(), fnv1a(&format!("{values:?}")));
                 writeln!(text, "# {key} = a list of {count} values, hash {hash:016x}")
             }
-            Self::Table { keys, points } => {
-                let hash = fnv1a(&format!("{points:?}"));
-                writeln!(text, "# {} = a table of {} points, hash {hash:016x}", keys.join(", "), points.len())
+            Self::Table { .. } | Self::Values { .. } => {
+                let points = match self {
+                    Self::Table { points, .. } => format!("{points:?}"),
+                    other => format!("{other:?}"),
+                };
+                let (keys, count, hash) = (self.keys().join(", "), self.count(), fnv1a(&points));
+                writeln!(text, "# {keys} = a table of {count} points, hash {hash:016x}")
             }
             Self::Sample { sampling, count, ranges } => {
                 let range = |key_range: &KeyRange| {
@@ -257,7 +281,7 @@ impl Design {
     }
 
     /// Returns the values of the keys of a point.
-    pub(super) fn values(&self, point: u64, seed: u64) -> Vec<f64> {
+    pub(super) fn values(&self, point: u64, seed: u64) -> Vec<Value> {
         let mut rest = point;
         let mut values = Vec::new();
         for (place, block) in self.blocks.iter().enumerate().rev() {
@@ -271,9 +295,25 @@ impl Design {
         values
     }
 
-    /// Returns the first and the last value of each key.
-    pub(super) fn bounds(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.blocks.iter().flat_map(DesignBlock::bounds)
+    /// Returns the first and the last values of each block: those that are set together.
+    pub(super) fn ends(&self) -> impl Iterator<Item = Vec<(&str, Value)>> {
+        self.blocks.iter().flat_map(DesignBlock::ends)
+    }
+
+    /// Returns true if every value is a number.
+    pub(super) fn is_numeric(&self) -> bool {
+        !self.blocks.iter().any(|block| matches!(block, DesignBlock::Values { .. }))
+    }
+
+    /// Returns the values of a key of any type; `None` if the values of the key are numbers of another block.
+    pub(super) fn values_of(&self, key: &str) -> Option<impl Iterator<Item = &Value>> {
+        self.blocks.iter().find_map(|block| match block {
+            DesignBlock::Values { keys, points } => {
+                let place = keys.iter().position(|other| other == key)?;
+                Some(points.iter().filter_map(move |point| point.get(place)))
+            }
+            _ => None,
+        })
     }
 
     /// Returns the first inconsistency of the design; `uncertain` is the number of keys that are drawn.
@@ -311,6 +351,9 @@ impl Design {
         }
         if self.replicas > 1 {
             let _ = writeln!(text, "# {} runs of each point", self.replicas);
+        }
+        if let Some(run) = self.noise_run {
+            let _ = writeln!(text, "# each with the noise of run {run}");
         }
         text
     }

@@ -202,7 +202,8 @@ fn a_run_is_the_same_whichever_are_made_beside_it() {
         ];
         let block = DesignBlock::Sample { sampling, count: 20, ranges };
         let list = DesignBlock::List { key: "law.relay.strong".to_owned(), values: vec![3e-5, 4e-5] };
-        let design = Design { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
+        let blocks = vec![block, list];
+        let design = Design { draws: sampling, hypercube: 20, replicas: 3, blocks, ..Design::default() };
         let plan = campaign(design);
         assert_eq!(plan.design().runs(), Some(120));
         let drawn: Vec<_> = (0..120).map(|number| plan.draw(number)).collect();

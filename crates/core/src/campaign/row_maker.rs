@@ -86,33 +86,57 @@ impl RowMaker {
         poll: R,
         simulate: impl Fn(&CampaignRun, &Selection, R) -> Result<Metrics, SimulationError> + Send + Sync + 'static,
     ) -> Result<RunRows, DirectoryError> {
-        let mut rows = self.rows();
         let (selection, record) = (self.selection.clone(), poll.clone());
         let work = move |run: &CampaignRun| -> Result<Metrics, RunError> {
             Ok(simulate(run, &selection, record.clone())?)
         };
-        let mut poll = poll;
-        self.campaign.for_each_run_in_batches(
-            runs,
-            threads,
-            &self.selection,
-            work,
-            |outcome: Option<RunOutcome>| {
-                poll.poll().map_err(|_| DirectoryError::Interrupted)?;
-                if let Some(outcome) = outcome {
-                    let stopped = matches!(
-                        outcome.metrics,
-                        Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted)))
-                    );
-                    if stopped {
-                        return Err(DirectoryError::Interrupted);
-                    }
-                    rows.push(&self.campaign, &outcome);
-                }
-                Ok(())
-            },
-        )?;
+        let (mut rows, mut poll) = (self.rows(), poll);
+        let report = |outcome| self.push(&mut rows, outcome, &mut poll);
+        self.campaign.for_each_run_in_batches(runs, threads, &self.selection, work, report)?;
         Ok(rows)
+    }
+
+    /// Computes rows with a function that simulates a run with all of its metrics and has other effects, such as a log.
+    ///
+    /// # Errors
+    /// An interruption, and a log that cannot be written.
+    pub fn make_rows_singly<R: Record + Clone + Send + Sync + 'static>(
+        &self,
+        runs: Range<u64>,
+        threads: usize,
+        poll: R,
+        simulate: impl Fn(&CampaignRun, R) -> Result<Metrics, SimulationError> + Send + Sync + 'static,
+    ) -> Result<RunRows, DirectoryError> {
+        let (selection, record) = (self.selection.clone(), poll.clone());
+        let work = move |run: &CampaignRun| -> Result<Metrics, RunError> {
+            Ok(selection.select(simulate(run, record.clone())?))
+        };
+        let (mut rows, mut poll) = (self.rows(), poll);
+        let report = |outcome| self.push(&mut rows, outcome, &mut poll);
+        self.campaign.for_each_run(runs, threads, work, report)?;
+        Ok(rows)
+    }
+
+    /// Appends the row of a run, unless a stop is requested or a log could not be written.
+    fn push(
+        &self,
+        rows: &mut RunRows,
+        outcome: Option<RunOutcome>,
+        poll: &mut impl Record,
+    ) -> Result<(), DirectoryError> {
+        poll.poll().map_err(|_| DirectoryError::Interrupted)?;
+        let Some(outcome) = outcome else { return Ok(()) };
+        match outcome.metrics {
+            Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted))) => {
+                return Err(DirectoryError::Interrupted);
+            }
+            Err(RunError::Simulation(SimulationError::Record(RecordError::Io(source)))) => {
+                let path = format!("the log of run {}", outcome.number).into();
+                return Err(DirectoryError::Io { path, source });
+            }
+            _ => rows.push(&self.campaign, &outcome),
+        }
+        Ok(())
     }
 
     /// Computes a part, and returns the name and the content of its file.

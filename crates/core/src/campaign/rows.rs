@@ -82,9 +82,7 @@ impl Campaign {
     /// Returns the headings of the campaign's table, which are fixed before any run.
     pub fn fields(&self, selection: &Selection) -> Arc<[ColumnHeading]> {
         let heading = |name: &str, kind, unit| ColumnHeading { name: name.to_owned(), unit, kind };
-        let key = |name: &str| {
-            heading(name, if self.is_integer(name) { ColumnKind::Integers } else { ColumnKind::Numbers }, "")
-        };
+        let key = |name: &str| heading(name, self.kind_of_key(name), "");
         let reported = selection.select(MetricsCollector::new(self.scenario()).finish(self.scenario()));
         let metric = |(meaning, value): &(&'static crate::metrics::MetricDescription, MetricValue)| {
             let kind = match value {
@@ -104,6 +102,26 @@ impl Campaign {
         fields.extend([heading(SECONDS, ColumnKind::Numbers, "s"), heading(ERROR, ColumnKind::Words, "")]);
         fields.into()
     }
+
+    /// Returns the type of the column of a varied key.
+    fn kind_of_key(&self, key: &str) -> ColumnKind {
+        let is_number = |value: &Drawn| value.is_float() || value.is_integer();
+        let is_list = |value: &Drawn| value.as_array().is_some_and(|list| list.iter().all(is_number));
+        let is_all = |is_kind: &dyn Fn(&Drawn) -> bool| {
+            self.design().values_of(key).is_none_or(|mut values| values.all(is_kind))
+        };
+        match () {
+            () if is_all(&is_number) && self.is_integer(key) => ColumnKind::Integers,
+            () if is_all(&is_number) => ColumnKind::Numbers,
+            () if is_all(&is_list) => ColumnKind::Lists,
+            () => ColumnKind::Words,
+        }
+    }
+}
+
+/// Returns a number as a float; NaN for a value of another type.
+fn number(value: &Drawn) -> f64 {
+    value.as_float().or_else(|| Some(value.as_integer()? as f64)).unwrap_or(f64::NAN)
 }
 
 impl ColumnCells {
@@ -185,6 +203,10 @@ impl ColumnCells {
             (Self::Integers(cells), Drawn::Integer(integer)) => cells.push(Some(*integer)),
             (Self::Numbers(cells), Drawn::Float(number)) => cells.push(*number),
             (Self::Numbers(cells), Drawn::Integer(integer)) => cells.push(*integer as f64),
+            (Self::Lists(cells), Drawn::Array(list)) => cells.push(Some(list.iter().map(number).collect())),
+            (Self::Words(cells), Drawn::String(word)) => cells.push(Some(word.clone())),
+            // As TOML.
+            (Self::Words(cells), other) => cells.push(Some(other.to_string())),
             (column, _) => column.push_null(),
         }
     }

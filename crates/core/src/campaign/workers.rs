@@ -101,7 +101,9 @@ impl Campaign {
         work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
         report: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let most = if batch::accepts(self.scenario()) { BATCH_SIZE } else { 1 };
+        // Values that are not numbers may give runs of several structures.
+        let is_one = self.design().is_numeric() && batch::accepts(self.scenario());
+        let most = if is_one { BATCH_SIZE } else { 1 };
         self.run_pool(runs, threads, (most, selection.clone()), work, report)
     }
 
@@ -187,7 +189,7 @@ impl Campaign {
             let (drawn, metrics) = match run {
                 Ok(run) => {
                     let Some(metrics) = found.next().flatten() else {
-                        single.push(run);
+                        single.push((number, run));
                         continue;
                     };
                     (run.drawn, Ok(selection.select(metrics)))
@@ -197,11 +199,11 @@ impl Campaign {
             known.push(RunOutcome { number, drawn, metrics, seconds });
         }
         report(known)
-            && single.into_iter().all(|run| {
+            && single.into_iter().all(|(number, run)| {
                 let began = Instant::now();
                 let metrics = work(&run);
                 let seconds = began.elapsed().as_secs_f64();
-                report(vec![RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds }])
+                report(vec![RunOutcome { number, metrics, drawn: run.drawn, seconds }])
             })
     }
 }

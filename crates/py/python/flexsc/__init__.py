@@ -34,6 +34,7 @@ from flexsc._log import Log
 from flexsc._missing import reading as _reading
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
+from flexsc._population import evaluate
 from flexsc._quantities import Quantities
 from flexsc._result import Result, Samples
 from flexsc._row import Row
@@ -113,6 +114,7 @@ __all__ = [
     "appendage_from_nastran",
     "campaign",
     "estimate",
+    "evaluate",
     "examples",
     "from_csv",
     "from_nastran",

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from math import prod
 from operator import index
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
+from flexsc._design import Points, Sample, design
 from flexsc._missing import reading
 from flexsc._progress import Progress, callback
+from flexsc._result import Detail
 from flexsc._scenario import Scenario
 from flexsc._table import Table
+from flexsc._threads import threads as threads_of
 from flexsc._values import checked, run_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     import numpy.typing as npt
-
-Sample = Literal["random", "latin-hypercube", "sobol"]
-"""The method by which the `[uncertain]` keys are drawn."""
 
 
 def campaign(
@@ -35,6 +34,7 @@ def campaign(
     sample: Sample = "random",
     replicas: int = 1,
     out: str | os.PathLike[str] | None = None,
+    log: Detail = "none",
     executor: Executor | None = None,
     task_s: float = 1.0,
     force: bool = False,
@@ -53,24 +53,28 @@ def campaign(
         seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
         metrics: The metrics in the table; if omitted, all of them.
-        sample: The method by which the `[uncertain]` keys are drawn.
+        sample: The method by which the `[uncertain]` keys are drawn: `random`, `latin-hypercube` or `sobol`.
+            A Latin hypercube has as many points as runs of these end with; `("latin-hypercube", 1000)` gives
+            their number, so that `range(0, 500)` is a part of it.
         replicas: Number of runs per drawn point, which differ only in their noise.
         out: The directory for the rows, as Parquet files; it is created if missing. A location that `fsspec`
             supports, such as `s3://bucket/study`, is accepted. The same call continues a stopped campaign.
+        log: The detail of a log of each run, `NAME-RUN.mcap` in the directory `out`: `events`, `full` or
+            `scene`, as in `Scenario.simulate`. Runs with logs are simulated one by one, and not in batches.
         executor: The executor of the runs, such as a `concurrent.futures.ProcessPoolExecutor`, or Dask's
             through `flexsc.dask.campaign`. Workers write their rows to `out`, which all of them must be able
             to reach; without `out` the rows return through this process. Parts written in Python travel with
             the tasks, if they can be pickled.
         task_s: Approximate duration of a task of the executor (s).
-        force: Replace another campaign in `out`.
+        force: Replace another campaign in `out`, and logs of other runs.
         progress: True to print a line with the finished runs and the remaining time to standard error, or a
             function that is called after each task with the number of finished runs and the total number.
 
     Raises:
         ScenarioError: The scenario does not allow this variation.
         SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
-        ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign, or
-            parts written in Python cannot be pickled.
+        ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign or
+            a log of another run, `log` has no directory, or parts written in Python cannot be pickled.
         OSError: `out` cannot be written, or another process is using it.
 
     >>> import flexsc
@@ -82,86 +86,107 @@ def campaign(
     0.041
     """
     numbers = runs if isinstance(runs, range) else range(_whole("runs", runs))
-    if numbers.step != 1 or not numbers:
-        raise ValueError(f"runs must be a number of runs, or a non-empty range of step 1, got {runs!r}")
-    if not task_s > 0.0:
-        raise ValueError(f"task_s must be a positive number, got {task_s}")
-    if index(replicas) < 1:
-        raise ValueError(f"replicas must be at least 1, got {replicas}")
+    span = _span(numbers, None)
     checked(scenario)
-    span = (run_number(numbers.start), run_number(numbers.stop))
-    study = _Study(scenario, span, [], sample, replicas, metrics, seed, yes, True)
-    return study.table(jobs, out, executor, task_s, force, progress)
+    replicas = _replicas(replicas)
+    method, points = sample if isinstance(sample, tuple) else (sample, -(-span[1] // replicas))
+    drawn = engine.Design()
+    drawn.draw(method, index(points))
+    drawn.repeat(replicas)
+    return _Study(scenario, span, drawn, metrics, seed, yes, True, log).table(
+        jobs, out, executor, task_s, force, progress
+    )
 
 
 def sweep(
     scenario: Scenario,
-    key: str | Mapping[str, Sequence[float] | npt.NDArray[Any]],
-    values: Sequence[float] | npt.NDArray[Any] | None = None,
+    key: str | Mapping[str, Sequence[Any] | npt.NDArray[Any]] | None = None,
+    values: Sequence[Any] | npt.NDArray[Any] | None = None,
     jobs: int | None = None,
     seed: int | None = None,
     yes: bool = False,
     *,
+    points: Points | None = None,
+    sample: Sample | None = None,
     metrics: Sequence[str] | None = None,
     replicas: int = 1,
     uncertain: bool = False,
+    runs: range | None = None,
     out: str | os.PathLike[str] | None = None,
+    log: Detail = "none",
     executor: Executor | None = None,
     task_s: float = 1.0,
     force: bool = False,
     progress: Progress = None,
 ) -> Table:
-    """Simulate a scenario once per value of a key, or per combination of the values of several keys.
+    """Simulate a scenario once per value of a key, per combination of values of several keys, or per point
+    of a table or a sample.
 
     For one key, run i has value i. For several keys, the value of the last key changes fastest:
-    `table[metric].reshape(len(first), len(second))` is a map.
+    `table[metric].reshape(len(first), len(second))` is a map. The rows are those of `flexsc sweep` with the
+    same points.
 
     Args:
         scenario: The scenario to vary.
         key: The key, such as `law.relay.k_t`, or a mapping from each key to its values.
-        values: The values of a single key, of shape (runs,), such as `numpy.linspace(0.28, 0.40, 25)`.
+        values: The values of a single key, such as `numpy.linspace(0.28, 0.40, 25)`: numbers, words,
+            booleans, or whatever else the key accepts. Of an array of shape (runs, n) each row is a value.
         jobs: Number of threads, at most 1024; if omitted, one per core.
         seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
-        metrics: The metrics in the table; if omitted, all of them.
+        points: Points that set several keys together: a mapping from each key to a column of values, a
+            sequence of mappings, a data frame of pandas or Polars, or the path of a CSV file of numbers.
+            With `key` too, each point is combined with its values.
+        sample: A method with a number of points, such as `("sobol", 1024)`, `("latin-hypercube", 1000)` or
+            `("random", 1000)`: a tuple `(low, high)` as values is then a range, and the points are spread
+            over the ranges of all such keys together. With `uncertain`, the method draws the `[uncertain]`
+            keys.
+        metrics: The metrics in the table; if omitted, all that the scenario itself has.
         replicas: Number of runs per point, in sequence, which differ only in their noise.
         uncertain: Draw the `[uncertain]` keys too, anew for each point; otherwise they keep their values.
+        runs: A part of the runs, such as `range(500, 1000)`; if omitted, all of them.
         out: The directory for the rows, as in `campaign`. The same call continues a stopped sweep.
+        log: The detail of a log of each run in the directory `out`, as in `campaign`.
         executor: The executor of the runs, as in `campaign`.
         task_s: Approximate duration of a task of the executor (s).
-        force: Replace another campaign in `out`.
+        force: Replace another campaign in `out`, and logs of other runs.
         progress: True, or a function that is called after each task, as in `campaign`.
 
     Raises:
-        ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
-            finite. Any other value that is not accepted becomes a row with an `error`.
+        ScenarioError: There is no such key, it does not accept the first or the last value, or a value of a
+            table is not finite. Any other value that is not accepted becomes a row with an `error`.
         SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
+        ValueError: The points do not have equally many values of each key, or there are none.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
     >>> flexsc.sweep(scenario, "law.relay.k_t", [0.30, 0.31, 0.32])["switchings"].tolist()
     [82.0, 81.0, 81.0]
-    """
-    import numpy as np
 
+    Points that set two keys together, and a sample of a range of each:
+
+    >>> pairs = {"law.relay.k_t": [0.30, 0.32], "body.planar.angle": [0.0, 1e-4]}
+    >>> flexsc.sweep(scenario, points=pairs)["law.relay.k_t"].tolist()
+    [0.3, 0.32]
+    >>> ranges = {"law.relay.k_t": (0.28, 0.40), "body.planar.angle": (0.0, 1e-3)}
+    >>> table = flexsc.sweep(scenario, ranges, sample=("sobol", 8))
+    >>> table.rows, bool((table["law.relay.k_t"] < 0.34).sum() == 4)
+    (8, True)
+    """
     checked(scenario)
-    if isinstance(key, str) == (values is None):
-        raise ValueError("values must be given with a single key, and with no mapping of keys")
-    grids = []
-    for name, of_key in {key: values}.items() if isinstance(key, str) else key.items():
-        numbers = np.asarray(of_key, dtype=np.float64)
-        if numbers.ndim != 1 or len(numbers) == 0:
-            raise ValueError(f"values must be of shape (runs,) and not empty, got {numbers.shape}")
-        grids.append((name, numbers.tolist()))
-    if not grids:
+    if key is None and points is None:
         raise ValueError("a sweep needs a key")
-    if index(replicas) < 1:
-        raise ValueError(f"replicas must be at least 1, got {replicas}")
-    if not task_s > 0.0:
-        raise ValueError(f"task_s must be a positive number, got {task_s}")
-    runs = replicas * prod(len(numbers) for _, numbers in grids)
-    study = _Study(scenario, (0, runs), grids, "random", replicas, metrics, seed, yes, uncertain)
-    return study.table(jobs, out, executor, task_s, force, progress)
+    if (key is None or not isinstance(key, str)) != (values is None):
+        raise ValueError("values must be given with a single key, and with no mapping of keys")
+    varied = {} if key is None else {key: values} if isinstance(key, str) else key
+    if points is None and not varied:
+        raise ValueError("a sweep needs a key")
+    draws = uncertain and bool(scenario.to_dict().get("uncertain"))
+    made = design(scenario.name, varied, points, sample, _replicas(replicas), draws)
+    span = _span(runs, made.runs)
+    return _Study(scenario, span, made, metrics, seed, yes, uncertain, log).table(
+        jobs, out, executor, task_s, force, progress
+    )
 
 
 def read_campaign(path: str | os.PathLike[str]) -> Table:
@@ -195,13 +220,12 @@ class _Study(NamedTuple):
 
     scenario: Scenario
     span: tuple[int, int]
-    grids: list[tuple[str, list[float]]]
-    sample: Sample
-    replicas: int
+    design: engine.Design
     metrics: Sequence[str] | None
     seed: int | None
     yes: bool
     draws: bool
+    log: Detail
 
     def table(
         self,
@@ -213,33 +237,34 @@ class _Study(NamedTuple):
         progress: Progress,
     ) -> Table:
         """Simulate the runs: on threads here, on an executor, or into a directory."""
+        if not task_s > 0.0:
+            raise ValueError(f"task_s must be a positive number, got {task_s}")
+        if self.log != "none":
+            _check_place(out)
         scenario = self.scenario if self.seed is None else self.scenario.with_("seed", self.seed)
-        if jobs is None and scenario.parts:
-            jobs = 1
         names = None if self.metrics is None else list(self.metrics)
         work = engine.Work.create(
             scenario._native,
             self.span,
-            self.grids,
-            self.sample,
-            self.replicas,
+            self.design,
             names,
             None if executor is None else task_s,
             self.yes,
             self.draws,
+            self.log,
         )
-        threads, report = _threads(jobs), callback(progress)
+        threads, report = threads_of(jobs, scenario), callback(progress)
         if out is None and executor is None and report is None:
             columns, summaries = work.make(work.runs, threads)
             return _checked(Table(work, columns.__getitem__, lambda: summaries))
         if executor is not None and out is None and scenario.parts:
             from flexsc import _own_parts
 
-            study = (self.span, self.grids, self.sample, self.replicas, names, self.draws)
+            study = (self.span, self.design.text, names, self.draws)
             return _checked(_own_parts.run(scenario, study, work, executor, threads, task_s, report))
         from flexsc._executor import run
 
-        return _checked(run(work, out, executor, threads, task_s, force, report))
+        return _checked(run(work, out, executor, threads, task_s, force, report, self.log))
 
 
 def _checked(table: Table) -> Table:
@@ -253,16 +278,35 @@ def _checked(table: Table) -> Table:
     return table
 
 
+def _check_place(out: str | os.PathLike[str] | None) -> None:
+    """Refuse logs of runs without a directory."""
+    if out is None:
+        raise ValueError("log needs `out`, the directory of the logs")
+    if "://" in os.fspath(out):
+        raise ValueError(f"log needs a directory that every worker reaches by its path, not {out}")
+
+
+def _span(runs: range | None, count: int | None) -> tuple[int, int]:
+    """Return the first run and the one after the last, of at most `count` runs."""
+    if runs is None:
+        return 0, count or 0
+    if not isinstance(runs, range) or runs.step != 1 or not runs:
+        raise ValueError(f"runs must be a number of runs, or a non-empty range of step 1, got {runs!r}")
+    if count is not None and runs.stop > count:
+        raise ValueError(f"runs must be within the {count} runs of the sweep, got {runs!r}")
+    return run_number(runs.start), run_number(runs.stop)
+
+
+def _replicas(replicas: int) -> int:
+    """Check the number of runs of each point."""
+    if index(replicas) < 1:
+        raise ValueError(f"replicas must be at least 1, got {replicas}")
+    return index(replicas)
+
+
 def _whole(name: str, number: object) -> int:
     """Check an integer; a float with the value of one is named as such."""
     try:
         return index(number)  # type: ignore[arg-type]
     except TypeError:
         raise TypeError(f"{name} must be an integer or a range, got {number!r}") from None
-
-
-def _threads(jobs: int | None) -> int:
-    jobs = 0 if jobs is None else index(jobs)
-    if not (jobs == 0 or 1 <= jobs <= 1024):
-        raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
-    return jobs

@@ -49,6 +49,11 @@ class Local:
         """The missing parts."""
         return work.missing(os.listdir(os.path.join(self.name, _RUNS)))
 
+    def finish(self) -> None:
+        """Write the table of the statistics."""
+        if self._directory is not None:
+            self._directory.write_statistics()
+
     def end(self) -> None:
         """Release the lock for other processes."""
         self._directory = None
@@ -94,6 +99,9 @@ class Remote:
         files, root = self._files()
         return work.missing(_names(files, f"{root}/{_RUNS}"))
 
+    def finish(self) -> None:
+        """Do nothing: whoever reads the rows has their statistics."""
+
     def end(self) -> None:
         """Do nothing: a bucket has no lock, and a part that is written twice has the same contents."""
 
@@ -133,6 +141,7 @@ def run(
     task_s: float,
     force: bool,
     progress: Callable[[int, int], None] | None,
+    log: str = "none",
 ) -> Table:
     """Run the missing parts of a campaign, and return all of its rows."""
     kept = _Temporary() if out is None else None
@@ -151,7 +160,7 @@ def run(
     try:
         if executor is None:
             for part in missing:
-                _write(store.name, work.hash, [part], jobs)
+                _write(store.name, work.hash, [part], jobs, log, force)
                 done([part])
         elif kept is None:
             distribute(
@@ -159,7 +168,7 @@ def run(
                 missing,
                 task_s,
                 done,
-                lambda parts: (_write, store.name, work.hash, parts, jobs or 1),
+                lambda parts: (_write, store.name, work.hash, parts, jobs or 1, log, force),
             )
         else:
 
@@ -170,6 +179,8 @@ def run(
             distribute(
                 executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep
             )
+        if kept is None:
+            store.finish()
     finally:
         store.end()
     if kept is None:
@@ -248,12 +259,14 @@ def _work_at(name: str, _hash: str) -> engine.Work:
     return engine.Work.parse(files.cat_file(f"{root}/{_MANIFEST}").decode())
 
 
-def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[float, None]:
+def _write(
+    name: str, hashed: str, parts: Sequence[Span], jobs: int, log: str, force: bool
+) -> tuple[float, None]:
     """Run parts and write them to the campaign's location: a worker's task. Return its duration (s)."""
     began = time.perf_counter()
     if "://" not in name:
         for part in parts:
-            _opened(name, hashed).write_part(part, jobs)
+            _opened(name, hashed).write_part(part, jobs, log, force)
     else:
         files, root = _file_system(name)
         for part in parts:

@@ -20,12 +20,12 @@ def get(scenario: Scenario, key: str) -> Any:
     """Return the value of a key: see `Scenario.get`."""
     path, values = steps(key), scenario.to_dict()
     above, last = value_at(values, path[:-1]), path[-1]
-    if isinstance(last, str) and isinstance(above, dict) and last not in above and _is_known(scenario, key):
+    if isinstance(last, str) and isinstance(above, dict) and last not in above and is_known(scenario, key):
         return None
     return value_at(values, path)
 
 
-def _is_known(scenario: Scenario, key: str) -> bool:
+def is_known(scenario: Scenario, key: str) -> bool:
     """True if a scenario accepts a key: a value of a wrong type is then the engine's only complaint."""
     try:
         scenario.with_(key, [[[[]]]])

@@ -12,6 +12,7 @@ __all__ = [
     "Authority",
     "Commands",
     "Demanded",
+    "Design",
     "Directory",
     "Draws",
     "Effort",
@@ -272,23 +273,33 @@ class Hold:
         moment: float | None = None,
     ) -> Hold: ...
     @property
-    def torque(self) -> float | None: ...
+    def torque(self) -> float | None:
+        """Torque (N m; rad/s² for a body without inertia; for a wheel, units of its command), if it is
+        commanded."""
     @property
-    def acceleration(self) -> float | None: ...
+    def acceleration(self) -> float | None:
+        """Acceleration (rad/s²), if it is commanded."""
     @property
-    def change(self) -> float | None: ...
+    def change(self) -> float | None:
+        """Change of the rigid rate (rad/s), if it is commanded."""
     @property
-    def moment(self) -> float | None: ...
+    def moment(self) -> float | None:
+        """Magnetic moment (A m²), if it is commanded."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
     @property
-    def until(self) -> Instant | None: ...
+    def until(self) -> Instant | None:
+        """The instant of the next call, if it is given."""
     @property
-    def at_least(self) -> float | None: ...
+    def at_least(self) -> float | None:
+        """Angle (rad) from which on the law is called again, if it is given."""
     @property
-    def at_most(self) -> float | None: ...
+    def at_most(self) -> float | None:
+        """Angle (rad) down to which the law is called again, if it is given."""
     @property
-    def state(self) -> str: ...
+    def state(self) -> str:
+        """State of the law in the log, such as `PD`."""
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
     def __deepcopy__(self, _memo: object) -> Hold: ...
 
@@ -352,17 +363,23 @@ class ThreeAxisHold:
         state: str = "PD",
     ) -> ThreeAxisHold: ...
     @property
-    def torques(self) -> _Three | None: ...
+    def torques(self) -> _Three | None:
+        """Torques about each axis (N m), if they are commanded."""
     @property
-    def accelerations(self) -> _Three | None: ...
+    def accelerations(self) -> _Three | None:
+        """Accelerations about each axis (rad/s²), if they are commanded."""
     @property
-    def moments(self) -> _Three | None: ...
+    def moments(self) -> _Three | None:
+        """Magnetic moments along each axis (A m²), if they are commanded."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
     @property
-    def until(self) -> Instant | None: ...
+    def until(self) -> Instant | None:
+        """The instant of the next call, if it is given."""
     @property
-    def state(self) -> str: ...
+    def state(self) -> str:
+        """State of the law in the log, such as `PD`."""
     def __deepcopy__(self, _memo: object) -> ThreeAxisHold: ...
 
 @final
@@ -370,7 +387,9 @@ class Truth:
     """The true quantities that a sensor can measure at an instant."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `truth.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -419,17 +438,23 @@ class Reading:
         is_direction: bool = False,
     ) -> Reading: ...
     @property
-    def angle(self) -> float | None: ...
+    def angle(self) -> float | None:
+        """Measured angle (rad), of a sensor that measures it."""
     @property
-    def attitude(self) -> _Four | None: ...
+    def attitude(self) -> _Four | None:
+        """Measured attitude (w, x, y, z), of a sensor that measures it."""
     @property
-    def rate(self) -> _Three | None: ...
+    def rate(self) -> _Three | None:
+        """Measured rates about each axis (rad/s), of a sensor that measures them."""
     @property
-    def vector(self) -> _Three | None: ...
+    def vector(self) -> _Three | None:
+        """Measured vector in the body frame, of a sensor that measures one."""
     @property
-    def inertial(self) -> _Three | None: ...
+    def inertial(self) -> _Three | None:
+        """The same vector in the inertial frame."""
     @property
-    def is_direction(self) -> bool: ...
+    def is_direction(self) -> bool:
+        """True if the vector is a direction, whose length means nothing."""
     def __deepcopy__(self, _memo: object) -> Reading: ...
 
 @final
@@ -467,7 +492,9 @@ class Taken:
     """A sample with its context."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `taken.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -516,7 +543,9 @@ class Demanded:
     """The demands of the laws from now on."""
 
     @property
-    def now(self) -> Instant: ...
+    def now(self) -> Instant:
+        """The instant: `demanded.now - earlier` is the time between (s), without rounding before the
+        difference."""
     @property
     def time(self) -> float:
         """The instant (s)."""
@@ -542,9 +571,28 @@ class Effort:
         cls, torques: Sequence[float] | npt.NDArray[np.float64], *, after: float | None = None
     ) -> Effort: ...
     @property
-    def torques(self) -> list[float]: ...
+    def torques(self) -> list[float]:
+        """Torques about each axis (N m)."""
     @property
-    def after(self) -> float | None: ...
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given."""
+
+@final
+class Design:
+    def __new__(cls) -> Design: ...
+    @staticmethod
+    def parse(text: str) -> Design: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def runs(self) -> int | None: ...
+    def add_list(self, key: str, values: list[float]) -> None: ...
+    def add_table(self, keys: list[str], points: npt.NDArray[np.float64]) -> None: ...
+    def add_values(self, keys: list[str], points: list[list[str]]) -> None: ...
+    def add_sample(self, method: str, count: int, ranges: list[tuple[str, float, float]]) -> None: ...
+    def draw(self, method: str, points: int) -> None: ...
+    def repeat(self, replicas: int) -> None: ...
+    def share_noise(self, run: int) -> None: ...
 
 @final
 class Work:
@@ -552,14 +600,15 @@ class Work:
     def create(
         scenario: Scenario,
         runs: tuple[int, int],
-        grids: list[tuple[str, list[float]]],
-        sampling: str,
-        replicas: int,
+        design: Design,
         metrics: list[str] | None,
         part_s: float | None,
         yes: bool,
         drawn: bool,
+        log: str,
     ) -> Work: ...
+    @staticmethod
+    def for_points(scenario: Scenario, design: Design, metrics: list[str], yes: bool) -> Work: ...
     @staticmethod
     def parse(manifest: str) -> Work: ...
     def difference(self, there: Work) -> str | None: ...
@@ -575,9 +624,17 @@ class Work:
     @property
     def names(self) -> list[str]: ...
     @property
+    def flags(self) -> list[str]: ...
+    @property
+    def design(self) -> Design: ...
+    @property
     def scenario(self) -> Scenario: ...
+    def run(self, number: int) -> tuple[Scenario, int]: ...
     def missing(self, files: list[str]) -> list[tuple[int, int]]: ...
     def make(self, runs: tuple[int, int], jobs: int) -> tuple[dict[str, Any], list[_Summary]]: ...
+    def numbers(
+        self, runs: tuple[int, int], jobs: int, metrics: list[str]
+    ) -> tuple[npt.NDArray[np.float64], str | None]: ...
     def part(self, runs: tuple[int, int], jobs: int) -> tuple[str, bytes]: ...
 
 @final
@@ -588,7 +645,8 @@ class Directory:
     def open(path: str | os.PathLike[str]) -> Directory: ...
     @property
     def work(self) -> Work: ...
-    def write_part(self, runs: tuple[int, int], jobs: int) -> str: ...
+    def write_part(self, runs: tuple[int, int], jobs: int, log: str, force: bool) -> str: ...
+    def write_statistics(self) -> None: ...
     def column(self, name: str) -> Any: ...
     def statistics(self) -> list[_Summary]: ...
 

@@ -14,9 +14,9 @@ from flexsc._scenario import Scenario
 from flexsc._table import Table
 from flexsc.parts import CompiledLaw
 
-# The runs of a campaign: their range, the grids of a sweep, the method of the draws, the replicas, the
-# metrics, and whether uncertain keys are drawn.
-Study = tuple[Span, list[tuple[str, list[float]]], str, int, list[str] | None, bool]
+# The runs of a campaign: their range, the text of the design, the metrics, and whether uncertain keys are
+# drawn.
+Study = tuple[Span, str, list[str] | None, bool]
 
 
 def run(
@@ -89,8 +89,9 @@ def _rows(
 ) -> tuple[float, list[tuple[Span, dict[str, Any]]]]:
     """Simulate parts of a campaign: a worker's task. Return its duration (s) and the columns of each part."""
     began = time.perf_counter()
-    runs, grids, sample, replicas, names, draws = study
-    work = engine.Work.create(scenario._native, runs, grids, sample, replicas, names, None, True, draws)
+    runs, text, names, draws = study
+    design = engine.Design.parse(text)
+    work = engine.Work.create(scenario._native, runs, design, names, None, True, draws, "none")
     results = [(part, work.make(part, jobs)[0]) for part in parts]
     return time.perf_counter() - began, results
 

@@ -413,7 +413,8 @@ class Scenario:
         """Simulate the scenario. Other Python threads continue meanwhile.
 
         Args:
-            run: Number of the run, which selects its noise.
+            run: Number of the run, which selects its noise. Keys of `[uncertain]` keep their values:
+                `scenario.draw(3).simulate(3)` is run 3 of a campaign.
             log: `events` records all events (switchings, window means, adaptation). `full` adds the motion at
                 each period of the scenario's log and at every switching. `none` records the metrics only.
                 `scene` has the columns of `full`; a file written from it also has the scene for viewers.

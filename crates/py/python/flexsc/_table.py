@@ -50,6 +50,7 @@ class Table(Columns):
     ) -> None:
         self.scenario = Scenario._of(work.scenario)
         self.varied = work.keys
+        self._flags = work.flags
         self._names = work.names
         self._read = read
         self._summaries = summaries
@@ -58,6 +59,7 @@ class Table(Columns):
         self._kept: object = None
         self._work: engine.Work | None = work
         self._manifest: str | None = None
+        self._design: str | None = None
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
@@ -84,6 +86,8 @@ class Table(Columns):
             raise no_such("no column", column, self._names)
         if column not in self._columns:
             values = _array(column in ("run", "seed", *self.varied), self._read(column))
+            if column in self._flags:
+                values = values == "true"
             read_only([values])
             self._columns[column] = values
         return self._columns[column]
@@ -121,15 +125,8 @@ class Table(Columns):
         count, at = self.rows, index(place)
         if not -count <= at < count:
             raise IndexError(f"no row {at}; the table has rows 0 to {count - 1}")
-        values = {key: self[key][at].item() for key in self.varied}
-        scenario = self._undrawn()
-        return Row(scenario.with_(values) if values else scenario, int(self["run"][at]))
-
-    def _undrawn(self) -> Scenario:
-        """The scenario without `[uncertain]` keys: those that vary have the values of a row."""
-        native = self.scenario._native
-        work = engine.Work.create(native, (0, 1), [], "random", 1, [], None, True, False)
-        return Scenario._of(work.scenario)
+        native, run = self._campaign().run(int(self["run"][at]))
+        return Row(Scenario._of(native), run)
 
     def worst(self, metric: str, *, smallest: bool = False) -> Row:
         """Return the row with the largest value of a metric, or with the smallest.
@@ -254,7 +251,7 @@ class Table(Columns):
 
         drawn = self.scenario.to_dict().get("uncertain", {})
         keys = [key for key in self.varied if key not in drawn]
-        if not keys or not self.rows:
+        if not keys or not self.rows or any(self[key].dtype == object for key in keys):
             return {}
         values = {key: self[key][np.sort(np.unique(self[key], return_index=True)[1])] for key in keys}
         points = prod(len(of_key) for of_key in values.values())
@@ -293,7 +290,9 @@ class Table(Columns):
         """Return the state for pickles and copies: all columns, statistics, and the manifest of the work."""
         unpicklable = ("_read", "_summaries", "_kept", "_work")
         state = {name: value for name, value in self.__dict__.items() if name not in unpicklable}
-        if self._work is not None and not self.scenario.parts:
+        if self._work is not None and self.scenario.parts:
+            state["_design"] = self._work.design.text
+        elif self._work is not None:
             state["_manifest"] = self._work.manifest
         return {**state, "_columns": self.columns, "_statistics": self.statistics()}
 
@@ -314,6 +313,13 @@ class Table(Columns):
                 raise ValueError(f"{self.scenario.name}: {why}")
             self._work = engine.Work.parse(self._manifest)
         return self._work
+
+    def _campaign(self) -> engine.Work:
+        """Return work with the runs of the table, which one with parts in Python creates from the design."""
+        if self._work is not None or self._design is None:
+            return self._recreated_work()
+        design, native = engine.Design.parse(self._design), self.scenario._native
+        return engine.Work.create(native, (0, 1), design, [], None, True, True, "none")
 
     def _figures(self, kind: str | None, metrics: Sequence[str]) -> list[tuple[str, engine.Figure]]:
         """The engine's figures of the table, each with its name, as drawn by `flexsc.plot`."""

@@ -51,7 +51,11 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, (date, time)):
         return value.isoformat().replace("+00:00", "Z")
     if isinstance(value, Part):
-        return toml(origin, key, value.to_dict(), depth + 1)
+        values = value.to_dict()
+        # A path may have the name of the kind: `actuator.wheels`.
+        kind = key.rpartition(".")[2]
+        inner = values[kind] if kind == value._tag and kind in values else values
+        return toml(origin, key, inner, depth + 1)
     if isinstance(value, Mapping):
         pairs = []
         for name, inner in value.items():
@@ -62,6 +66,9 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, (list, tuple)):
         items = (toml(origin, f"{key}[{index}]", inner, depth + 1) for index, inner in enumerate(value))
         return f"[{', '.join(items)}]"
+    if hasattr(type(value), "to_base_units"):  # of pint
+        # Units of other libraries do not tell Hz from rad/s.
+        raise refused("found a quantity, expected its number in SI units, or a text such as '0.02 Hz'")
     as_list = getattr(value, "tolist", None)
     if as_list is not None:  # an array or a scalar of numpy
         return toml(origin, key, as_list(), depth + 1)

@@ -17,10 +17,11 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._campaign import Sample
 from flexsc._campaign import campaign as _campaign
+from flexsc._design import Sample
 from flexsc._executor import Local, run
 from flexsc._progress import Progress
+from flexsc._result import Detail
 from flexsc._scenario import Scenario
 from flexsc._table import Table
 
@@ -42,6 +43,7 @@ def campaign(
     sample: Sample = "random",
     replicas: int = 1,
     out: str | os.PathLike[str] | None = None,
+    log: Detail = "none",
     task_s: float = 1.0,
     force: bool = False,
     progress: Progress = None,
@@ -56,7 +58,8 @@ def campaign(
         client: The client of a scheduler.
         scenario: The scenario from which the runs are drawn.
         runs: The number of runs, or their range (of step 1).
-        jobs, seed, yes, metrics, sample, replicas, out, task_s, force, progress: As in `flexsc.campaign`.
+        jobs, seed, yes, metrics, sample, replicas, out, log, task_s, force, progress: As in
+            `flexsc.campaign`.
 
     Raises:
         ScenarioError, ValueError, OSError: As in `flexsc.campaign`.
@@ -71,6 +74,7 @@ def campaign(
         sample=sample,
         replicas=replicas,
         out=out,
+        log=log,
         executor=_Executor(client),
         task_s=task_s,
         force=force,

@@ -17,16 +17,20 @@ use super::object::{Method, Object, numbers, shape};
 use super::reading::Three;
 use super::signals::Signals;
 
-/// Inertia, rate and period about an axis, as an actuator knows them.
+/// The data about an axis that an actuator knows.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Setting {
+    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
     #[pyo3(get)]
     axis: usize,
+    /// The inertia that the torque accelerates (kg m²).
     #[pyo3(get)]
     inertia: f64,
+    /// Rate at the start (rad/s).
     #[pyo3(get)]
     rate: f64,
+    /// The law's period (s), if it has one.
     #[pyo3(get)]
     period: Option<f64>,
 }
@@ -38,7 +42,7 @@ impl Setting {
     }
 }
 
-/// Demands of the laws from now on.
+/// The demands of the laws from now on.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Demanded {
@@ -50,24 +54,27 @@ pub struct Demanded {
 
 #[pymethods]
 impl Demanded {
+    /// The instant: `demanded.now - earlier` is the time between (s), without rounding before the
+    /// difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// When (s).
+    /// The instant (s).
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
-    /// The numbers that are demanded, about each axis.
+    /// The demand about each axis.
     #[getter]
     fn values(&self) -> Vec<f64> {
         self.demands.iter().map(value).collect()
     }
 
-    /// The kinds of the commanded numbers: `torque`, `change` or `moment`.
+    /// The kind of each demand: a torque (N m), a change of the rigid rate (rad/s), or a magnetic moment
+    /// (A m²).
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         let kind = |demand: &Demand| match demand {
@@ -84,7 +91,7 @@ impl Demanded {
         self.rigid.into()
     }
 
-    /// The magnetic field in the body's axes as it is measured (T).
+    /// The measured magnetic field in the body frame (T).
     #[getter]
     fn field(&self) -> Option<Three> {
         self.field.map(|field| <[f64; 3]>::from(field).into())
@@ -97,7 +104,7 @@ fn value(demand: &Demand) -> f64 {
     }
 }
 
-/// Torques about each axis (N m), and after how many seconds the actuator is asked again.
+/// Torques about each axis (N m), and the time (s) after which the actuator is called again.
 ///
 /// >>> import flexsc
 /// >>> flexsc.Effort([0.01], after=0.05).torques
@@ -118,11 +125,13 @@ impl Effort {
         Ok(Self { torques: numbers(torques)?, after })
     }
 
+    /// Torques about each axis (N m).
     #[getter]
     fn torques(&self) -> Vec<f64> {
         self.torques.clone()
     }
 
+    /// Time to the next call (s), if it is given.
     #[getter]
     fn after(&self) -> Option<f64> {
         self.after.map(Span::seconds)

@@ -3,14 +3,14 @@
 use flexsc_core::numerics::random::{Seed, Stream as Engine};
 use pyo3::prelude::*;
 
-/// Source of the random numbers of a run.
+/// The source of the random numbers of a run.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Draws(pub Seed);
 
 #[pymethods]
 impl Draws {
-    /// The stream of a name. Streams of other names are independent of it.
+    /// The stream with this name. It is independent of streams with other names.
     fn stream(&self, name: &str) -> Stream {
         Stream(self.0.stream(name))
     }
@@ -32,19 +32,19 @@ impl Draws {
     }
 }
 
-/// Random numbers of a run, the same on every machine. A copy goes on as this one does.
+/// A stream of random numbers of a run, the same on every machine. A copy continues in the same way.
 #[pyclass(module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Stream(Engine);
 
 #[pymethods]
 impl Stream {
-    /// A number of [0, 1).
+    /// A uniformly distributed number in [0, 1).
     fn uniform(&mut self) -> f64 {
         self.0.uniform()
     }
 
-    /// A number with mean 0 and standard deviation 1.
+    /// A normally distributed number with mean 0 and standard deviation 1.
     fn normal(&mut self) -> f64 {
         self.0.normal()
     }

@@ -19,7 +19,7 @@ use super::object::{Method, Object, numbers, overrides, shape};
 use super::reading::{Four, Reading, Three, angle, attitude};
 use super::signals::Signals;
 
-/// Data of a scenario that an estimator knows before a run.
+/// The data of a scenario that an estimator knows before a run.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Known {
@@ -35,7 +35,7 @@ pub struct Known {
 
 #[pymethods]
 impl Known {
-    /// 1 or 3.
+    /// The number of axes: 1 or 3.
     #[getter]
     fn axes(&self) -> usize {
         self.inertias.len()
@@ -53,7 +53,7 @@ impl Known {
         self.modes.clone()
     }
 
-    /// Period of the samples (s).
+    /// Sampling period (s).
     #[getter]
     fn period(&self) -> Option<f64> {
         self.period.map(Span::seconds)
@@ -71,7 +71,7 @@ impl Known {
         self.rate_noise.clone()
     }
 
-    /// Kind of estimates that the law about each axis reads.
+    /// The quantities that the law about each axis reads.
     #[getter]
     fn reads(&self) -> Vec<&'static str> {
         self.reads.clone()
@@ -88,7 +88,7 @@ impl Known {
     }
 }
 
-/// A sample, and what is around it.
+/// A sample with its context.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Taken {
@@ -102,42 +102,47 @@ pub struct Taken {
 
 #[pymethods]
 impl Taken {
+    /// The instant: `taken.now - earlier` is the time between (s), without rounding before the
+    /// difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// When (s).
+    /// The instant (s).
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
-    /// Angle beyond the target (rad) and rate (rad/s) about each axis; None of a sensor that is silent.
+    /// Angle relative to the target (rad) and rate (rad/s) about each axis; None if the sensor is
+    /// silent.
     #[getter]
     fn measured(&self) -> Option<Vec<(f64, f64)>> {
         self.measured.clone()
     }
 
-    /// Reading of each sensor now, in the order of the scenario; None of one that was not due, or silent.
+    /// The measurement of each sensor now, in the order of the scenario; None if it was not due, or
+    /// silent.
     #[getter]
     fn readings(&self) -> Vec<Option<Reading>> {
         self.readings.clone()
     }
 
-    /// From where angles count (rad), of a body with one angle.
+    /// The origin of the angles (rad), for a single-axis body.
     #[getter]
     fn origin_angle(&self) -> Option<f64> {
         angle(&self.origin)
     }
 
-    /// The target (w, x, y, z), of a body with three axes.
+    /// The target (w, x, y, z), for a three-axis body.
     #[getter]
     fn origin_attitude(&self) -> Option<Four> {
         attitude(&self.origin)
     }
 
-    /// The true rigid angle beyond the target (rad) and rate (rad/s) about each axis, for ideal observers.
+    /// The true rigid angle relative to the target (rad) and rate (rad/s) about each axis, for
+    /// observers.
     #[getter]
     fn truth(&self) -> Vec<(f64, f64)> {
         self.truth.clone()

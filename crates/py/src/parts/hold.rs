@@ -9,12 +9,13 @@ use pyo3::types::PyDict;
 
 use super::instant::{Instant, span};
 
-/// A command from now on, and when the law is asked again.
+/// A command from now on, and the conditions for the next call of the law.
 ///
-/// `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
-/// `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
-/// asked again `after` this time (s), or at the instant `until`, or when the angle is `at_least` or `at_most` a
-/// level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
+/// `Hold(torque)` holds a torque (N m; rad/s² for a body without inertia; for a wheel, units of its command).
+/// Use `acceleration` (rad/s²), `change` of the rigid rate (rad/s) or `moment` (A m²) instead of it. The next
+/// call follows `after` a time (s), at the instant `until`, or when the angle is `at_least` or `at_most` a
+/// level (rad), whichever is first; if no time is given, after the law's `period`. `state` is the name in the
+/// log.
 ///
 /// >>> import flexsc
 /// >>> flexsc.Hold(-4e-5, at_most=4e-4, state="RACC").at_most
@@ -130,46 +131,56 @@ impl Hold {
         })
     }
 
+    /// Torque (N m; rad/s² for a body without inertia; for a wheel, units of its command), if it is
+    /// commanded.
     #[getter]
     fn torque(&self) -> Option<f64> {
         if let Command::Torque(value) = self.command { Some(value) } else { None }
     }
 
+    /// Acceleration (rad/s²), if it is commanded.
     #[getter]
     fn acceleration(&self) -> Option<f64> {
         if let Command::Acceleration(value) = self.command { Some(value) } else { None }
     }
 
+    /// Change of the rigid rate (rad/s), if it is commanded.
     #[getter]
     fn change(&self) -> Option<f64> {
         if let Command::Change(value) = self.command { Some(value) } else { None }
     }
 
+    /// Magnetic moment (A m²), if it is commanded.
     #[getter]
     fn moment(&self) -> Option<f64> {
         if let Command::Moment(value) = self.command { Some(value) } else { None }
     }
 
+    /// Time to the next call (s), if it is given.
     #[getter]
     fn after(&self) -> Option<f64> {
         self.after.map(Span::seconds)
     }
 
+    /// The instant of the next call, if it is given.
     #[getter]
     fn until(&self) -> Option<Instant> {
         self.until
     }
 
+    /// Angle (rad) from which on the law is called again, if it is given.
     #[getter]
     fn at_least(&self) -> Option<f64> {
         self.at_least
     }
 
+    /// Angle (rad) down to which the law is called again, if it is given.
     #[getter]
     fn at_most(&self) -> Option<f64> {
         self.at_most
     }
 
+    /// State of the law in the log, such as `PD`.
     #[getter]
     fn state(&self) -> &'static str {
         self.phase.label()

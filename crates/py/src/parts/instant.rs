@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
-/// An instant of a run, to the femtosecond: `Instant(whole, femtoseconds)`.
+/// An instant of a run with femtosecond resolution: `Instant(whole, femtoseconds)`.
 ///
 /// >>> from flexsc.parts import Instant
 /// >>> Instant(20000, 1) - Instant(20000, 0)

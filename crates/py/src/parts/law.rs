@@ -21,7 +21,7 @@ use super::instant::{Instant, span};
 use super::object::{Method, Object, shape};
 use super::signals::Signals;
 
-/// Capability of an actuator about an axis, as laws know it.
+/// The authority of an actuator about an axis, as laws know it.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Authority(pub EngineAuthority);
@@ -34,7 +34,8 @@ impl Authority {
         self.0.axis
     }
 
-    /// The largest accelerations of plus and minus (rad/s²); infinite without a limit.
+    /// The largest accelerations in the positive and negative direction (rad/s²); infinite without a
+    /// limit.
     #[getter]
     fn accelerations(&self) -> (f64, f64) {
         self.0.accelerations.into()
@@ -51,7 +52,7 @@ impl Authority {
     }
 }
 
-/// Why a law is asked, and what it knows then. Angles count from the target on three axes.
+/// The event at which a law is called, and its input. On three axes angles are relative to the target.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Event {
@@ -63,19 +64,20 @@ pub struct Event {
 
 #[pymethods]
 impl Event {
-    /// When: `event.now - earlier` is the time between (s), without rounding before the difference.
+    /// The instant: `event.now - earlier` is the time between (s), without rounding before the
+    /// difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// Time of the event (s).
+    /// The instant in seconds.
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
-    /// The start of the run, the time of the last hold, or its level that the angle has passed.
+    /// The start of the run, the time given by the last hold, or the level that the angle has passed.
     #[getter]
     fn cause(&self) -> &'static str {
         self.cause
@@ -93,62 +95,62 @@ impl Event {
         self.estimate.rate
     }
 
-    /// Angle of the target now (rad).
+    /// The goal of the angle at this time (rad).
     #[getter]
     fn goal_angle(&self) -> f64 {
         self.goal.at(self.now).0
     }
 
-    /// Rate of the target (rad/s).
+    /// The goal of the rate (rad/s).
     #[getter]
     fn goal_rate(&self) -> f64 {
         self.goal.rate
     }
 
-    /// Acceleration of the target (rad/s²), if the body is led to it.
+    /// The goal of the acceleration (rad/s²), for a target with a reference motion.
     #[getter]
     fn goal_acceleration(&self) -> f64 {
         self.goal.acceleration
     }
 
-    /// From when on the goal counts: the start, or the end of a manoeuvre.
+    /// The instant from which the goal applies: the start, or the end of a manoeuvre.
     #[getter]
     fn goal_from(&self) -> Instant {
         Instant(self.goal.from)
     }
 
-    /// Length of the rotation vector from the target, of which `angle` is a component (rad); 0 of a body with one angle.
+    /// Magnitude of the vector of the angles about all axes (rad); 0 for a single-axis body.
     #[getter]
     fn whole(&self) -> f64 {
         self.estimate.total_angle
     }
 
-    /// How fast the magnetic field along the axis changes (T/s).
+    /// Rate of change of the magnetic field along the axis (T/s).
     #[getter]
     fn field_rate(&self) -> f64 {
         self.estimate.field_rate
     }
 
-    /// Change of the rate that is commanded, and not yet executed (rad/s).
+    /// Change of the rate that is commanded but not yet executed (rad/s).
     #[getter]
     fn queued(&self) -> f64 {
         self.estimate.queued_rate
     }
 
-    /// The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s).
+    /// The dominant mode: displacement (rad), rate (rad/s) and frequency (rad/s).
     #[getter]
     fn dominant(&self) -> (f64, f64, f64) {
         let dominant = self.estimate.dominant;
         (dominant.displacement, dominant.rate, dominant.frequency)
     }
 
-    /// The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate.
+    /// The elastic modes: rate (rad/s), frequency (rad/s) and its jump per jump of the rigid rate.
     #[getter]
     fn elastic(&self) -> Vec<(f64, f64, f64)> {
         self.estimate.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
     }
 
-    /// Whether the elastic modes may be acted on.
+    /// Whether the law may act on the elastic modes.
     #[getter]
     fn trusted(&self) -> bool {
         self.estimate.elastic_is_trusted

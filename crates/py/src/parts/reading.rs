@@ -29,8 +29,9 @@ pub fn attitude(orientation: &Orientation) -> Option<Four> {
     if let Orientation::Attitude(q) = orientation { Some(four(q)) } else { None }
 }
 
-/// Reading of a sensor: the `angle` (rad) or the `attitude` (w, x, y, z), the true one if the sensor measures neither;
-/// the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with its value in `inertial` ones.
+/// A measurement: the `angle` (rad) or the `attitude` (w, x, y, z), which default to the true one; the
+/// `rate` (rad/s), three numbers or one; a `vector` in the body frame with its value in the `inertial`
+/// frame.
 ///
 /// >>> import flexsc
 /// >>> flexsc.Reading(angle=1e-3, rate=2e-6).rate
@@ -119,31 +120,37 @@ impl Reading {
         Ok(Self { at: orientation, rate, sight: measurement })
     }
 
+    /// Measured angle (rad), of a sensor that measures it.
     #[getter]
     fn angle(&self) -> Option<f64> {
         angle(self.at.as_ref()?)
     }
 
+    /// Measured attitude (w, x, y, z), of a sensor that measures it.
     #[getter]
     fn attitude(&self) -> Option<Four> {
         attitude(self.at.as_ref()?)
     }
 
+    /// Measured rates about each axis (rad/s), of a sensor that measures them.
     #[getter]
     fn rate(&self) -> Option<Three> {
         self.rate.map(Into::into)
     }
 
+    /// Measured vector in the body frame, of a sensor that measures one.
     #[getter]
     fn vector(&self) -> Option<Three> {
         self.sight.map(|measurement| measurement.vector.into()).map(<[f64; 3]>::into)
     }
 
+    /// The same vector in the inertial frame.
     #[getter]
     fn inertial(&self) -> Option<Three> {
         self.sight.map(|measurement| measurement.inertial.into()).map(<[f64; 3]>::into)
     }
 
+    /// True if the vector is a direction, whose length means nothing.
     #[getter]
     fn is_direction(&self) -> bool {
         self.sight.is_some_and(|measurement| measurement.is_direction)
@@ -154,7 +161,7 @@ impl Reading {
     }
 }
 
-/// True values at an instant.
+/// The true quantities that a sensor can measure at an instant.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Truth {
@@ -164,66 +171,69 @@ pub struct Truth {
 
 #[pymethods]
 impl Truth {
+    /// The instant: `truth.now - earlier` is the time between (s), without rounding before the
+    /// difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// When (s).
+    /// The instant (s).
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
-    /// The angle with its elastic part (rad), of a body with one.
+    /// The angle with its elastic part (rad), for a single-axis body.
     #[getter]
     fn angle(&self) -> Option<f64> {
         angle(&self.truth.orientation)
     }
 
-    /// The attitude (w, x, y, z), which turns vectors of the body's axes into inertial ones, of one with three axes.
+    /// The attitude (w, x, y, z) of a three-axis body, which rotates vectors from the body frame to the
+    /// inertial frame.
     #[getter]
     fn attitude(&self) -> Option<Four> {
         attitude(&self.truth.orientation)
     }
 
-    /// The elastic rotations at the sensor beside the attitude (rad).
+    /// The elastic rotations at the sensor, in addition to the attitude (rad).
     #[getter]
     fn elastic(&self) -> Three {
         self.truth.elastic.into()
     }
 
-    /// Rates at the sensor, elastic part included (rad/s).
+    /// The rates at the sensor, including the elastic part (rad/s).
     #[getter]
     fn rate(&self) -> Three {
         self.truth.rate.into()
     }
 
-    /// Rates of the body as if it were rigid (rad/s).
+    /// The rigid rates of the body (rad/s).
     #[getter]
     fn rigid(&self) -> Three {
         self.truth.rigid.into()
     }
 
-    /// The integral of `rate` (rad) but for a constant, as a gyro counts it.
+    /// The integral of `rate` (rad) up to a constant, as a gyro counts it.
     #[getter]
     fn turned(&self) -> Three {
         self.truth.turned.into()
     }
 
-    /// The magnetic field in inertial axes (T), if there is one.
+    /// The magnetic field in the inertial frame (T), if there is one.
     #[getter]
     fn field(&self) -> Option<Three> {
         self.truth.sky.field.map(|field| <[f64; 3]>::from(field).into())
     }
 
-    /// The direction to the Sun in inertial axes, in the light.
+    /// The direction to the Sun in the inertial frame, when in sunlight.
     #[getter]
     fn sun(&self) -> Option<Three> {
         self.truth.sky.sun.map(|sun| <[f64; 3]>::from(sun).into())
     }
 
-    /// The attitude turned by small angles about the body's axes.
+    /// The attitude rotated by three small angles about the body axes (rad).
     fn attitude_at(&self, angles: &Bound<'_, PyAny>) -> PyResult<Option<Four>> {
         Ok(attitude(&self.truth.orientation.rotated_by(exactly::<3>(angles, "angles")?)))
     }

@@ -22,7 +22,7 @@ use super::object::{Method, Object, numbers, shape};
 use super::reading::{Four, Three};
 use super::signals::Signals;
 
-/// Input of a law about three axes at a call. Angles are relative to the target.
+/// The input of a law about three axes at a call. Angles are relative to the target.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct ThreeAxisEvent {
@@ -43,19 +43,20 @@ impl ThreeAxisEvent {
 
 #[pymethods]
 impl ThreeAxisEvent {
-    /// When: `event.now - earlier` is the time between (s), without rounding before the difference.
+    /// The instant: `event.now - earlier` is the time between (s), without rounding before the
+    /// difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
-    /// Time of the event (s).
+    /// The instant in seconds.
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
-    /// The start of the run, or the time of the last hold.
+    /// The start of the run, or the time given by the last hold.
     #[getter]
     fn cause(&self) -> &'static str {
         self.cause
@@ -73,7 +74,7 @@ impl ThreeAxisEvent {
         self.each(|estimate| estimate.rate)
     }
 
-    /// Quaternion (w, x, y, z) of the rotation from the target.
+    /// Quaternion (w, x, y, z) of the same rotation.
     #[getter]
     fn quaternion(&self) -> Four {
         let (x, y, z) = self.angles();
@@ -81,19 +82,19 @@ impl ThreeAxisEvent {
         (q.w, q.i, q.j, q.k)
     }
 
-    /// Goal of the angles (rad).
+    /// The goal of the angles (rad): 0, unless a target drifts.
     #[getter]
     fn goal_angles(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.at(self.now).0).into()
     }
 
-    /// Goal of the rates (rad/s).
+    /// The goal of the rates (rad/s).
     #[getter]
     fn goal_rates(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.rate).into()
     }
 
-    /// Goal of the accelerations (rad/s²), for a target with a reference motion.
+    /// The goal of the accelerations (rad/s²), for a target with a reference motion.
     #[getter]
     fn goal_accelerations(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.acceleration).into()
@@ -120,8 +121,10 @@ impl ThreeAxisEvent {
 
 /// Commands about three axes from now on, and the time of the next call of the law.
 ///
-/// `ThreeAxisHold(torques)` holds torques (N m) of shape (3,); `accelerations` (rad/s²) and magnetic `moments` (A m²) take
-/// their place. The law is asked again `after` this time (s), or at the instant `until`; without a time after its `period`.
+/// `ThreeAxisHold(torques)` holds torques (N m) of shape (3,). Use `accelerations` (rad/s²), which are
+/// multiplied by the inertia, or magnetic `moments` (A m²) instead of them. The next call follows `after` a
+/// time (s) or at the instant `until`; if no time is given, after the law's `period`. `state` is the name in
+/// the log.
 ///
 /// >>> import flexsc
 /// >>> flexsc.ThreeAxisHold([0.01, 0.0, -0.02], after=0.5).torques
@@ -176,31 +179,37 @@ impl ThreeAxisHold {
         Ok(Self { commands, after, until, phase })
     }
 
+    /// Time to the next call (s), if it is given.
     #[getter]
     fn after(&self) -> Option<f64> {
         self.after.map(Span::seconds)
     }
 
+    /// The instant of the next call, if it is given.
     #[getter]
     fn until(&self) -> Option<Instant> {
         self.until
     }
 
+    /// State of the law in the log, such as `PD`.
     #[getter]
     fn state(&self) -> &'static str {
         self.phase.label()
     }
 
+    /// Torques about each axis (N m), if they are commanded.
     #[getter]
     fn torques(&self) -> Option<Three> {
         self.values(|command| if let Command::Torque(value) = command { Some(value) } else { None })
     }
 
+    /// Accelerations about each axis (rad/s²), if they are commanded.
     #[getter]
     fn accelerations(&self) -> Option<Three> {
         self.values(|command| if let Command::Acceleration(value) = command { Some(value) } else { None })
     }
 
+    /// Magnetic moments along each axis (A m²), if they are commanded.
     #[getter]
     fn moments(&self) -> Option<Three> {
         self.values(|command| if let Command::Moment(value) = command { Some(value) } else { None })

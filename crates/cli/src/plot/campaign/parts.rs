@@ -60,13 +60,16 @@ pub fn campaign_runs(
     let all = work.fields().iter().filter(is_metric).collect::<Vec<_>>();
     let few = all.len() * numbers.len() <= HELD;
     let wanted = |name: &str| few || MAIN.contains(&name) || named.iter().any(|named| named == name);
+    // Words and lists have no place on an axis.
+    let numeric = |key: &&str| work.fields().iter().any(|field| field.name == *key && is_number(&field));
+    let drawn: Vec<&str> = keys.iter().copied().filter(numeric).collect();
     let fields: Vec<(&ColumnHeading, _)> = all
         .into_iter()
         .filter(|field| wanted(&field.name))
         .filter_map(|field| Some((field, metrics::meaning(&field.name, Some(scenario))?)))
         .collect();
     let names: Vec<&str> =
-        keys.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
+        drawn.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
     let mut columns = read(&names)?.into_iter().map(|column| {
         let texts = match &column {
             Some(ColumnCells::Integers(_)) => TextCells::Integers,
@@ -82,7 +85,7 @@ pub fn campaign_runs(
         values,
         swept: varied.contains(name),
     };
-    let keys = keys.iter().zip(columns.by_ref()).map(key).collect();
+    let keys = drawn.iter().zip(columns.by_ref()).map(key).collect();
     let metric = |((_, meaning), (texts, values))| MetricColumn { meaning, texts, values };
     let metrics = fields.into_iter().zip(columns).map(metric).collect();
     Ok(CampaignRuns {
