@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from flexsc._simulator import Simulator
+    from flexsc._simulators import Simulators
+
 
 @dataclass(frozen=True)
 class Signal:
@@ -248,6 +251,36 @@ class Linear:
         d = np.zeros((inputs, len(model.c)))
         states = tuple(Signal(f"expected_{state.name}", state.unit) for state in model.states)
         return Linear(a, into, k, d, states, model.outputs, model.inputs, model.period)
+
+    def state_of(self, simulator: Simulator | Simulators) -> npt.NDArray[np.float64]:
+        """Return the state of the model where a run is, so that the model can continue from there.
+
+        On one axis the state is that of the simulator by its names. On three axes the rigid angles are the
+        pointing error less the rotation of the hub by the modes. Torques that still act are states of models
+        with a delay shorter than a period. The model describes small deviations from rest: it continues as
+        the run does up to the second order of the deviation.
+
+        Args:
+            simulator: A run of the scenario of the model, or `Simulators` for many.
+
+        Returns:
+            The state, of shape (states,), or (copies, states).
+
+        >>> scenario = flexsc.Scenario.example("relay-sampled")
+        >>> sim, model = flexsc.Simulator(scenario), scenario.linearise(period=0.5)
+        >>> sim.step(-2.0, 10.0)
+        >>> predicted = model.a @ model.state_of(sim) + model.b @ [1.0]
+        >>> sim.step(1.0, 0.5)
+        >>> bool(abs(predicted - model.state_of(sim)).max() < 1e-12)
+        True
+
+        Raises:
+            ValueError: The simulator does not have a state of the model, such as that of a filter, a law, or
+                a command under way; the text names it.
+        """
+        from flexsc._model_state import state_of
+
+        return state_of(self, simulator)
 
     def margins(self, inputs: Sequence[str] | None = None) -> Margins:
         """Return the margins of a loop that `linearise(loop=...)` opened: how far its commands may be off.
