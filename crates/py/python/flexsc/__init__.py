@@ -61,7 +61,8 @@ from flexsc.parts import (
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Margins, Signal
+    from flexsc._linear import Linear, Signal
+    from flexsc._margins import Margins
     from flexsc._result import Detail
     from flexsc.structure import (
         StateSpace,
@@ -146,7 +147,7 @@ _MODULES = ("parts", "plot", "scenario", "structure")
 _EXTRAS = ("dask", "gym")
 _LATER = {
     "Linear": "_linear",
-    "Margins": "_linear",
+    "Margins": "_margins",
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",
