@@ -170,7 +170,8 @@ def test_bode_has_magnitude_and_phase(period: float | None) -> None:
         sharp = zeros if period is None else np.log(zeros[np.abs(zeros) > 1e-9]) / period
         for zero in sharp[(sharp.imag > 0.1) & (sharp.imag < 10.0) & (np.abs(sharp.real) < 0.1)]:
             assert (np.abs(np.asarray(w) - zero.imag) < np.abs(zero.real)).sum() >= 10
-    assert [text.get_text() for text in above.get_legend().get_texts()] == ["angle", "rate"]
+    legend: Any = above.get_legend()
+    assert [text.get_text() for text in legend.get_texts()] == ["angle", "rate"]
     own = model.select(outputs=["rate"]).bode((above, below), frequencies=[0.1, 1.0])
     assert own == (above, below)
     assert len(above.lines) == (3 if period is None else 5)

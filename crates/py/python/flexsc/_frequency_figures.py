@@ -194,8 +194,9 @@ def _with_zeros(model: Linear, pairs: list[tuple[int, int]]) -> Values:
 
     grid = model.frequency_grid()
     more = [around_zeros(model, *pair) for pair in pairs]
-    whole = np.unique(np.concatenate([grid, *more]))
-    return whole[(whole >= grid[0]) & (whole <= grid[-1])]
+    whole: Values = np.unique(np.concatenate([grid, *more]))
+    inside: Values = whole[(whole >= grid[0]) & (whole <= grid[-1])]
+    return inside
 
 
 def _pairs(model: Linear) -> Iterator[tuple[int, int]]:

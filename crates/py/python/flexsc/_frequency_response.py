@@ -125,7 +125,7 @@ def response(model: Linear, frequencies: npt.ArrayLike | None) -> npt.NDArray[np
     w = frequency_grid(model) if frequencies is None else np.asarray(frequencies, dtype=np.float64)
     if w.ndim != 1 or not np.isfinite(w).all():
         raise ValueError(f"frequencies must be finite numbers of shape (frequencies,), got {w!r}")
-    at = 1j * w if model.period is None else np.exp(1j * w * model.period)
+    at: Any = 1j * w if model.period is None else np.exp(1j * w * model.period)
     order = len(model.a)
     found = np.empty((len(w), *model.d.shape), dtype=np.complex128)
     batch = max(1, _BATCH // max(1, order * order))

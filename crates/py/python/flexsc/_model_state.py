@@ -87,7 +87,8 @@ def _without_back_emf(simulator: Simulator | Simulators) -> Values:
     kind, wheel = ("", {}) if isinstance(actuator, list) else kind_of(actuator)
     if kind != "wheel":
         return state["torque"]
-    return state["torque"] + wheel["back_emf"] * state[wheel["opposes"].replace("body_", "")]
+    given: Values = state["torque"] + wheel["back_emf"] * state[wheel["opposes"].replace("body_", "")]
+    return given
 
 
 def _hub_rotations(simulator: Simulator | Simulators) -> Values:
