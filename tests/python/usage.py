@@ -52,6 +52,9 @@ ranges = {"law.relay.k_t": (0.28, 0.40), "body.planar.angle": (0.0, 1e-3)}
 sobol: flexsc.Table = flexsc.sweep(scenario, ranges, sample=("sobol", 4), metrics=["duty"])
 duties: npt.NDArray[np.float64] = flexsc.evaluate(scenario, ["law.relay.k_t"], [[0.3], [0.31]], "duty")
 unit = flexsc.metrics()["duty"]["unit"]
+slopes: flexsc.Sensitivities = flexsc.sensitivities(scenario, ["body.planar.inertia"], ["duty"], step=0.1)
+slope: float = slopes["duty"]["body.planar.inertia"]
+tuned: flexsc.Scenario = flexsc.optimise(scenario, ["law.relay.k_t"], "duty", maxiter=2)[0]
 sim: flexsc.Simulator = flexsc.Simulator(scenario, run=1)
 switched: bool = sim.run_until("switching", limit=100.0)
 before: flexsc.Snapshot = sim.snapshot()
@@ -92,6 +95,12 @@ own: flexsc.Scenario = scenario.with_parts(law=Damper())
 brought: object = own.parts["law"]
 held: float | None = flexsc.Hold(1e-3).torque
 linear: flexsc.Linear = scenario.linearise(period=0.5)
+pole: npt.NDArray[Any] = linear.poles()["pole"]
+response: npt.NDArray[np.complex128] = linear.select(outputs=["angle"]).response([0.1, 0.2])
+magnitude, phase = linear.select(outputs=["angle"]).bode()
+phase.set_title("mine")
+flexsc.plot.poles(linear, ax=magnitude)
+here: npt.NDArray[np.float64] = linear.state_of(flexsc.Simulator(scenario))
 system: npt.NDArray[np.float64] = linear.a
 names: list[str] = [signal.name for signal in linear.states]
 led: flexsc.Scenario = scenario.with_law(([], [], [], [[1e-3, 1e-2]]), period=0.5)

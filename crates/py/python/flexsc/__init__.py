@@ -62,8 +62,11 @@ from flexsc.parts import (
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Margins, Signal
+    from flexsc._linear import Linear, Signal
+    from flexsc._margins import Margins
+    from flexsc._optimisation import optimise
     from flexsc._result import Detail
+    from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -97,6 +100,7 @@ __all__ = [
     "Samples",
     "Scenario",
     "ScenarioError",
+    "Sensitivities",
     "Sensor",
     "Signal",
     "SimulationError",
@@ -124,6 +128,7 @@ __all__ = [
     "metrics",
     "observer_margin",
     "observer_region",
+    "optimise",
     "parts",
     "persistence",
     "plot",
@@ -135,6 +140,7 @@ __all__ = [
     "robust_gains",
     "scenario",
     "schema",
+    "sensitivities",
     "stability_map",
     "structure",
     "sweep",
@@ -148,7 +154,8 @@ _MODULES = ("parts", "plot", "scenario", "structure")
 _EXTRAS = ("dask", "gym")
 _LATER = {
     "Linear": "_linear",
-    "Margins": "_linear",
+    "Margins": "_margins",
+    "Sensitivities": "_sensitivity",
     "Signal": "_linear",
     "StateSpace": "structure",
     "Structure": "structure",
@@ -157,7 +164,9 @@ _LATER = {
     "from_csv": "structure",
     "from_nastran": "structure",
     "from_state_space": "structure",
+    "optimise": "_optimisation",
     "read_matrices": "structure",
+    "sensitivities": "_sensitivity",
     "write_scenario": "structure",
 }
 

@@ -1,4 +1,4 @@
-"""The command `flexsc`: the engine's own, called from Python."""
+"""The command `flexsc`: the engine's own, called from Python, and the tutorials."""
 
 import os
 import signal
@@ -9,6 +9,10 @@ from flexsc import _native
 
 def main() -> int:
     """Run the command with the arguments of this process; its exit code is returned."""
+    if sys.argv[1:2] == ["tutorials"]:
+        from flexsc import _tutorials
+
+        return _tutorials.main(sys.argv[2:])
     # Python's own handler would keep Ctrl-C to itself until the engine returns.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     # `--scheduler` starts Python again.

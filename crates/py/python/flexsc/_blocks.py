@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
 from flexsc._linear import Signal
+from flexsc._sampling import held
 
 if TYPE_CHECKING:
     import numpy as np
@@ -214,14 +214,11 @@ def _at_samples(
     """Matrices as the law `state_space` samples them."""
     import numpy as np
 
-    order, count = b.shape
+    order = len(a)
     if of == "samples" or order == 0:
         return a, b, c, d
     if of == "held":
-        whole = np.zeros((order + count, order + count))
-        whole[:order, :order], whole[:order, order:] = a * h, b * h
-        whole = engine.exponential(whole)
-        return whole[:order, :order], whole[:order, order:], c, d
+        return *held(a, b, h), c, d
     inverse = np.linalg.inv(np.eye(order) - 0.5 * h * a)
     c = c @ inverse
     return inverse @ (np.eye(order) + 0.5 * h * a), inverse @ b * h, c, d + c @ b * (0.5 * h)

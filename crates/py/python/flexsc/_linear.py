@@ -5,15 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from math import floor
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._sampling import sampled
 from flexsc._values import counted
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from flexsc._margins import Margins
+    from flexsc._simulator import Simulator
+    from flexsc._simulators import Simulators
 
 
 @dataclass(frozen=True)
@@ -73,6 +77,89 @@ class Linear:
         found = np.where(np.abs(upper) < 1e-7 * max(1.0, np.abs(upper).max(initial=0.0)), 0.0, np.abs(upper))
         missing = self._rigid() - int(np.count_nonzero(found == 0.0))
         return np.sort(np.concatenate([found, np.zeros(max(missing, 0))]))
+
+    def poles(self) -> dict[str, npt.NDArray[Any]]:
+        """Return the poles with their frequencies and damping ratios, by increasing frequency.
+
+        Returns:
+            Columns of shape (states,): `pole`, s (1/s) or for a sampled model z; `frequency`, the natural
+            frequency |s| (rad/s); and `damping`, the damping ratio -Re(s)/|s|, negative for an unstable pole.
+            For a sampled model s = log(z)/period, below the Nyquist frequency; a pole z = 0 has an infinite
+            frequency. Rigid motion has the frequency 0 and no damping ratio (NaN).
+
+        >>> poles = flexsc.Scenario.example("relay-sampled").linearise().poles()
+        >>> poles["frequency"][2::2].round(3), poles["damping"][2::2].round(3)
+        (array([ 0.62,  1.45,  2.9 ,  5.3 , 10.  ]), array([0.003, 0.004, 0.005, 0.005, 0.006]))
+        """
+        from flexsc._frequency_response import poles
+
+        return poles(self)
+
+    def frequency_grid(self) -> npt.NDArray[np.float64]:
+        """Return frequencies (rad/s) that follow the resonances, on which `response` and figures are.
+
+        They are 1 % apart from a tenth of the lowest natural frequency to ten times the highest, or to the
+        Nyquist frequency of a sampled model, and as dense about each pole as its resonance is narrow: the
+        largest value on them is within 1e-6 of the true peak if it is at least four times the rest of the
+        response there.
+
+        >>> grid = flexsc.Scenario.example("relay-sampled").linearise().frequency_grid()
+        >>> grid[[0, -1]].round(3), int((abs(grid - 0.62) < 0.003 * 0.62).sum()) > 200
+        (array([6.2e-02, 1.0e+02]), True)
+        """
+        from flexsc._frequency_response import frequency_grid
+
+        return frequency_grid(self)
+
+    def response(self, frequencies: npt.ArrayLike | None = None) -> npt.NDArray[np.complex128]:
+        """Return the frequency response c (s - a)^-1 b + d at s = jw, or at z = exp(jw period).
+
+        Args:
+            frequencies: Frequencies w (rad/s) of shape (frequencies,); if omitted, `frequency_grid()`.
+
+        Returns:
+            Complex numbers of shape (frequencies, outputs, inputs), NaN at a frequency that is a pole.
+
+        >>> model = flexsc.Scenario.example("relay-sampled").linearise().select(outputs=["angle"])
+        >>> model.response([0.01, 0.02]).shape
+        (2, 1, 1)
+
+        Raises:
+            ValueError: The frequencies are not finite numbers of this shape.
+        """
+        from flexsc._frequency_response import response
+
+        return response(self, frequencies)
+
+    def bode(
+        self, axes: tuple[Axes, Axes] | None = None, frequencies: npt.ArrayLike | None = None
+    ) -> tuple[Axes, Axes]:
+        """Draw the frequency response: `flexsc.plot.bode`, for magnitude (dB) and phase (degrees).
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> magnitude, phase = flexsc.Scenario.example("rotation-robust").linearise(loop="command").bode()
+
+        Raises:
+            ValueError: There would be more than 24 lines, or the frequencies are not accepted.
+            ImportError: Matplotlib is not installed.
+        """
+        from flexsc.plot import bode
+
+        return bode(self, axes, frequencies)
+
+    def nichols(self, ax: Axes | None = None, frequencies: npt.ArrayLike | None = None) -> Axes:
+        """Draw a Nichols chart: `flexsc.plot.nichols`, phase (degrees) against magnitude (dB).
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> axes = flexsc.Scenario.example("rotation-robust").linearise(loop="command").nichols()
+
+        Raises:
+            ValueError: There would be more than 24 lines, or the frequencies are not accepted.
+            ImportError: Matplotlib is not installed.
+        """
+        from flexsc.plot import nichols
+
+        return nichols(self, ax, frequencies)
 
     def spectral_radius(self) -> float:
         """Return the largest magnitude |z| of the poles of a sampled model: it is stable below 1.
@@ -147,44 +234,15 @@ class Linear:
             raise ValueError("a model that is sampled already cannot be sampled")
         if not (0.0 < period < np.inf and 0.0 <= delay < np.inf):
             raise ValueError(f"period must be positive and delay 0 or more, got {period} and {delay}")
-        order, count = self.b.shape
-
-        def held(h: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-            whole = np.zeros((order + count, order + count))
-            whole[:order, :order], whole[:order, order:] = self.a * h, self.b * h
-            whole = engine.exponential(whole)
-            return whole[:order, :order], whole[:order, order:]
-
-        late, part = whole_and_part(period, delay)
-        a, now = held(period)
-        forced = [now]
-        if part > 0.0:
-            rest, new = held(period - part)
-            forced = [new, rest @ held(part)[1]]
-        waiting = late + len(forced) - 1
-        size = order + count * waiting
-        big, into = np.zeros((size, size)), np.zeros((size, count))
-        big[:order, :order] = a
-        for k, column in enumerate(forced):
-            back = late + k
-            if back == 0:
-                into[:order] = column
-            else:
-                at = order + count * (back - 1)
-                big[:order, at : at + count] = column
-        if waiting:
-            into[order : order + count] = np.eye(count)
-            for k in range(1, waiting):
-                at = order + count * k
-                big[at : at + count, at - count : at] = np.eye(count)
-        c = np.hstack([self.c, np.zeros((len(self.c), size - order))])
+        a, b, waiting = sampled(self.a, self.b, period, delay)
+        c = np.hstack([self.c, np.zeros((len(self.c), len(a) - len(self.a)))])
         under_way = tuple(
             Signal(f"{signal.name}_{back + 1}_ago", signal.unit)
             for back in range(waiting)
             for signal in self.inputs
         )
         states = self.states + under_way
-        return Linear(big, into, c, self.d, states, self.inputs, self.outputs, period)
+        return Linear(a, b, c, self.d, states, self.inputs, self.outputs, period)
 
     def closed(self) -> Linear:
         """Close the loop that `linearise(loop=...)` opened: the inputs are added at the break.
@@ -249,6 +307,36 @@ class Linear:
         states = tuple(Signal(f"expected_{state.name}", state.unit) for state in model.states)
         return Linear(a, into, k, d, states, model.outputs, model.inputs, model.period)
 
+    def state_of(self, simulator: Simulator | Simulators) -> npt.NDArray[np.float64]:
+        """Return the state of the model where a run is, so that the model can continue from there.
+
+        On one axis the state is that of the simulator by its names. On three axes the rigid angles are the
+        pointing error less the rotation of the hub by the modes. Torques that still act are states of models
+        with a delay shorter than a period. The model describes small deviations from rest: it continues as
+        the run does up to the second order of the deviation.
+
+        Args:
+            simulator: A run of the scenario of the model, or `Simulators` for many.
+
+        Returns:
+            The state, of shape (states,), or (copies, states).
+
+        >>> scenario = flexsc.Scenario.example("relay-sampled")
+        >>> sim, model = flexsc.Simulator(scenario), scenario.linearise(period=0.5)
+        >>> sim.step(-2.0, 10.0)
+        >>> predicted = model.a @ model.state_of(sim) + model.b @ [1.0]
+        >>> sim.step(1.0, 0.5)
+        >>> bool(abs(predicted - model.state_of(sim)).max() < 1e-12)
+        True
+
+        Raises:
+            ValueError: The simulator does not have a state of the model, such as that of a filter, a law, or
+                a command under way; the text names it.
+        """
+        from flexsc._model_state import state_of
+
+        return state_of(self, simulator)
+
     def margins(self, inputs: Sequence[str] | None = None) -> Margins:
         """Return the margins of a loop that `linearise(loop=...)` opened: how far its commands may be off.
 
@@ -294,32 +382,5 @@ class Linear:
         return f"<flexsc.Linear {time}: {shape}>"
 
 
-@dataclass(frozen=True)
-class Margins:
-    """Margins of a loop: how far the commands may be off before the closed loop is unstable.
-
-    They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones.
-    Where a pole lies on the limit at the nominal gain, as of an undamped mode, they may be up to 2e-6 larger.
-
-    >>> flexsc.Scenario.example("rotation-robust").linearise(loop="command").margins().gain_below
-    0.0
-    """
-
-    gain_below: float
-    """Smallest factor below 1 down to which the loop is stable; 0 if it is at all down to 1e-4."""
-    gain_above: float
-    """Largest factor above 1 up to which it is stable; infinite if it is at all up to 10 000."""
-    phase: float
-    """Largest phase (rad) up to which it is stable, of either sign; pi if it is at all."""
-
-
-def whole_and_part(period: float, delay: float) -> tuple[int, float]:
-    """Return the whole periods of a delay, and the rest (s)."""
-    # A delay of whole periods is one, whatever its last bits.
-    late = floor(delay / period + 1e-9)
-    part = max(delay - late * period, 0.0)
-    return late, part if part > 1e-9 * period else 0.0
-
-
-for _class in (Linear, Margins, Signal):
+for _class in (Linear, Signal):
     _class.__module__ = "flexsc"

@@ -3,18 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING
-
-from flexsc._linear import Linear, Margins
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from flexsc._linear import Linear
+
 # Poles this near to the limit of stability are on it, to rounding.
 _ROUNDING = 1e-8
 _LARGEST = 1e4
+
+
+@dataclass(frozen=True)
+class Margins:
+    """Margins of a loop: how far the commands may be off before the closed loop is unstable.
+
+    They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones.
+    Where a pole lies on the limit at the nominal gain, as of an undamped mode, they may be up to 2e-6 larger.
+
+    >>> flexsc.Scenario.example("rotation-robust").linearise(loop="command").margins().gain_below
+    0.0
+    """
+
+    gain_below: float
+    """Smallest factor below 1 down to which the loop is stable; 0 if it is at all down to 1e-4."""
+    gain_above: float
+    """Largest factor above 1 up to which it is stable; infinite if it is at all up to 10 000."""
+    phase: float
+    """Largest phase (rad) up to which it is stable, of either sign; pi if it is at all."""
+
+
+Margins.__module__ = "flexsc"
 
 
 def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:

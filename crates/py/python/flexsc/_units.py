@@ -55,7 +55,12 @@ def is_reduced(scenario: Scenario | None) -> bool:
 def of_column(topic: str, name: str, reduced: bool = False) -> str:
     """The unit of a column such as `modes.displacement_rad`; empty for a count, a ratio or a word."""
     found = _ending(name) or _described().get((topic, name), "")
-    return _REDUCED.get(found, found) if reduced else found
+    return reduced_unit(found) if reduced else found
+
+
+def reduced_unit(unit: str) -> str:
+    """The unit of a quantity on a body without a moment of inertia, where a torque is an acceleration."""
+    return _REDUCED.get(unit, unit)
 
 
 def _ending(name: str) -> str:

@@ -1,5 +1,7 @@
 """Every figure of `flexsc plot`, drawn with Matplotlib on your own axes (`pip install flexsc[plot]`).
 
+`bode`, `nichols` and `poles` draw linear models; the other functions draw runs, logs and campaigns.
+
     >>> import matplotlib; matplotlib.use("agg")
     >>> import flexsc, flexsc.plot
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
@@ -22,12 +24,13 @@ from __future__ import annotations
 import math
 import os
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
 from flexsc import _html
 from flexsc import _native as engine
+from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib
+from flexsc._frequency_figures import bode, nichols, poles
 from flexsc._log import Log
 from flexsc._missing import reading
 from flexsc._result import Result
@@ -39,7 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
-__all__ = ["Source", "draw", "figure", "figures"]
+__all__ = ["Source", "bode", "draw", "figure", "figures", "nichols", "poles"]
 
 Source: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
 """A run, a log, a campaign or a sweep, or the path of a log file or of a campaign's directory."""
@@ -47,12 +50,6 @@ Source: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
 if TYPE_CHECKING:
     _On = TypeVar("_On", Figure, SubFigure)
 
-# Pixels of the command's figures in inches, and in points.
-_INCH = 1.0 / 96.0
-_POINT = 0.75
-_WIDTH = 800
-_GRID = "#e1e1e1"
-_FRAME = "#787878"
 # Matplotlib's markers, and how wide each is in pixels.
 _MARKS = {
     "disc": ("o", 6.4),
@@ -101,7 +98,7 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
         ValueError: There is no such figure or panel.
         ImportError: Matplotlib is not installed.
     """
-    _need_matplotlib()
+    need_matplotlib()
     drawn = _figure(source, name)
     panels = drawn.panels()
     if not 0 <= panel < len(panels):
@@ -109,9 +106,9 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
     if ax is None:
         from matplotlib import pyplot
 
-        height = (drawn.panel_height + 100) * _INCH
-        _, ax = pyplot.subplots(figsize=(_WIDTH * _INCH, height), layout="constrained")
-        ax.set_title(drawn.title, fontsize=14 * _POINT, pad=24)
+        height = (drawn.panel_height + 100) * INCH
+        _, ax = pyplot.subplots(figsize=(WIDTH * INCH, height), layout="constrained")
+        ax.set_title(drawn.title, fontsize=14 * POINT, pad=24)
     # Panels above the last leave the name of the time to it.
     name_below = panels[-1]["x"]["label"]
     _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below, drawn.panel_height)
@@ -139,15 +136,15 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
         ValueError: There is no such figure.
         ImportError: Matplotlib is not installed.
     """
-    _need_matplotlib()
+    need_matplotlib()
     drawn = _figure(source, name)
     panels = drawn.panels()
     if on is None:
         from matplotlib import pyplot
 
         height = 30 + sum(_height(panel, drawn.panel_height) for panel in panels)
-        on = pyplot.figure(figsize=(_WIDTH * _INCH, height * _INCH), layout="constrained")
-    on.suptitle(drawn.title, fontsize=14 * _POINT)
+        on = pyplot.figure(figsize=(WIDTH * INCH, height * INCH), layout="constrained")
+    on.suptitle(drawn.title, fontsize=14 * POINT)
     axes = on.subplots(len(panels), 1, squeeze=False)[:, 0]
     for ax, panel in zip(axes, panels, strict=True):
         _panel(ax, panel, panel["x"]["label"], drawn.panel_height)
@@ -162,14 +159,6 @@ def at_a_glance(source: Source, name: str | None, on: Figure | SubFigure | None)
             raise ValueError("there is no figure of it")
         name = next((name for name in _html.AT_A_GLANCE if name in there), there[0])
     return figure(source, name, on)
-
-
-def _need_matplotlib() -> None:
-    """Raise an ImportError with the command that installs Matplotlib, if it is missing."""
-    try:
-        import_module("matplotlib")
-    except ImportError as error:
-        raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'") from error
 
 
 def _height(panel: dict[str, Any], plot: int) -> int:
@@ -222,13 +211,9 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
     """Draw a panel, in the command's look."""
     _axis(ax, "x", ax.xaxis, panel["x"], 8)
     _axis(ax, "y", ax.yaxis, panel["y"], max(2, plot // 28))
-    ax.set_xlabel(below, fontsize=12 * _POINT)
-    ax.set_ylabel(panel["y"]["label"], fontsize=12 * _POINT)
-    ax.tick_params(labelsize=11 * _POINT, length=0, pad=4)
-    ax.grid(color=_GRID, linewidth=0.6 * _POINT)
-    ax.set_axisbelow(True)
-    for spine in ax.spines.values():
-        spine.set(color=_FRAME, linewidth=0.8 * _POINT)
+    ax.set_xlabel(below, fontsize=12 * POINT)
+    ax.set_ylabel(panel["y"]["label"], fontsize=12 * POINT)
+    frame(ax)
     handles = [(_layer(ax, layer, order), layer["name"]) for order, layer in enumerate(panel["layers"], 2)]
     named = [(handle, name) for handle, name in handles if name and handle is not None]
     if named:
@@ -239,7 +224,7 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
             ncols=len(named),
             frameon=False,
             borderaxespad=0.1,
-            fontsize=11 * _POINT,
+            fontsize=11 * POINT,
             handlelength=1.6,
             columnspacing=1.4,
         )
@@ -290,18 +275,18 @@ def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:
         return None
     shape, colour, size = layer["shape"], layer["colour"], layer["size"]
     if shape == "line":
-        return ax.plot(x, y, color=colour, linewidth=size * _POINT, zorder=order)[0]
+        return ax.plot(x, y, color=colour, linewidth=size * POINT, zorder=order)[0]
     if shape == "dashes":
-        return ax.plot(x, y, color=colour, linewidth=_POINT, linestyle=(0, (5, 4)), zorder=order)[0]
+        return ax.plot(x, y, color=colour, linewidth=POINT, linestyle=(0, (5, 4)), zorder=order)[0]
     if shape == "area":
         return _area(ax, layer, order)
     marker, across = _MARKS[shape]
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     if not ((left <= x) & (x <= right) & (low <= y) & (y <= high)).any():
         return None
-    style: dict[str, Any] = {"markersize": across * _POINT, "markeredgewidth": 0.0, "color": colour}
+    style: dict[str, Any] = {"markersize": across * POINT, "markeredgewidth": 0.0, "color": colour}
     if shape == "ring":
-        style |= {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.2 * _POINT}
+        style |= {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.2 * POINT}
     return ax.plot(x, y, linestyle="none", marker=marker, zorder=order, **style)[0]
 
 
@@ -328,6 +313,6 @@ def _bar(ax: Axes, name: str, colours: list[str], edges: list[str]) -> None:
     shades = ScalarMappable(BoundaryNorm(range(classes + 1), classes), ListedColormap(colours))
     bar = ax.figure.colorbar(shades, ax=ax, location="top", shrink=0.6, aspect=40, pad=0.12)
     bar.set_ticks(list(range(1, classes)), labels=edges)
-    bar.ax.tick_params(labelsize=10 * _POINT, length=0)
+    bar.ax.tick_params(labelsize=10 * POINT, length=0)
     bar.outline.set_visible(False)
-    bar.set_label(name, fontsize=11 * _POINT)
+    bar.set_label(name, fontsize=11 * POINT)
