@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import flexsc
 import numpy as np
-from flexsc.gym import SpacecraftVectorEnv
+from flexsc.gym import SpacecraftEnv, SpacecraftVectorEnv
 
 STEPS = 200_000
 COPIES = 1000
@@ -58,6 +58,12 @@ def main() -> None:
     told("`SpacecraftVectorEnv`", COPIES, lambda index: envs.step(actions[index % 8]))
     sim, command = flexsc.Simulator(scenario), np.array([0.1, 0.0, -0.1])
     told("one `Simulator`, state read", 1, lambda index: (sim.step(command, 0.05), sim.state["rate"]))
+    sim = flexsc.Simulator(scenario)
+    told("one `Simulator`", 1, lambda index: sim.step(command, 0.05))
+    env = SpacecraftEnv(scenario, dt=0.05)
+    env.reset(seed=1)
+    action = np.array([0.01, 0.0, -0.01], dtype=np.float32)
+    told("one `SpacecraftEnv`", 1, lambda index: env.step(action))
 
 
 if __name__ == "__main__":

@@ -163,6 +163,49 @@ def test_rewards_and_observations_are_free(one_angle: flexsc.Scenario) -> None:
     assert default.step(np.array([0.5]))[1] == pytest.approx(-(225.0 + 100.0 + 0.01 * 0.25))
 
 
+@pytest.mark.parametrize(
+    "action",
+    [
+        np.array([0.3, -2.0, 1.5]),
+        np.array([0.1, -0.7, 1e-3], dtype=np.float32),
+        np.array([0.1, -0.7, 1.0], dtype=">f8"),
+        np.array([0.1, 0.5, -0.2], dtype=np.float16),
+        np.array([1, 0, -3]),
+        [0.5, np.inf, -0.0],
+    ],
+)
+def test_the_quick_step_is_the_usual_step(uncertain: flexsc.Scenario, action: Any) -> None:
+    quick = SpacecraftEnv(uncertain, dt=0.3, terminate=Beyond(rate=0.02))
+    # A reward of one's own is not known to be quadratic.
+    usual = SpacecraftEnv(
+        uncertain, dt=0.3, terminate=Beyond(rate=0.02), reward=lambda sims, given: Quadratic()(sims, given)
+    )
+    assert quick._quick is not None
+    assert usual._quick is None
+    np.testing.assert_array_equal(quick.reset(seed=3)[0], usual.reset(seed=3)[0])
+    for _ in range(17):
+        one, other = quick.step(action), usual.step(action)
+        np.testing.assert_array_equal(one[0], other[0])
+        assert one[0].dtype == other[0].dtype == np.float32
+        assert one[1:] == other[1:]
+        assert [type(part) for part in one[1:]] == [type(part) for part in other[1:]]
+
+
+@pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
+def test_a_scale_of_zero_is_divided_by(one_angle: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(one_angle, dt=1.0, limit=1.0, observe={"state.angle": 0.0})
+    env.reset(seed=1)
+    assert env.step(np.ones(1))[0].tolist() == [np.inf]
+
+
+def test_an_action_that_is_not_a_number_is_refused(uncertain: flexsc.Scenario) -> None:
+    env = SpacecraftEnv(uncertain)
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"finite numbers of N m, not so at \[0, 1\]"):
+        env.step(np.array([0.0, np.nan, 0.0]))
+    assert env.simulators.time == 0.0
+
+
 def test_bad_arguments_are_told(uncertain: flexsc.Scenario, one_angle: flexsc.Scenario) -> None:
     with pytest.raises(ValueError, match=r"\(N m\), the actuator has none: give `limit`"):
         SpacecraftEnv(one_angle)
