@@ -8,7 +8,7 @@ use flexsc_core::control::law::RelaySides;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs};
+use crate::human::{Units, UnitsArgs, digits};
 use crate::results::{Results, show};
 use crate::{say, scenario};
 
@@ -72,7 +72,7 @@ impl Results for RelayCycles {
         if cycles.is_empty() {
             say!("  no limit cycle exists");
         }
-        let time = |of: f64| if of < 1e9 { format!("{of:.9} s") } else { format!("{of:.3e} s") };
+        let time = |of: f64| format!("{} s", digits(of));
         for cycle in cycles {
             let kind = if cycle.sides == RelaySides::Two { "two-sided" } else { "one-sided" };
             let stability = if cycle.stable { "stable" } else { "unstable" };
@@ -94,10 +94,10 @@ impl Results for RelayCycles {
         }
         for r in nearest(resonances, *k_t) {
             say!(
-                "    mode {}, harmonic {:>2}: period {:.4} s at k_t = {:.6}",
+                "    mode {}, harmonic {:>2}: period {} s at k_t = {:.6}",
                 r.mode,
                 r.harmonic,
-                r.period_s,
+                digits(r.period_s),
                 r.k_t
             );
         }

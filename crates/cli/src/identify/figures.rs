@@ -1,6 +1,8 @@
 //! Figure of an adaptive observer's trials: the fraction of runs that have identified their modes over time, a panel
 //! for each set.
 
+use std::f64::consts::TAU;
+
 use flexsc_core::analysis::identification::IdentificationRow;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, colour, steps};
 
@@ -22,7 +24,7 @@ pub fn figure(sets: &[ModeSetResults], whole: f64) -> Figure {
                 whole,
             );
             let off = format!("{} % off", (1000.0 * row.off).round() / 10.0);
-            let name = if index == 0 { format!("{} Hz, {off}", set.hertz()) } else { off };
+            let name = if index == 0 { format!("{} Hz, {off}", set.frequencies(1.0 / TAU)) } else { off };
             Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.4), line)
         };
         let layers = set.rows.iter().enumerate().map(layer).collect();

@@ -15,6 +15,7 @@ use serde_json::{Value as Json, json};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
+use crate::human::{Units, UnitsArgs};
 use crate::number::{fixed, number_or_none};
 use crate::results::{Results, show};
 use crate::{progress, say};
@@ -56,6 +57,8 @@ pub struct IdentifyArgs {
     seed: u64,
     #[command(flatten)]
     drawing: FigureOutput,
+    #[command(flatten)]
+    units: UnitsArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -75,9 +78,9 @@ struct ModeSetResults {
 }
 
 impl ModeSetResults {
-    /// Returns the frequencies in hertz as text.
-    fn hertz(&self) -> String {
-        let names: Vec<String> = self.modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
+    /// Returns the frequencies as text, in units of rad/s times a factor.
+    fn frequencies(&self, factor: f64) -> String {
+        let names: Vec<String> = self.modes.iter().map(|(w, _)| format!("{:.4}", w * factor)).collect();
         names.join(" + ")
     }
 }
@@ -91,6 +94,7 @@ pub struct IdentifyResults {
     whole: f64,
     /// Relative error of the influences.
     influence_off: f64,
+    units: Units,
 }
 
 impl FromStr for ModeSet {
@@ -146,7 +150,7 @@ impl IdentifyArgs {
         }
         bar.finish_and_clear();
         let (runs, whole) = (self.runs, CYCLE * f64::from(self.cycles));
-        Ok(IdentifyResults { sets, runs, whole, influence_off: self.influence_off })
+        Ok(IdentifyResults { sets, runs, whole, influence_off: self.influence_off, units: self.units.units })
     }
 }
 
@@ -169,7 +173,8 @@ impl Results for IdentifyResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { sets, runs, whole, influence_off } = self;
+        let Self { sets, runs, whole, influence_off, units } = self;
+        let (factor, unit) = units.frequency();
         say!(
             "identification   {} of {whole:.0} s a row; influences off by {} %; found is within 2 %",
             counted(runs, "run"),
@@ -177,7 +182,7 @@ impl Results for IdentifyResults {
         );
         say!(
             "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-            "frequencies, Hz",
+            format!("frequencies, {unit}"),
             "off by",
             "found",
             "median, s",
@@ -190,7 +195,7 @@ impl Results for IdentifyResults {
         for (set, row) in sets.iter().flat_map(|set| set.rows.iter().map(move |row| (set, row))) {
             say!(
                 "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-                set.hertz(),
+                set.frequencies(factor),
                 100.0 * row.off,
                 format!("{}/{}", row.converged, row.runs),
                 fixed(row.time_median_s, 1),

@@ -2,7 +2,6 @@
 
 mod figures;
 
-use std::f64::consts::TAU;
 use std::io::Write;
 
 use flexsc_core::analysis::damping::{Convergence, GainMargin};
@@ -12,6 +11,7 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
+use crate::human::{Units, UnitsArgs};
 use crate::results::{Results, show};
 use crate::say;
 
@@ -41,6 +41,8 @@ pub struct ObserverArgs {
     kappa: Vec<f64>,
     #[command(flatten)]
     drawing: FigureOutput,
+    #[command(flatten)]
+    units: UnitsArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -61,6 +63,7 @@ pub struct ObserverResults {
     convergence: Convergence,
     regions: Vec<ConvergenceRegion>,
     margin: Option<GainMargin>,
+    units: Units,
 }
 
 impl ObserverArgs {
@@ -91,6 +94,7 @@ impl ObserverArgs {
             convergence,
             regions: self.kappa.iter().map(region).collect(),
             margin: convergence.margin(),
+            units: self.units.units,
         })
     }
 }
@@ -111,11 +115,12 @@ impl Results for ObserverResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { convergence, regions, margin } = self;
+        let Self { convergence, regions, margin, units } = self;
+        let (factor, unit) = units.frequency();
         let ((a, b), [w1, w2, w3]) = (convergence.recurrence(), convergence.weights);
         say!(
-            "observer   a mode of {:.4} Hz, sampled each {} s: A = {a:.10}, B = {b:.10}; W1 = {w1}, W2 = {w2}, W3 = {w3}",
-            convergence.frequency / TAU,
+            "observer   a mode of {:.4} {unit}, sampled each {} s: A = {a:.10}, B = {b:.10}; W1 = {w1}, W2 = {w2}, W3 = {w3}",
+            convergence.frequency * factor,
             convergence.period
         );
         for ConvergenceRegion { kappa, area, converges } in regions {

@@ -58,7 +58,7 @@ impl Results for PlanResults {
         let (angle, time) = (units.quantity(plan.angle, "rad"), plan.time);
         let kind = manoeuvre.command.kind().replace('_', " ");
         let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
-        say!("{name}   {angle} in {time:.9} s by {kind}{shaped}");
+        say!("{name}   {angle} in {} s by {kind}{shaped}", digits(time));
         if plan.start_rate != 0.0 || plan.end_rate != 0.0 {
             let rates = units.list(&[plan.start_rate, plan.end_rate], " -> ", "rad/s");
             say!("  rates            {rates}");
@@ -83,7 +83,8 @@ impl Results for PlanResults {
         } else {
             ("peak torque", "torque at start", "N² m² s", "J")
         };
-        say!("  {peak:<16} {} at {:.6} s", units.quantity(torque.peak.value, unit), torque.peak.time);
+        let peak_time = digits(torque.peak.time);
+        say!("  {peak:<16} {} at {peak_time} s", units.quantity(torque.peak.value, unit));
         say!("  root mean square {}", units.quantity(torque.rms, unit));
         say!("  square integral  {}", units.quantity(torque.square, square));
         say!("  {start:<16} {}", units.quantity(torque.initial, unit));
@@ -93,8 +94,8 @@ impl Results for PlanResults {
         say!("  energy left      {}", units.quantity(report.energy, energy));
         self.print_coordinates();
         let both = |(below, above): (Option<f64>, f64)| match below {
-            Some(below) => format!("{below:.6} or {above:.6} s"),
-            None => format!("{above:.6} s"),
+            Some(below) => format!("{} or {} s", digits(below), digits(above)),
+            None => format!("{} s", digits(above)),
         };
         for tuned in &report.tuned {
             let cosine =

@@ -186,6 +186,7 @@ fn wanted(expected: &dyn Expected) -> String {
     let known = match wanted.as_str() {
         "f64" => "a number",
         "u32" => "a whole number from 0 to 4294967295",
+        "a nonzero u32" => "a whole number from 1 to 4294967295",
         "u64" | "usize" => "a whole number from 0 to 9223372036854775807",
         "a sequence" => "an array",
         "a map" => "a table",
