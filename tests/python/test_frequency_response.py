@@ -165,7 +165,7 @@ def test_bode_has_magnitude_and_phase(period: float | None) -> None:
         assert np.abs(np.diff(phase)).max() < 1.0
         assert -2 * np.pi < phase[0] <= 0.02
         pencil = np.block([[model.a, model.b], [model.c[k : k + 1], model.d[k : k + 1]]])
-        zeros = eigvals(pencil, np.diag([1.0] * 6 + [0.0]))
+        zeros: Any = eigvals(pencil, np.diag([1.0] * 6 + [0.0]))
         zeros = zeros[np.isfinite(zeros)]
         sharp = zeros if period is None else np.log(zeros[np.abs(zeros) > 1e-9]) / period
         for zero in sharp[(sharp.imag > 0.1) & (sharp.imag < 10.0) & (np.abs(sharp.real) < 0.1)]:

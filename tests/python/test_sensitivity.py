@@ -68,7 +68,7 @@ def test_derivatives_are_those_of_scipy() -> None:
         return np.array([run.metrics[name] for name in metrics])
 
     start = np.array([scenario.get(key) for key in keys])
-    expected = approx_derivative(measured, start, method="3-point", rel_step=1e-5)
+    expected: Any = approx_derivative(measured, start, method="3-point", rel_step=1e-5)
     found = flexsc.sensitivities(scenario, keys, metrics)
     np.testing.assert_allclose(found.derivatives, expected, rtol=1e-5, atol=1e-7)
     # k_p times the angle at the start.
@@ -100,7 +100,7 @@ def test_all_runs_have_the_noise_of_one() -> None:
     # Between runs the noise changes the metric far more than a step of the key does.
     other: float = scenario.simulate(5, "none").metrics["itae"]
     assert abs(measured(np.array([0.2])) - other) > 1e-3
-    expected = approx_derivative(measured, [0.2], method="3-point", rel_step=1e-6)
+    expected: Any = approx_derivative(measured, [0.2], method="3-point", rel_step=1e-6)
     found = [flexsc.sensitivities(scenario, [key], ["itae"], step=1e-5, run=4, jobs=n) for n in (1, 3)]
     assert found[0]["itae"][key] == pytest.approx(expected[0], rel=1e-5)
     np.testing.assert_array_equal(found[0].derivatives, found[1].derivatives)

@@ -145,15 +145,15 @@ def poles(model: Linear, ax: Axes | None = None) -> Axes:
     import numpy as np
 
     need_matplotlib()
-    found = model.poles()["pole"]
+    found: Any = model.poles()["pole"]
     ax = _axes("Poles") if ax is None else ax
     frame(ax)
     limit: dict[str, Any] = {"color": FRAME, "linewidth": POINT, "zorder": 1}
     if model.period is None:
         ax.axvline(0.0, **limit)
     else:
-        circle = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 361))
-        ax.plot(circle.real, circle.imag, **limit)
+        turn = np.linspace(0.0, 2.0 * np.pi, 361)
+        ax.plot(np.cos(turn), np.sin(turn), **limit)
         ax.set_aspect("equal", adjustable="datalim")
     ax.plot(found.real, found.imag, linestyle="none", marker="x", markersize=8 * POINT)
     unit = " (1/s)" if model.period is None else ""

@@ -114,8 +114,9 @@ def _around(root: complex, count: int = _COUNT, apart: float = _APART) -> Values
     end = 0.2 * size / half
     steps = max(0, int(np.ceil(np.log(end / _NEAR) / np.log(apart))))
     far = _NEAR * apart ** np.arange(1, steps + 1)
-    around: Values = centre + half * np.concatenate([-far, near, far])
-    return around
+    around: Any = centre + half * np.concatenate([-far, near, far])
+    values: Values = around
+    return values
 
 
 def response(model: Linear, frequencies: npt.ArrayLike | None) -> npt.NDArray[np.complex128]:
