@@ -451,7 +451,7 @@ class Reading:
         """Measured vector in the body frame, of a sensor that measures one."""
     @property
     def inertial(self) -> _Three | None:
-        """The same vector in the inertial frame."""
+        """Value of the vector in the inertial frame."""
     @property
     def is_direction(self) -> bool:
         """True if the vector is a direction, whose length means nothing."""

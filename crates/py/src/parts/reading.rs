@@ -144,7 +144,7 @@ impl Reading {
         self.sight.map(|measurement| measurement.vector.into()).map(<[f64; 3]>::into)
     }
 
-    /// The same vector in the inertial frame.
+    /// Value of the vector in the inertial frame.
     #[getter]
     fn inertial(&self) -> Option<Three> {
         self.sight.map(|measurement| measurement.inertial.into()).map(<[f64; 3]>::into)
