@@ -55,17 +55,7 @@ pub fn tabs(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<Tab> {
         let title = format!("Specific force at {name} (m/s²)");
         motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
-    for sight in scenario.line_of_sight.iter().take(1) {
-        let axis = |(axis, name): (usize, &str)| {
-            line(format!("/line_of_sight.axes[{axis}].error_rad"), format!("about {name}"))
-        };
-        let title = format!("Error of the line of sight of {} (rad)", sight.point);
-        motion.push(LayoutPanel::plot(
-            "line of sight",
-            title,
-            ["x", "y", "z"].into_iter().enumerate().map(axis).collect(),
-        ));
-    }
+    motion.extend(line_of_sight(scenario));
     if scenario.study.wheels.is_some() {
         let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len());
         motion.extend(declared::panels(&Wheels::TOPIC, count));
@@ -264,4 +254,14 @@ fn frequencies(tracked: &[usize]) -> Vec<PlotLine> {
         ]
     };
     named.enumerate().take(MOST_LINES).flat_map(of).collect()
+}
+
+/// Returns the panel of the first line of sight, if there is one.
+fn line_of_sight(scenario: &Scenario) -> Option<LayoutPanel> {
+    let point = &scenario.line_of_sight.first()?.point;
+    let about = |(axis, name): (usize, &str)| {
+        line(format!("/line_of_sight.axes[{axis}].error_rad"), format!("about {name}"))
+    };
+    let lines = ["x", "y", "z"].into_iter().enumerate().map(about).collect();
+    Some(LayoutPanel::plot("line of sight", format!("Error of the line of sight of {point} (rad)"), lines))
 }
