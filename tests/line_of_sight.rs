@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics::{MetricValue, Metrics};
+use flexsc_core::numerics::time::Span;
 use flexsc_core::record::{Column, Detail, Trace};
 use nalgebra::{Rotation3, Vector3};
 
@@ -179,6 +180,34 @@ fn recording_a_line_of_sight_does_not_change_the_motion() {
     let alone = traced(&short(&(text[..begins].to_owned() + &text[ends..])));
     assert_eq!(column(&trace, "/pointing", "q_x"), column(&alone, "/pointing", "q_x"));
     assert!(numbers(&metrics, "line_of_sight_jitter_rms_rad")[0] > 0.0);
+}
+
+/// Every shipped body with three axes, with its law, sensors, estimator and actuators.
+#[test]
+fn every_body_with_three_axes_has_lines_of_sight() {
+    let mut runs = 0;
+    for entry in std::fs::read_dir(SCENARIOS).expect("scenarios") {
+        let path = entry.expect("an entry").path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).expect("a file");
+        let origin = path.to_str().expect("a name");
+        let scenario = Scenario::parse(origin, &text).unwrap_or_else(|error| panic!("{error}"));
+        let Some(body) = scenario.model.three_axis() else { continue };
+        let point = body.points.first().map_or("", |point| &point.name);
+        let line = format!("\n[[line_of_sight]]\npoint = \"{point}\"\nperiod = 0.5\njitter_window = 1.0\n");
+        let mut scenario = Scenario::parse(origin, &(text + &line)).unwrap_or_else(|error| panic!("{error}"));
+        scenario.written.duration = Span::from_seconds(4.0);
+        let (metrics, _) = flown(&scenario, 0, Detail::Events);
+        let last = scenario.line_of_sight.len() - 1;
+        for name in ["line_of_sight_rms_rad", "line_of_sight_peak_rad", "line_of_sight_jitter_rms_rad"] {
+            let value = numbers(&metrics, name)[last];
+            assert!(value.is_finite() && value <= std::f64::consts::PI, "{origin}: {name} = {value}");
+        }
+        runs += 1;
+    }
+    assert!(runs >= 20, "{runs}");
 }
 
 #[test]
