@@ -26,3 +26,13 @@ def test_an_agent_of_stable_baselines_learns() -> None:
     (before, _), (after, _) = [(float(of), float(error)) for of, error in rows]
     # A sixth of the steps of the documentation.
     assert after > 0.7 * before
+
+
+def test_a_controller_of_rollouts_turns_the_spacecraft() -> None:
+    rows = [list(map(float, line.split())) for line in printed("mppi.py", "96", "50").splitlines()[1:]]
+    times, errors, rates, torques = zip(*rows, strict=True)
+    assert times == (0.0, 10.0, 20.0, 30.0, 40.0, 50.0)
+    assert errors[0] > 1.4
+    assert errors[-1] < 0.02
+    assert rates[-1] < 0.01
+    assert max(torques) <= 1.0

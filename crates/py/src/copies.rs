@@ -53,6 +53,17 @@ impl Flight {
         }
     }
 
+    /// A run in the state of a simulator. Commands are kept if they are to be, or if there are none yet.
+    fn restored(simulator: &Simulator, number: u64, keeps: bool) -> Self {
+        let commands = simulator.command_log().filter(|commands| keeps || commands.is_empty());
+        Self {
+            number,
+            simulation: Some(simulator.simulation().clone()),
+            commands: commands.cloned(),
+            failed: simulator.failed().map(ToOwned::to_owned),
+        }
+    }
+
     /// Advances the simulation, and writes its state into a row.
     fn advance(
         &mut self,
@@ -122,6 +133,7 @@ impl Simulators {
 
 #[pymethods]
 impl Simulators {
+    /// Copies at the start of runs, or before it if they are not to be `started`: `restore` sets their states.
     #[new]
     fn new(
         py: Python<'_>,
@@ -129,6 +141,7 @@ impl Simulators {
         runs: Vec<u64>,
         threads: usize,
         keeps: bool,
+        started: bool,
     ) -> PyResult<Self> {
         let name = &scenario.inner.name;
         let campaign = Campaign::new(scenario.inner.clone(), name, []).map_err(scenario_error)?;
@@ -144,7 +157,9 @@ impl Simulators {
             pool: Arc::new(pool),
             keeps,
         };
-        simulators.reset(py, None, None)?;
+        if started {
+            simulators.reset(py, None, None)?;
+        }
         Ok(simulators)
     }
 
@@ -248,6 +263,26 @@ impl Simulators {
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let rows = self.each(py, |_, flight, row, _| flight.advance(row, |_, _| Ok(())))?;
+        rows.into_pyarray(py).reshape([self.flights.len(), self.width])
+    }
+
+    /// Sets each copy to the state of a simulator, as a run number.
+    fn restore<'py>(
+        &mut self,
+        py: Python<'py>,
+        simulators: Vec<PyRef<'py, Simulator>>,
+        runs: Vec<u64>,
+        mask: Option<PyReadonlyArray1<'py, bool>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let mask: Option<Vec<bool>> = mask.map(|mask| mask.as_array().iter().copied().collect());
+        let sources: Vec<&Simulator> = simulators.iter().map(|simulator| &**simulator).collect();
+        let keeps = self.keeps;
+        let rows = self.each(py, |index, flight, row, _| {
+            if mask.as_ref().is_none_or(|mask| mask[index]) {
+                *flight = Flight::restored(sources[index], runs[index], keeps);
+            }
+            flight.advance(row, |_, _| Ok(()));
+        })?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
 

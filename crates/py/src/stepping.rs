@@ -121,6 +121,16 @@ impl Simulator {
         }
     }
 
+    /// The simulation.
+    pub const fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The commands of the run; `None` if they were not kept.
+    pub const fn command_log(&self) -> Option<&CommandLog> {
+        self.commands.as_ref()
+    }
+
     /// Advances the simulation until Python's signals stop it.
     fn advance<T: Send>(
         &mut self,
@@ -163,6 +173,12 @@ impl Simulator {
     #[getter]
     fn done(&self) -> bool {
         self.simulation.is_finished()
+    }
+
+    /// Why it cannot go on, if it cannot.
+    #[getter]
+    pub fn failed(&self) -> Option<&str> {
+        self.failed.as_deref()
     }
 
     #[getter]
