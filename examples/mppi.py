@@ -1,4 +1,4 @@
-"""A slew by model-predictive path-integral control (MPPI), with roll-outs of the spacecraft itself as the model.
+"""A slew by model-predictive path-integral control (MPPI), whose roll-outs are of the spacecraft itself.
 
 A spacecraft with four flexible modes turns by 82 degrees under at most 1 N m about each axis. Each second the
 controller tries hundreds of sequences of torques from the present state, and weights them by their costs.
@@ -33,8 +33,9 @@ def planned(
 ) -> Array:
     """Return the mean torques (N m) of roll-outs from the present state, weighted by their costs."""
     rollouts.restore(sim)
-    # As far from the target, so wide the search; one roll-out keeps the last plan.
-    spread = min(0.5, 0.02 + np.linalg.norm(sim.state["error"]) + 5.0 * np.linalg.norm(sim.state["rate"]))
+    # The search is as wide as the target is far; one roll-out keeps the last plan.
+    error, rate = (float(np.linalg.norm(sim.state[name])) for name in ("error", "rate"))
+    spread = min(0.5, 0.02 + error + 5.0 * rate)
     tried = mean[:, None] + spread * random.normal(size=(HORIZON, len(rollouts), 3))
     tried[:, 0] = mean
     tried = np.clip(tried, -LIMIT, LIMIT)
@@ -43,7 +44,8 @@ def planned(
         costs += cost(rollouts.step(torques, DT))
     costs += 10.0 * cost(rollouts.state)
     weights = np.exp(-(costs - costs.min()) / (TEMPERATURE * costs.std()))
-    return np.einsum("r,hra->ha", weights / weights.sum(), tried)
+    mean_torques: Array = np.einsum("r,hra->ha", weights / weights.sum(), tried)
+    return mean_torques
 
 
 def main() -> None:

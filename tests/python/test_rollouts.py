@@ -149,6 +149,11 @@ def test_keys_of_a_source_are_not_drawn_again(uncertain: flexsc.Scenario) -> Non
     same(at(everything(rollouts), 0), everything(Simulator(drawn, 7)))
     rollouts.restore(Simulator(drawn, 7))
     assert rollouts[0].scenario == drawn
+    # Nor are those of a source that has their nominal values.
+    rollouts = Simulators.of(Simulator(uncertain, 7), 2)
+    assert rollouts[1].scenario == uncertain
+    rollouts.reset()
+    same(at(everything(rollouts), 0), everything(Simulator(uncertain, 7)))
 
 
 def test_commands_are_kept_on_demand(uncertain: flexsc.Scenario) -> None:

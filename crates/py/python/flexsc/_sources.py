@@ -18,11 +18,12 @@ def parse_sources(given: object) -> list[Source]:
     Raises:
         TypeError: One is neither a `Simulator` nor a `Snapshot`.
     """
-    each = list(given) if isinstance(given, Iterable) else [given]
-    for one in each:
+    sources: list[Source] = []
+    for one in given if isinstance(given, Iterable) else [given]:
         if not isinstance(one, (Simulator, Snapshot)):
             raise TypeError(f"a state is that of a Simulator or a Snapshot, got {type(one).__name__}")
-    return each
+        sources.append(one)
+    return sources
 
 
 def check_scenarios(
