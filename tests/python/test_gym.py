@@ -280,17 +280,28 @@ class _VecEnv:
         raise NotImplementedError
 
 
-def test_episodes_of_stable_baselines_are_those_of_the_vector_environment(
-    uncertain: flexsc.Scenario, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def stand_in() -> dict[str, Any]:
+    """The modules of Stable-Baselines3 that are imported, with a class of its constructor only."""
     module: Any = ModuleType("stable_baselines3.common.vec_env")
     module.VecEnv = _VecEnv
-    for name in ("stable_baselines3", "stable_baselines3.common"):
-        monkeypatch.setitem(sys.modules, name, ModuleType(name))
-    monkeypatch.setitem(sys.modules, module.__name__, module)
+    packages = ("stable_baselines3", "stable_baselines3.common")
+    return {name: ModuleType(name) for name in packages} | {module.__name__: module}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("library", ["a stand-in", "stable_baselines3"])
+def test_episodes_of_stable_baselines_are_those_of_the_vector_environment(
+    uncertain: flexsc.Scenario, monkeypatch: pytest.MonkeyPatch, library: str
+) -> None:
+    if library == "stable_baselines3":
+        # In place of the stand-in where it is installed.
+        pytest.importorskip(library)
+    else:
+        for name, module in stand_in().items():
+            monkeypatch.setitem(sys.modules, name, module)
     venv = stable_baselines(uncertain, 3, dt=1.0, metrics=["goal"])
     envs = SpacecraftVectorEnv(uncertain, 3, dt=1.0, autoreset_mode="SameStep", metrics=["goal"])
-    venv._seeds = [4, 5, 6]
+    venv._seeds = [4, 5, 6]  # What `venv.seed(4)` does.
     expected, info = envs.reset(seed=4)
     np.testing.assert_array_equal(venv.reset(), expected)
     assert [each["run"] for each in venv.reset_infos] == info["run"].tolist()
@@ -309,10 +320,33 @@ def test_episodes_of_stable_baselines_are_those_of_the_vector_environment(
         assert venv.reset_infos[index] == {"run": info["run"][index]}
     assert venv.get_attr("num_envs", 1) == [3]
     assert venv.env_is_wrapped(_VecEnv) == [False] * 3
+    assert venv.env_method("result", "none", indices=[1])[0].metrics["goal"]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_stable_baselines_learns_and_wraps_them(uncertain: flexsc.Scenario) -> None:
+    baselines = pytest.importorskip("stable_baselines3")
+    vec_env = pytest.importorskip("stable_baselines3.common.vec_env")
+    envs = stable_baselines(uncertain, 4, dt=0.5, metrics=["goal"])
+    assert isinstance(envs, vec_env.VecEnv)
+    envs.seed(4)
+    first = envs.reset()
+    monitored = vec_env.VecNormalize(vec_env.VecMonitor(envs))
+    model = baselines.PPO("MlpPolicy", monitored, n_steps=16, batch_size=32, seed=4, device="cpu")
+    model.learn(640)
+    # Five seconds: each episode has ten steps.
+    assert [episode["l"] for episode in model.ep_info_buffer] == [10] * 64
+    assert np.isfinite([episode["r"] for episode in model.ep_info_buffer]).all()
+    assert len(model.ep_success_buffer) == 64
+    off_policy = baselines.SAC("MlpPolicy", envs, learning_starts=20, seed=4, device="cpu")
+    off_policy.learn(60)
+    envs.seed(4)
+    np.testing.assert_array_equal(envs.reset(), first)
 
 
 def test_stable_baselines_must_be_installed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "stable_baselines3", None)
+    for name in ("stable_baselines3", "stable_baselines3.common.vec_env"):
+        monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(ImportError, match=r"needs stable-baselines3: pip install stable-baselines3"):
         stable_baselines("four-clamped-modes", dt=1.0, limit=1.0)
 

@@ -9,6 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 USAGE = Path(__file__).with_name("usage.py")
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.py"))
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 
 
 def run(*arguments: str | Path) -> None:
@@ -32,8 +33,8 @@ def test_the_tests_are_typed() -> None:
     run("mypy", "--strict", *sorted(USAGE.parent.glob("*.py")), *makers)
 
 
-def test_the_tutorials_are_typed() -> None:
-    for tutorial in TUTORIALS:
+def test_the_tutorials_and_examples_are_typed() -> None:
+    for tutorial in [*TUTORIALS, *EXAMPLES]:
         run("mypy", "--strict", tutorial)
 
 

@@ -53,7 +53,7 @@ class OneCopy:
         except (engine.ScenarioError, engine.SimulationError) as error:
             self._fail(error)
 
-    def _fail(self, error: Exception) -> None:
+    def _fail(self, error: Exception | str) -> None:
         self.failed = [(0, self._run, str(error))]
         self.row = np.full_like(self.row, np.nan)
 
@@ -63,6 +63,18 @@ class OneCopy:
         """Restart the run, or another one; return its row."""
         if mask is None or mask[0]:
             self._start(self._run if runs is None else int(runs[0]))
+        return self.look()
+
+    def restore(
+        self, simulators: list[engine.Simulator], runs: list[int], mask: npt.NDArray[np.bool_] | None
+    ) -> npt.NDArray[np.float64]:
+        """Set the run to the state of a simulator; return its row."""
+        if mask is None or mask[0]:
+            self._run, self.failed, self.simulator = runs[0], [], simulators[0].copy()
+            if self.simulator.failed is None:
+                self.row = self.simulator.look()
+            else:
+                self._fail(self.simulator.failed)
         return self.look()
 
     def step(

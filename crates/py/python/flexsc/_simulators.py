@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
 from flexsc._scenario import Scenario
-from flexsc._simulator import Simulator
+from flexsc._simulator import Simulator, Snapshot
+from flexsc._sources import Source, check_scenarios, parse_sources
 from flexsc._values import run_number
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ class Simulators:
 
     Copy i is run `runs[i]`, with its keys of `[uncertain]` drawn. It is bit-identical to
     `Simulator(scenario.draw(run), run)` for any number of threads, and independent of the other copies.
+    `Simulators.of(simulator, n)` starts copies at the present state of a run instead, for roll-outs.
 
     Args:
         scenario: The scenario from which the runs are drawn.
@@ -44,8 +46,12 @@ class Simulators:
     (100, 4)
     """
 
-    __slots__ = ("_fields", "_native", "_rows", "scenario")
+    __slots__ = ("_drawn", "_fields", "_native", "_origin", "_rows", "scenario")
     _native: engine.Simulators | OneCopy
+    # Scenarios of copies: as drawn, or of the states that they were set to.
+    _drawn: dict[int, Scenario]
+    # The scenario of the sources that copies began from.
+    _origin: Scenario
 
     scenario: Scenario
     """The scenario from which the runs are drawn."""
@@ -63,15 +69,76 @@ class Simulators:
         if count > _MOST:
             raise ValueError(f"runs must be at most {_MOST}, got {count}")
         numbers = range(run_number(runs)) if isinstance(runs, int) else [run_number(run) for run in runs]
-        if jobs is not None and not 1 <= jobs <= 1024:
-            raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
-        self.scenario = scenario if seed is None else scenario.with_("seed", seed)
+        threads = _threads(jobs)
+        scenario = scenario if seed is None else scenario.with_("seed", seed)
         if not len(numbers):
             raise ValueError("runs must be one or more, got none")
-        self._native = engine.Simulators(self.scenario._native, list(numbers), jobs or 0, keep_commands)
-        self._fields = Fields(self._native.fields)
-        self._rows: npt.NDArray[np.float64] | None = None
+        self._set(engine.Simulators(scenario._native, list(numbers), threads, keep_commands, True), scenario)
         self._raise()
+
+    def _set(self, native: engine.Simulators | OneCopy, scenario: Scenario) -> None:
+        self.scenario = self._origin = scenario
+        self._native = native
+        self._fields = Fields(native.fields)
+        self._rows: npt.NDArray[np.float64] | None = None
+        self._drawn = {}
+
+    @classmethod
+    def of(
+        cls,
+        source: Source | Iterable[Source],
+        copies: int = 1,
+        jobs: int | None = None,
+        *,
+        keep_commands: bool = False,
+    ) -> Simulators:
+        """Return copies of a run at its present state, for roll-outs of sampling controllers and searches.
+
+        A copy continues as `Simulator.restore` would, to the bit: with the state of sensors, estimators,
+        law and actuator, and with the last command. The source does not change. The copies share the future
+        noise of its run: under equal commands they remain equal. A roll-out thus foresees the random
+        disturbances and failures of its run; sensor noise does not act on a motion under commands.
+
+        `restore` sets the copies to another state. `reset` starts runs of `scenario`, which is that of the
+        source, with the present values of its keys of `[uncertain]`.
+
+        Args:
+            source: A `Simulator` or a `Snapshot`, or several of them, all of one scenario.
+            copies: The number of copies of each source; copy i is one of source `i // copies`.
+            jobs, keep_commands: As in `Simulators`; commands that the source has kept are kept too.
+
+        >>> sim = flexsc.Simulator(flexsc.Scenario.example("four-clamped-modes"))
+        >>> sim.step([0.5, 0.0, -0.5], 2.0)
+        >>> rollouts = flexsc.Simulators.of(sim, 100)
+        >>> torques = numpy.random.default_rng(1).normal(0.0, 0.3, (100, 3))
+        >>> state = rollouts.step(torques, 1.0)
+        >>> rollouts.time[0].item(), sim.time
+        (3.0, 2.0)
+
+        Raises:
+            TypeError: A source is neither a `Simulator` nor a `Snapshot`.
+            ValueError: There is no source, the sources are of several scenarios, or there are too many
+                copies.
+            SimulationError: A source cannot continue.
+        """
+        sources = parse_sources(source)
+        if not sources:
+            raise ValueError("copies need one source or more, got none")
+        if not isinstance(copies, int) or not 1 <= copies * len(sources) <= _MOST:
+            most = _MOST // len(sources)
+            raise ValueError(f"copies of each of {len(sources)} sources must be 1 to {most}, got {copies!r}")
+        origin = sources[0].scenario
+        check_scenarios(sources, [origin])
+        # Those that are drawn are not drawn again.
+        scenario = origin.without("uncertain") if origin.get("uncertain") else origin
+        each_copy = [one for one in sources for _ in range(copies)]
+        runs = [one.run for one in each_copy]
+        simulators = cls.__new__(cls)
+        native = engine.Simulators(scenario._native, runs, _threads(jobs), keep_commands, False)
+        simulators._set(native, scenario)
+        simulators._origin = origin
+        simulators.restore(sources if len(sources) == 1 else each_copy)
+        return simulators
 
     @classmethod
     def _of_one(cls, scenario: Scenario, run: int) -> Simulators:
@@ -79,10 +146,7 @@ class Simulators:
         from flexsc._one_copy import OneCopy
 
         simulators = cls.__new__(cls)
-        simulators.scenario = scenario
-        simulators._native = OneCopy(scenario, run)
-        simulators._fields = Fields(simulators._native.fields)
-        simulators._rows = None
+        simulators._set(OneCopy(scenario, run), scenario)
         simulators._raise()
         return simulators
 
@@ -94,8 +158,13 @@ class Simulators:
         """Return a clone of one copy."""
         index = range(len(self))[index]
         run = int(self.runs[index])
-        scenario = self.scenario.draw(run)
-        return Simulator._of(self._native.one(index), scenario, run)
+        return Simulator._of(self._native.one(index), self._scenario_of(index, run), run)
+
+    def _scenario_of(self, index: int, run: int) -> Scenario:
+        """The scenario of a copy, as it is drawn or as it was restored."""
+        if index not in self._drawn:
+            self._drawn[index] = self.scenario.draw(run)
+        return self._drawn[index]
 
     @property
     def runs(self) -> npt.NDArray[np.uint64]:
@@ -228,7 +297,78 @@ class Simulators:
             if numbers.shape != (len(self),) or numbers.dtype.kind not in "iu" or (numbers < 0).any():
                 raise ValueError(f"runs must be {len(self)} whole numbers from 0, got {runs!r}")
             numbers = numbers.astype(np.uint64)
-        self._keep(self._native.reset(_mask(mask, len(self)), numbers))
+        mask = _mask(mask, len(self))
+        self._keep(self._native.reset(mask, numbers))
+        for index in np.flatnonzero(mask).tolist() if self._drawn and mask is not None else ():
+            self._drawn.pop(index, None)
+        if mask is None:
+            self._drawn.clear()
+        self._raise()
+        return self.state
+
+    def snapshot(self) -> list[Snapshot]:
+        """Save the state of each copy, for `restore`, `Simulators.of` or `Simulator.restore`.
+
+        >>> sims = flexsc.Simulators(flexsc.Scenario.example("four-clamped-modes"), 3)
+        >>> before = sims.snapshot()
+        >>> moved = sims.step(numpy.ones((3, 3)), 1.0)
+        >>> sims.restore(before)["rate"].tolist() == sims.reset()["rate"].tolist()
+        True
+
+        Raises:
+            SimulationError: A copy has failed; the text names it.
+        """
+        self._raise()
+        each = enumerate(self.runs.tolist())
+        return [Snapshot(self._native.one(index), self._scenario_of(index, run), run) for index, run in each]
+
+    def restore(
+        self, snapshots: Source | Iterable[Source], mask: npt.NDArray[np.bool_] | None = None
+    ) -> Quantities:
+        """Set copies to saved states, or to the present state of simulators, as `Simulator.restore` does.
+
+        A copy takes the run number and the drawn keys of its snapshot, until it is reset.
+
+        Args:
+            snapshots: One `Snapshot` or `Simulator` for all copies, or n of them, one for each copy. They are
+                of `scenario`, or of `scenario.draw(run)` with the run of the snapshot. They can be used
+                again.
+            mask: The copies to set, of shape (n,); if omitted, all.
+
+        Returns:
+            The states of all copies.
+
+        >>> sim = flexsc.Simulator(flexsc.Scenario.example("four-clamped-modes"))
+        >>> rollouts = flexsc.Simulators.of(sim, 4)
+        >>> for _ in range(3):
+        ...     tried = rollouts.step(numpy.ones((4, 3)), 1.0)
+        ...     sim.step([1.0, 1.0, 1.0], 0.5)
+        ...     state = rollouts.restore(sim)
+        >>> state["rate"][2].tolist() == sim.state["rate"].tolist()
+        True
+
+        Raises:
+            TypeError: One is neither a `Snapshot` nor a `Simulator`.
+            ValueError: They are of another scenario, or not as many as there are copies; the mask has another
+                shape.
+            SimulationError: What is restored cannot continue.
+        """
+        import numpy as np
+
+        count, mask, sources = len(self), _mask(mask, len(self)), parse_sources(snapshots)
+        if len(sources) not in (1, count):
+            raise ValueError(f"snapshots must be 1 or {count}, one for each copy, got {len(sources)}")
+        accepted = [self.scenario, self._origin]
+        chosen = range(count) if mask is None else np.flatnonzero(mask).tolist()
+        if len(sources) == 1:
+            check_scenarios(sources, accepted)
+            drawn = dict.fromkeys(chosen, sources[0].scenario)
+            sources = sources * count
+        else:
+            check_scenarios([sources[index] for index in chosen], accepted, self._drawn.values())
+            drawn = {index: sources[index].scenario for index in chosen}
+        self._keep(self._native.restore([one._native for one in sources], [one.run for one in sources], mask))
+        self._drawn.update(drawn)
         self._raise()
         return self.state
 
@@ -241,6 +381,12 @@ class Simulators:
 
     def __repr__(self) -> str:
         return f"<flexsc.Simulators of {self.scenario.name}: {len(self)} copies>"
+
+
+def _threads(jobs: int | None) -> int:
+    if jobs is not None and not 1 <= jobs <= 1024:
+        raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
+    return jobs or 0
 
 
 def _mask(mask: npt.NDArray[np.bool_] | None, count: int) -> npt.NDArray[np.bool_] | None:
