@@ -28,9 +28,9 @@ pub fn section(body: &str, accepted: &Accepted) -> String {
     // An actuator or a law that goes with nothing has no column or row.
     let used: Vec<usize> =
         (0..actuators).filter(|actuator| accepted.iter().any(|law| count(&law[*actuator]) > 0)).collect();
-    let heads: String = used.iter().map(|actuator| format!(" {} |", ACTUATORS[*actuator].1)).collect();
+    let heads = used.iter().map(|actuator| ACTUATORS[*actuator].1).collect::<Vec<_>>().join(" | ");
     let rule = ":-:|".repeat(used.len());
-    write!(section, "<div class=\"matrix\" markdown>\n\n| law |{heads}\n|---|{rule}\n").expect("a text");
+    write!(section, "<div class=\"matrix\" markdown>\n\n| law | {heads} |\n|---|{rule}\n").expect("a text");
     let (kept, refused): (Vec<_>, Vec<_>) =
         LAWS.iter().zip(accepted).partition(|(_, row)| row.iter().any(|pairs| count(pairs) > 0));
     for (law, row) in &kept {
