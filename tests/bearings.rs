@@ -161,7 +161,7 @@ fn what_cannot_be_is_refused() {
         "at least `coulomb`",
     );
     let tachometer = "tachometer = { period = 0.05, pulses = 360 }";
-    refused(name, tachometer, "tachometer = { period = 0.05, pulses = 0 }", "pulses", "nonzero");
+    refused(name, tachometer, "tachometer = { period = 0.05, pulses = 0 }", "pulses", "from 1 to 4294967295");
     let two = format!("{tachometer}\n[[sensor]]\n{tachometer}");
     refused(name, tachometer, &two, "tachometer", "on each wheel already");
     let spatial = "[body.spatial]\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\npoints = [{ name = \"hub\" }]\n\

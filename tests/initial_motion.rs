@@ -89,13 +89,13 @@ fn an_error_is_added_to_a_written_attitude_too() {
 fn a_scenario_that_starts_at_its_target_has_no_error_at_the_start() {
     let dir = Dir::new();
     dir.write("start.toml", text("spacecraft", "attitude = \"target\"\nrate = \"target\""));
-    dir.run("simulate start.toml -o start.mcap").exits(0);
+    dir.run("simulate start.toml --log full -o start.mcap").exits(0);
     let written =
         dir.run("log scenario start.mcap").exits(0).prints(&["attitude = \"target\"", "rate = \"target\""]);
     dir.write("again.toml", written);
-    dir.run("export start.mcap /pointing -o start.csv").exits(0);
-    dir.run("simulate again.toml -o again.mcap").exits(0);
-    dir.run("export again.mcap /pointing -o again.csv").exits(0);
+    dir.run("export start.mcap --topic /pointing -o start.csv").exits(0);
+    dir.run("simulate again.toml --log full -o again.mcap").exits(0);
+    dir.run("export again.mcap --topic /pointing -o again.csv").exits(0);
     assert_eq!(dir.read("start.csv"), dir.read("again.csv"));
     let rows = crate::util::table(&dir, "start.csv");
     for key in ["roll_error_rad", "pitch_error_rad", "yaw_error_rad"] {
@@ -107,12 +107,11 @@ fn a_scenario_that_starts_at_its_target_has_no_error_at_the_start() {
 #[test]
 fn errors_are_drawn_in_campaigns() {
     let dir = Dir::new();
-    let drawn = "\n[uncertain]\n\"spacecraft.attitude_error[0]\" = { normal = { mean = 0.0, deviation = 0.02 } }\n\
-                 \"spacecraft.rate_error[2]\" = { uniform = { from = -1e-3, to = 1e-3 } }\n";
+    let drawn = "\n[uncertain]\n\"spacecraft.attitude_error[0]\" = { normal = { mean = 0.0, sd = 0.02 } }\n\
+                 \"spacecraft.rate_error[2]\" = { uniform = [-1e-3, 1e-3] }\n";
     let keys = "attitude = \"target\"\nattitude_error = [0, 0, 0]\nrate = \"target\"\nrate_error = [0, 0, 0]";
     dir.write("start.toml", text("spacecraft", keys) + drawn);
-    dir.run("simulate start.toml --runs 3 -o drawn").exits(0);
-    dir.run("export drawn -o runs.csv").exits(0);
+    dir.run("simulate start.toml --runs 3 -o runs.csv").exits(0);
     let rows = crate::util::table(&dir, "runs.csv");
     assert_eq!(rows.len(), 3);
     let values: Vec<&String> = rows.iter().map(|row| &row["spacecraft.attitude_error[0]"]).collect();

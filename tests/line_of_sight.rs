@@ -7,7 +7,7 @@ use flexsc_core::record::{Column, Detail, Trace};
 use nalgebra::{Rotation3, Vector3};
 
 use crate::traces::{column, flown, traced};
-use crate::util::{Dir, SCENARIOS};
+use crate::util::{Dir, SCENARIOS, table};
 
 /// Body at rest with an undamped mode, seen by three lines of sight of its point `camera`, which the mode moves.
 const VIBRATING: &str = "duration = 20.0
@@ -19,6 +19,7 @@ points = [{ name = \"hub\" }, { name = \"camera\", position = [0.0, 0.0, 1.0] }]
 [[body.spatial.modes]]
 frequency = 1.7
 displacement = 0.02
+shapes.hub = {}
 shapes.camera = { translation = [0.5, 0.0, -0.2], rotation = [0.3, 0.7, 0.0] }
 [law.open]
 [[line_of_sight]]
@@ -44,8 +45,8 @@ fn parsed(text: &str) -> Scenario {
     Scenario::parse("sight.toml", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the samples of the line of sight with this index.
-fn samples(trace: &Trace, line: u64) -> Vec<Sample> {
+/// Returns the samples of the line of sight with this index and period (s).
+fn samples(trace: &Trace, line: u64, period: f64) -> Vec<Sample> {
     let rows = trace.topic("/line_of_sight").expect("lines of sight");
     let (Some(Column::Counts(lines)), Some(Column::Rows(_, axes))) = (rows.get("line"), rows.get("axes"))
     else {
@@ -53,13 +54,12 @@ fn samples(trace: &Trace, line: u64) -> Vec<Sample> {
     };
     let field = |name: &str| axes.numbers(name).expect("numbers");
     let fields = ["error_rad", "rotation_rad", "displacement_m"].map(field);
-    let (angles, times) =
-        (rows.numbers("error_rad").expect("angles"), rows.numbers("time_s").expect("times"));
-    let at = |row: usize| {
+    let angles = rows.numbers("error_rad").expect("angles");
+    let at = |(sample, row): (usize, usize)| {
         let vectors = fields.map(|values| Vector3::from_column_slice(&values[3 * row..3 * row + 3]));
-        (times[row], angles[row], vectors)
+        (period * sample as f64, angles[row], vectors)
     };
-    (0..lines.len()).filter(|row| lines[*row] == line).map(at).collect()
+    (0..lines.len()).filter(|row| lines[*row] == line).enumerate().map(at).collect()
 }
 
 fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
@@ -81,7 +81,7 @@ fn a_mode_moves_the_line_of_sight_of_its_point_as_in_closed_form() {
     let (metrics, trace) = flown(&parsed(VIBRATING), 0, Detail::Full);
     let deviation = Vector3::new(3e-3, -2e-3, 1e-3);
     for (line, axis) in [(0, Vector3::z()), (1, Vector3::x())] {
-        let found = samples(&trace, line);
+        let found = samples(&trace, line, 0.25);
         assert_eq!(found.len(), 81);
         for (t, angle, [sight, rotation, displacement]) in found {
             let q = 0.02 * (1.7 * t).cos();
@@ -95,7 +95,7 @@ fn a_mode_moves_the_line_of_sight_of_its_point_as_in_closed_form() {
             );
         }
     }
-    let hub = samples(&trace, 2);
+    let hub = samples(&trace, 2, 0.5);
     assert_eq!(hub.len(), 41);
     for (_, _, [sight, rotation, displacement]) in hub {
         assert!((sight - error(Vector3::z(), [deviation, Vector3::zeros()])).norm() < 1e-14);
@@ -138,7 +138,7 @@ fn large_errors_and_opposite_directions_are_angles() {
             .replace("attitude_error = [3e-3, -2e-3, 1e-3]", &format!("attitude_error = {turn}"))
             .replace("displacement = 0.02", "displacement = 0.0")
             .replacen("point = \"camera\"\nperiod", &format!("point = \"camera\"\naxis = {axis}\nperiod"), 1);
-        let (_, _, [found, ..]) = samples(&traced(&parsed(&text)), 0)[0];
+        let (_, _, [found, ..]) = samples(&traced(&parsed(&text)), 0, 0.25)[0];
         assert!((found - exact).norm() < 1e-14, "{turn}: {found}");
     }
 }
@@ -150,16 +150,17 @@ fn lines_of_sight_of_the_hub_are_its_attitude_error() {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/earth-observer.toml")).expect("a file");
     let point = parsed(&text).model.three_axis().expect("three axes").points[0].name.clone();
     let lines: String = ["[1, 0, 0]", "[0, 1, 0]", "[0, 0, 1]"]
-        .map(|axis| format!("[[line_of_sight]]\npoint = \"{point}\"\naxis = {axis}\nperiod = 0.5\n"))
+        .map(|axis| format!("[[line_of_sight]]\npoint = \"{point}\"\naxis = {axis}\nperiod = 0.25\n"))
         .concat();
-    let trace = traced(&parsed(&format!("{text}\n{lines}").replace("[log]", "[log]\nperiod = 0.5\n")));
+    let trace = traced(&parsed(&format!("{text}\n{lines}")));
     let pointing =
         ["roll_error_rad", "pitch_error_rad", "yaw_error_rad"].map(|name| column(&trace, "/pointing", name));
-    let seconds = column(&trace, "/pointing", "time_s");
     let mut compared = 0;
     for line in 0..3 {
-        for (t, _, [found, ..]) in samples(&trace, line) {
-            let Some(row) = seconds.iter().position(|at| (at - t).abs() < 1e-9) else { continue };
+        // Both have rows each 0.25 s.
+        let samples = samples(&trace, line, 0.25);
+        assert_eq!(samples.len(), pointing[0].len());
+        for (row, (t, _, [found, ..])) in samples.into_iter().enumerate() {
             let mut exact = Vector3::from_fn(|axis, _| pointing[axis][row]);
             let size = exact.norm();
             exact[line as usize] = 0.0;
@@ -219,7 +220,12 @@ fn a_line_of_sight_has_a_figure_a_panel_and_metrics_in_campaigns() {
     assert!(dir.size("figures/sight-line-of-sight.svg") > 5_000);
     dir.run("layout sight.mcap -o layout.json").exits(0);
     assert!(dir.text("layout.json").contains("/line_of_sight.axes[0].error_rad"));
-    dir.run("simulate sight.toml --runs 2 -o runs").exits(0).says(&["line_of_sight_rms_rad"]);
+    dir.run("simulate sight.toml --runs 2 -o runs.csv").exits(0);
+    let rows = table(&dir, "runs.csv");
+    assert!(
+        rows.len() == 2 && rows[0].keys().any(|name| name.starts_with("line_of_sight_rms_rad")),
+        "{rows:?}"
+    );
 }
 
 #[test]
@@ -231,7 +237,12 @@ fn where_none_can_be_it_is_refused() {
         "plate = \"y\"\n",
         "plate = \"y\"\npoints = [{ name = \"tip\", position = [0, 5, 0] }]\n",
         1,
-    ) + "\n[[line_of_sight]]\npoint = \"tip\"\nperiod = 1.0\n";
+    );
+    let begins = driven.find("modes = [").expect("modes");
+    let ends = begins + driven[begins..].find("\n]").expect("an end") + 2;
+    let driven = driven[..begins].to_owned()
+        + &driven[ends..]
+        + "\n[[line_of_sight]]\npoint = \"tip\"\nperiod = 1.0\n";
     for (text, words) in [
         (planar, &["`line_of_sight` is for a body with three axes"][..]),
         (

@@ -41,7 +41,7 @@ fn the_numbers_of_a_plan() {
     assert_eq!(reported["constant_nm"], 0.0);
     let dir = dir("torque", 0.0, &quarter);
     dir.run("plan turn.toml --units si").exits(0).says(&[
-        "1.571 rad in 12.000000000 s",
+        "1.571 rad in 12 s",
         "411.465238316, -190.087330099 N m",
         "521.1 N m",
         "phi4",

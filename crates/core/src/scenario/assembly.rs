@@ -53,7 +53,8 @@ impl ScenarioSpec {
             return;
         }
         let profile = AttitudeProfile::new(self.targets(), &self.orbit_environment(), &model.free_modes());
-        let motion = initial.resolve(&profile.at(Instant::START));
+        let target = profile.at(Instant::START);
+        let motion = initial.resolve(&target.attitude, &target.rate);
         if let Some(body) = model.three_axis_mut() {
             (body.attitude, body.rate) = motion;
         }

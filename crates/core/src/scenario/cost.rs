@@ -17,7 +17,7 @@ use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 
 use super::Scenario;
-use super::pace::{STEP, SWITCHES, TURNS};
+use super::pace::{QUIET_RATE, QUIET_STEPS, STEP, SWITCHES, TURNS};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;
@@ -39,10 +39,6 @@ const MUCH_MEMORY: f64 = 4e9;
 /// Disk space for logs (bytes) above which a confirmation is needed.
 const MUCH_DISK: f64 = 2e10;
 
-/// Rate (rad/s) below which swings of a body that holds its attitude in surroundings do not shorten steps.
-const QUIET_RATE: f64 = 1e-3;
-/// Length of steps of such a body, relative to steps that resolve its modes.
-const QUIET_STEPS: f64 = 64.0;
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
 /// Number of runs about one axis that take the time of one in SIMD lanes.

@@ -40,6 +40,10 @@ const DRIVEN: Pace = (3e-6, 3e-6);
 const BEARINGS: Pace = (1e-6, 6.5e-7);
 const HINGES: Pace = (7e-6, 7e-6);
 const SINES: Pace = (1.5e-6, 5e-7);
+/// Rate (rad/s) below which swings of a body that holds its attitude in surroundings do not shorten steps.
+pub(super) const QUIET_RATE: f64 = 1e-3;
+/// Length of steps of such a body, relative to steps that resolve its modes.
+pub(super) const QUIET_STEPS: f64 = 64.0;
 /// A look at the motion within an exposure (s), and a cycle of individually commanded jets.
 const LOOK_S: f64 = 2e-6;
 const ALLOCATION_S: f64 = 5e-6;

@@ -99,6 +99,7 @@ __all__ = [
     "Keys",
     "LawKind",
     "Lead",
+    "LineOfSight",
     "LitPlate",
     "LogContents",
     "LogUniform",
@@ -1773,6 +1774,34 @@ class Lead(Part):
     """The pole (rad/s)."""
 
 
+class LineOfSight(Part):
+    """Line of sight of an instrument at a named point of a three-axis body, which is recorded and assessed.
+    Nothing in the control loop reads it.
+
+    Args:
+        point: Point of the structure at which the instrument is mounted.
+        period: Period of its samples (s).
+        axis: Direction of the line of sight, of any length, in the body's axes with the structure
+            undeformed.
+        window: Start and end (s) of the interval in which it is assessed; default: the whole run.
+        jitter_window: Length (s) of the windows within which jitter is assessed, such as an exposure time:
+            the deviation from the mean over each window. Default: no jitter is assessed.
+    """
+
+    point: str
+    """Point of the structure at which the instrument is mounted."""
+    period: float
+    """Period of its samples (s)."""
+    axis: Vector | None = None
+    """Direction of the line of sight, of any length, in the body's axes with the structure undeformed."""
+    window: Vector | None = None
+    """Start and end (s) of the interval in which it is assessed; default: the whole run."""
+    jitter_window: float | None = None
+    """Length (s) of the windows within which jitter is assessed, such as an exposure time: the deviation
+    from the mean over each window. Default: no jitter is assessed.
+    """
+
+
 class LitPlate(Part):
     """A plate; sunlight presses on one side of it.
 
@@ -2967,9 +2996,12 @@ class Spacecraft(Part):
             row by row.
         centre: Centre of mass of the hub alone (m).
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
-            inertial ones.
-        rate: Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they
-            are the rates of the hub.
+            inertial ones, or `"target"` for that of the target.
+        attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
+            axes.
+        rate: Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for
+            those of the target; without vibration they are the rates of the hub.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
         whole_damping: Whether the full damping matrix of the free modes is kept even if its off-diagonal
             terms are negligible.
@@ -2985,14 +3017,18 @@ class Spacecraft(Part):
     """
     centre: Vector | None = None
     """Centre of mass of the hub alone (m)."""
-    attitude: Vector | None = None
+    attitude: Vector | Literal["target"] | None = None
     """Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into inertial
-    ones.
+    ones, or `"target"` for that of the target.
     """
-    rate: Vector | None = None
-    """Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they are
-    the rates of the hub.
+    attitude_error: Vector | None = None
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes."""
+    rate: Vector | Literal["target"] | None = None
+    """Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of
+    the target; without vibration they are the rates of the hub.
     """
+    rate_error: Vector | None = None
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes."""
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     whole_damping: bool | None = None
@@ -3009,8 +3045,11 @@ class Spatial(Part):
     Args:
         inertia: Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite.
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
-            inertial ones.
-        rate: Rates at the start (rad/s), in the body's axes.
+            inertial ones, or `"target"` for that of the target.
+        attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
+            axes.
+        rate: Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
         points: Named points of the structure, at which jets and sensors are mounted.
         modes: Elastic modes: a table, or the path of a CSV file.
@@ -3021,12 +3060,16 @@ class Spatial(Part):
 
     inertia: Rows
     """Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite."""
-    attitude: Vector | None = None
+    attitude: Vector | Literal["target"] | None = None
     """Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into inertial
-    ones.
+    ones, or `"target"` for that of the target.
     """
-    rate: Vector | None = None
-    """Rates at the start (rad/s), in the body's axes."""
+    attitude_error: Vector | None = None
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes."""
+    rate: Vector | Literal["target"] | None = None
+    """Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target."""
+    rate_error: Vector | None = None
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes."""
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     points: Sequence[NamedPoint] | None = None
@@ -3897,6 +3940,9 @@ class Keys(TypedDict, total=False):
     """Target attitudes of a body with three axes, in the order of their times; before the first one, the
     target is the inertial axes. A law `phase_plane` may have targets of its own.
     """
+
+    line_of_sight: Sequence[LineOfSight]
+    """Lines of sight of instruments on a body with three axes, which are recorded and assessed."""
 
     reference: Reference
     """Reference values for the metrics."""

@@ -1,5 +1,6 @@
 //! Topics of a log: the fields of each row, with their units.
 
+mod line_of_sight;
 mod one_angle;
 mod run;
 mod three_axes;
@@ -9,14 +10,16 @@ use super::row::{Topic, TopicRow};
 use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 use crate::enum_label::LoggedEnum;
 
+pub use line_of_sight::*;
 pub use one_angle::*;
 pub use run::*;
 pub use three_axes::*;
 
 /// Topic declarations, in the order of the list.
-const PARTS: [&[Topic]; 4] = [one_angle::DECLARED, three_axes::DECLARED, run::DECLARED, foxglove::DECLARED];
+const PARTS: [&[Topic]; 5] =
+    [one_angle::DECLARED, three_axes::DECLARED, line_of_sight::DECLARED, run::DECLARED, foxglove::DECLARED];
 
-const COUNT: usize = PARTS[0].len() + PARTS[1].len() + PARTS[2].len() + PARTS[3].len() + 1;
+const COUNT: usize = PARTS[0].len() + PARTS[1].len() + PARTS[2].len() + PARTS[3].len() + PARTS[4].len() + 1;
 
 /// All topics of a log.
 pub const TOPICS: &[Topic] = {

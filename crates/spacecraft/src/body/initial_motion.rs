@@ -4,14 +4,13 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-use flexsc_numerics::attitude::{Attitude, rotation, vector};
+use flexsc_numerics::attitude::{Attitude, Vector, rotation, vector};
 use flexsc_numerics::quantity::Finite;
+use nalgebra::Quaternion;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::manoeuvre::AttitudeMotion;
 
 /// Word of the scenario for the value of the target.
 const TARGET: &str = "target";
@@ -21,13 +20,8 @@ const TARGET: &str = "target";
 pub enum StartValue<T> {
     /// As written.
     Written(T),
-    /// That of the target.
+    /// Value of the target.
     Target,
-}
-
-/// Returns true if all components are zero.
-pub(super) fn is_zero(components: &[Finite; 3]) -> bool {
-    components.iter().all(|part| part.get() == 0.0)
 }
 
 /// Attitude and rates of a three-axis body at the start, with the errors that a scenario adds to them.
@@ -36,39 +30,40 @@ pub struct InitialMotion {
     /// Attitude without its error.
     pub attitude: StartValue<Attitude>,
     /// Rotation vector (rad) from that attitude to the one of the start, in the body's axes.
-    pub attitude_error: [Finite; 3],
+    pub attitude_error: Option<[Finite; 3]>,
     /// Rates (rad/s) without their error, in the body's axes.
     pub rate: StartValue<[Finite; 3]>,
     /// Rates (rad/s) in addition, in the body's axes.
-    pub rate_error: [Finite; 3],
+    pub rate_error: Option<[Finite; 3]>,
 }
 
 impl InitialMotion {
-    /// Returns the attitude and the rates (rad/s, in the body's axes) at the start, when the target moves like this.
-    pub fn resolve(&self, target: &AttitudeMotion) -> (Attitude, [Finite; 3]) {
+    /// Returns the attitude and the rates (rad/s) at the start, with a target at rest in the inertial axes.
+    pub(super) fn as_written(&self) -> (Attitude, [Finite; 3]) {
+        self.resolve(&Attitude::default().get(), &Vector::zeros())
+    }
+
+    /// Returns the attitude and the rates (rad/s, in the body's axes) at the start, with a target that has this attitude
+    /// then and this rate (rad/s) in its own axes.
+    pub fn resolve(&self, target: &Quaternion<f64>, target_rate: &Vector) -> (Attitude, [Finite; 3]) {
         let written = match self.attitude {
             StartValue::Written(attitude) => attitude,
-            StartValue::Target => Attitude::new(target.attitude),
+            StartValue::Target => Attitude::new(*target),
         };
-        // A product with the identity could change the sign of a zero.
-        let attitude = if is_zero(&self.attitude_error) {
-            written
-        } else {
-            Attitude::new(written.get() * rotation(&vector(&self.attitude_error)))
-        };
+        let attitude = self
+            .attitude_error
+            .map_or(written, |error| Attitude::new(written.get() * rotation(&vector(&error))));
         let rate = match self.rate {
             StartValue::Written(rate) => rate,
             StartValue::Target => {
-                let axes = attitude.get().conjugate() * target.attitude;
-                let turned = axes * nalgebra::Quaternion::from_imag(target.rate) * axes.conjugate();
+                let axes = attitude.get().conjugate() * target;
+                let turned = axes * Quaternion::from_imag(*target_rate) * axes.conjugate();
                 [turned.i, turned.j, turned.k].map(|part| Finite::new(part).unwrap_or_default())
             }
         };
-        if is_zero(&self.rate_error) {
-            return (attitude, rate);
-        }
-        let sum = |axis: usize| Finite::new(rate[axis].get() + self.rate_error[axis].get());
-        (attitude, [0, 1, 2].map(|axis| sum(axis).unwrap_or(rate[axis])))
+        let sum = |axis: usize, error: &[Finite; 3]| Finite::new(rate[axis].get() + error[axis].get());
+        let with = |error: [Finite; 3]| [0, 1, 2].map(|axis| sum(axis, &error).unwrap_or(rate[axis]));
+        (attitude, self.rate_error.map_or(rate, with))
     }
 }
 

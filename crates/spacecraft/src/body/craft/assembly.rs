@@ -5,7 +5,7 @@ use std::sync::Arc;
 use flexsc_dynamics::three_axis::{ArticulatedBody, ClampedModes, FreeModes};
 use flexsc_dynamics::three_axis_model::{ModalCoupling, ModelPoint, ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::{Attitude, Vector, vector};
+use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use nalgebra::{Matrix3, Matrix3xX};
 
@@ -18,7 +18,6 @@ use super::thermal;
 use super::validation;
 use super::{AssembledSpacecraft, HubRotor};
 use crate::body::spatial::NamedPoint;
-use crate::manoeuvre::AttitudeMotion;
 
 /// Clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,8 +92,7 @@ impl AssembledSpacecraft {
         let damping = FreeModeDamping::new(&free, &held.frequencies, &ratios);
         let hub_points = spacecraft.hub_points();
         let places = places(&hub_points, &oriented, parts.len());
-        let at_rest = AttitudeMotion::at_rest(Attitude::default().get());
-        let (attitude, rate) = spacecraft.initial_motion().resolve(&at_rest);
+        let (attitude, rate) = spacecraft.initial_motion().as_written();
         Ok(Self {
             model: ThreeAxisModel {
                 inertia: finite_tensor(held.inertia)?,

@@ -6,7 +6,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mass::MassProperties;
-use crate::body::initial_motion::is_zero;
 use crate::body::spatial::NamedPoint;
 use crate::body::{InitialMotion, SmallAngles, StartValue};
 
@@ -27,16 +26,16 @@ pub struct Spacecraft {
     /// `"target"` for that of the target.
     #[serde(default)]
     pub attitude: StartValue<Attitude>,
-    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub attitude_error: [Finite; 3],
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude_error: Option<[Finite; 3]>,
     /// Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of the target;
     /// without vibration they are the rates of the hub.
     #[serde(default)]
     pub rate: StartValue<[Finite; 3]>,
-    /// Rates at the start in addition to `rate` (rad/s), in the body's axes.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub rate_error: [Finite; 3],
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_error: Option<[Finite; 3]>,
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,

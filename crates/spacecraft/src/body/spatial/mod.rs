@@ -19,9 +19,7 @@ use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::initial_motion::is_zero;
 use super::{InitialMotion, SmallAngles, StartValue};
-use crate::manoeuvre::AttitudeMotion;
 
 pub use disturbance::Periodic;
 pub use modes::SpatialModes;
@@ -36,15 +34,15 @@ pub struct Spatial {
     /// `"target"` for that of the target.
     #[serde(default)]
     pub attitude: StartValue<Attitude>,
-    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub attitude_error: [Finite; 3],
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attitude_error: Option<[Finite; 3]>,
     /// Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
     #[serde(default)]
     pub rate: StartValue<[Finite; 3]>,
-    /// Rates at the start in addition to `rate` (rad/s), in the body's axes.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    pub rate_error: [Finite; 3],
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_error: Option<[Finite; 3]>,
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,
@@ -107,8 +105,7 @@ impl From<&Spatial> for ThreeAxisModel {
             position: vector(&point.position),
             shapes: body.modes.iter().map(|mode| shape(mode, point)).collect(),
         };
-        let (attitude, rate) =
-            body.initial_motion().resolve(&AttitudeMotion::at_rest(Attitude::default().get()));
+        let (attitude, rate) = body.initial_motion().as_written();
         Self {
             inertia: tensor(&body.inertia),
             attitude,
