@@ -179,9 +179,11 @@ def test_what_makes_no_campaign(fixed: Scenario) -> None:
             flexsc.campaign(fixed, 1, jobs=jobs)
     with pytest.raises(ScenarioError, match="`seed`"):
         flexsc.campaign(fixed, 1, seed=-1)
-    for values in ([], [[0.31]], 0.31):
-        with pytest.raises(ValueError, match="values must be of shape"):
+    for values in (np.zeros(0), 0.31):
+        with pytest.raises(ValueError, match="must be of shape"):
             flexsc.sweep(fixed, "law.relay.k_t", values)  # type: ignore[arg-type]
+    with pytest.raises(ScenarioError, match="found an array, expected a number"):
+        flexsc.sweep(fixed, "law.relay.k_t", [[0.31]])
     with pytest.raises(ScenarioError, match="unknown key `kt`"):
         flexsc.sweep(fixed, "law.relay.kt", [0.31])
     with pytest.raises(ScenarioError, match="must be a number between 0 and 1"):

@@ -27,7 +27,7 @@ def test_a_point_is_the_same_alone(sampled: Scenario, tmp_path: Path, monkeypatc
     part = flexsc.evaluate(short, keys, population[[7]], "duty", run=5, jobs=1)
     assert part.shape == (1,)
     assert part[0] == values[7, 0]
-    assert flexsc.evaluate(short, keys, population[[7]], "duty", run=6)[0] != values[7, 0]
+    assert (flexsc.evaluate(short, keys, population, "duty", run=6) != values[:, 0]).any()
     assert list(tmp_path.iterdir()) == []
 
 
