@@ -2998,10 +2998,10 @@ class Spacecraft(Part):
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
             inertial ones, or `"target"` for that of the target.
         attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
-            axes.
+            axes; default: none.
         rate: Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for
             those of the target; without vibration they are the rates of the hub.
-        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
         whole_damping: Whether the full damping matrix of the free modes is kept even if its off-diagonal
             terms are negligible.
@@ -3022,13 +3022,15 @@ class Spacecraft(Part):
     ones, or `"target"` for that of the target.
     """
     attitude_error: Vector | None = None
-    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes."""
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default:
+    none.
+    """
     rate: Vector | Literal["target"] | None = None
     """Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of
     the target; without vibration they are the rates of the hub.
     """
     rate_error: Vector | None = None
-    """Rates at the start in addition to `rate` (rad/s), in the body's axes."""
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none."""
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     whole_damping: bool | None = None
@@ -3047,9 +3049,9 @@ class Spatial(Part):
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
             inertial ones, or `"target"` for that of the target.
         attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
-            axes.
+            axes; default: none.
         rate: Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
-        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
         points: Named points of the structure, at which jets and sensors are mounted.
         modes: Elastic modes: a table, or the path of a CSV file.
@@ -3065,11 +3067,13 @@ class Spatial(Part):
     ones, or `"target"` for that of the target.
     """
     attitude_error: Vector | None = None
-    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes."""
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default:
+    none.
+    """
     rate: Vector | Literal["target"] | None = None
     """Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target."""
     rate_error: Vector | None = None
-    """Rates at the start in addition to `rate` (rad/s), in the body's axes."""
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none."""
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     points: Sequence[NamedPoint] | None = None
