@@ -48,6 +48,7 @@ impl Summary<'_> {
                 self.quantity("slew_error_rms_rad", "rad"),
             );
         }
+        self.lines_of_sight();
         if let (Some(MetricValue::Word(word)), Some(pointing)) =
             (self.metrics.get("requirement"), &self.scenario.reference.pointing)
         {
@@ -64,6 +65,30 @@ impl Summary<'_> {
         };
         self.goal(&bands);
         self.frequencies();
+    }
+
+    /// Prints the error and the jitter of each line of sight.
+    fn lines_of_sight(&self) {
+        let values = |name: &str, index: usize| match self.metrics.get(name) {
+            Some(MetricValue::Numbers(values)) => values.get(index).copied().unwrap_or(f64::NAN),
+            _ => f64::NAN,
+        };
+        for (index, line) in self.scenario.line_of_sight.iter().enumerate() {
+            let [rms, peak, jitter] =
+                ["rms", "peak", "jitter_rms"].map(|name| values(&format!("line_of_sight_{name}_rad"), index));
+            if !rms.is_finite() {
+                continue;
+            }
+            let [rms, peak] = [rms, peak].map(|value| self.units.quantity(value, "rad"));
+            let jitter = match line.jitter_window {
+                Some(window) if jitter.is_finite() => {
+                    let jitter = self.units.quantity(jitter, "rad");
+                    format!("; jitter {jitter} rms within {} s", digits(window.get()))
+                }
+                _ => String::new(),
+            };
+            say!("  line of sight  {}: error {rms} rms, at most {peak}{jitter}", line.point);
+        }
     }
 
     fn jets(&self) {
