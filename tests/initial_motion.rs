@@ -129,6 +129,11 @@ fn other_words_and_shapes_are_refused() {
         ("attitude_error = \"target\"", &["attitude_error"]),
         ("attitude_error = [0, nan, 0]", &["attitude_error"]),
         ("rate_error = [0, 0]", &["rate_error"]),
+        (
+            "attitude_error = [1e300, 1e300, 1e300]",
+            &["spacecraft.attitude_error", "from -6.2832 to 6.2832 rad"],
+        ),
+        ("rate_error = [0, 1e300, 0]", &["spacecraft.rate_error", "rad/s about each axis, got 1"]),
     ] {
         let error = Scenario::parse("start.toml", &text("spacecraft", keys)).expect_err(keys).to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{keys}: {error}");

@@ -128,6 +128,13 @@ fn a_mode_moves_the_line_of_sight_of_its_point_as_in_closed_form() {
 
 #[test]
 fn large_errors_and_opposite_directions_are_angles() {
+    // Directions of any length.
+    for axis in ["[0, 0, 1e300]", "[0, 0, 1e-200]"] {
+        let text =
+            VIBRATING.replacen("point = \"camera\"\n", &format!("point = \"camera\"\naxis = {axis}\n"), 1);
+        let [long, unit] = [&text, VIBRATING].map(|text| samples(&traced(&parsed(text)), 0, 0.25)[5]);
+        assert_eq!(long, unit, "{axis}");
+    }
     for (turn, axis, exact) in [
         ("[2.5, 0, 0]", Vector3::<f64>::z(), Vector3::new(2.5, 0.0, 0.0)),
         ("[0, 0, 2.5]", Vector3::z(), Vector3::zeros()),

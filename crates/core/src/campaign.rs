@@ -120,7 +120,7 @@ impl Campaign {
         let campaign = Self::from_unchecked_points(scenario, origin, design)?;
         // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
         for keys in campaign.design.ends() {
-            campaign.scenario_with(&campaign.alike(keys))?;
+            campaign.scenario_with(&campaign.convert_values(keys))?;
         }
         Ok(campaign)
     }
@@ -173,7 +173,7 @@ impl Campaign {
         let mut cost = self.scenario.cost(log, false);
         for keys in self.design.ends() {
             // Values that are not accepted cost nothing.
-            if let Ok(end) = self.scenario_with(&self.alike(keys)) {
+            if let Ok(end) = self.scenario_with(&self.convert_values(keys)) {
                 cost = cost.max(end.cost(log, false));
             }
         }
@@ -310,15 +310,16 @@ impl Campaign {
     }
 
     /// Converts a number to the type of a key's value in the scenario; any other value stays.
-    fn like(&self, key: &str, value: Value) -> Value {
+    fn convert_value(&self, key: &str, value: Value) -> Value {
         match value {
             Value::Float(number) if self.is_integer(key) => Value::Integer(libm::round(number) as i64),
             other => other,
         }
     }
 
-    fn alike<'a>(&self, keys: Vec<(&'a str, Value)>) -> Vec<(&'a str, Value)> {
-        keys.into_iter().map(|(key, value)| (key, self.like(key, value))).collect()
+    /// Converts the numbers among values to the types of their keys in the scenario.
+    fn convert_values<'a>(&self, keys: Vec<(&'a str, Value)>) -> Vec<(&'a str, Value)> {
+        keys.into_iter().map(|(key, value)| (key, self.convert_value(key, value))).collect()
     }
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {

@@ -14,7 +14,8 @@ impl Campaign {
         let point = self.design.point(number);
         let keys = self.design.keys();
         let values = self.design.values(point, self.scenario.seed);
-        let mut drawn: Vec<Value> = keys.into_iter().zip(values).map(|(key, v)| self.like(key, v)).collect();
+        let mut drawn: Vec<Value> =
+            keys.into_iter().zip(values).map(|(key, v)| self.convert_value(key, v)).collect();
         let first = drawn.len();
         drawn.extend((0..self.scenario.uncertain.len()).map(|place| self.uncertain(place, point)));
         for group in &self.scenario.correlated {

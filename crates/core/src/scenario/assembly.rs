@@ -7,7 +7,7 @@ use flexsc_control::law::AttitudeProfile;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::craft::{AssembledSpacecraft, Spacecraft};
-use flexsc_spacecraft::body::{Body, BodyModel, StartValue};
+use flexsc_spacecraft::body::{Body, BodyModel};
 
 use super::{Scenario, ScenarioSpec};
 
@@ -49,7 +49,7 @@ impl ScenarioSpec {
         let Some(initial) = self.spacecraft.as_ref().map(Spacecraft::initial_motion).or_else(spatial) else {
             return;
         };
-        if matches!((initial.attitude, initial.rate), (StartValue::Written(_), StartValue::Written(_))) {
+        if !initial.depends_on_target() {
             return;
         }
         let profile = AttitudeProfile::new(self.targets(), &self.orbit_environment(), &model.free_modes());

@@ -41,7 +41,9 @@ fn z_axis() -> [Finite; 3] {
 impl LineOfSight {
     /// Returns the direction of the line of sight in the undeformed body, as a unit vector.
     pub fn direction(&self) -> Vector {
-        vector(&self.axis).normalize()
+        // Scaled first: the squares of any length are finite then.
+        let axis = vector(&self.axis);
+        (axis / axis.amax()).normalize()
     }
 
     /// Returns true if a sample at a time (s) is assessed.

@@ -1,9 +1,11 @@
 //! Attitude and rates of a three-axis body at the start: as written or those of the target, and an error beside them.
 
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 use std::fmt;
 use std::marker::PhantomData;
 
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Attitude, Vector, rotation, vector};
 use flexsc_numerics::quantity::Finite;
 use nalgebra::Quaternion;
@@ -14,6 +16,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Word of the scenario for the value of the target.
 const TARGET: &str = "target";
+/// Largest rate about an axis in addition to another (rad/s).
+const FASTEST: f64 = 1e3;
 
 /// Value at the start of a run: as written, or that of the target at that instant.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -27,17 +31,44 @@ pub enum StartValue<T> {
 /// Attitude and rates of a three-axis body at the start, with the errors that a scenario adds to them.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct InitialMotion {
-    /// Attitude without its error.
-    pub attitude: StartValue<Attitude>,
-    /// Rotation vector (rad) from that attitude to the one of the start, in the body's axes.
-    pub attitude_error: Option<[Finite; 3]>,
-    /// Rates (rad/s) without their error, in the body's axes.
-    pub rate: StartValue<[Finite; 3]>,
-    /// Rates (rad/s) in addition, in the body's axes.
-    pub rate_error: Option<[Finite; 3]>,
+    /// Attitude without its error, and the rotation vector (rad) from it to the one of the start, in the body's axes.
+    attitude: (StartValue<Attitude>, Option<[Finite; 3]>),
+    /// Rates (rad/s) without their error, and those in addition, in the body's axes.
+    rate: (StartValue<[Finite; 3]>, Option<[Finite; 3]>),
 }
 
 impl InitialMotion {
+    /// Creates the motion at the start from the keys `attitude` and `attitude_error`, and `rate` and `rate_error`.
+    pub(super) const fn new(
+        attitude: (StartValue<Attitude>, Option<[Finite; 3]>),
+        rate: (StartValue<[Finite; 3]>, Option<[Finite; 3]>),
+    ) -> Self {
+        Self { attitude, rate }
+    }
+
+    /// Returns true if the attitude or the rates are those of the target.
+    pub const fn depends_on_target(&self) -> bool {
+        matches!(self.attitude.0, StartValue::Target) || matches!(self.rate.0, StartValue::Target)
+    }
+
+    /// Checks the errors; returns the key of one that is too large, and the reason.
+    pub(super) fn fault(&self) -> Option<ConfigError> {
+        for (key, error, most, unit) in
+            [("attitude_error", self.attitude.1, TAU, "rad"), ("rate_error", self.rate.1, FASTEST, "rad/s")]
+        {
+            let largest = error.iter().flatten().find(|part| part.get().abs() > most);
+            if let Some(part) = largest {
+                let why = format!(
+                    "must be from {:.4} to {most:.4} {unit} about each axis, got {}",
+                    -most,
+                    part.get()
+                );
+                return Some(ConfigError::new(key, why));
+            }
+        }
+        None
+    }
+
     /// Returns the attitude and the rates (rad/s) at the start, with a target at rest in the inertial axes.
     pub(super) fn as_written(&self) -> (Attitude, [Finite; 3]) {
         self.resolve(&Attitude::default().get(), &Vector::zeros())
@@ -46,14 +77,13 @@ impl InitialMotion {
     /// Returns the attitude and the rates (rad/s, in the body's axes) at the start, with a target that has this attitude
     /// then and this rate (rad/s) in its own axes.
     pub fn resolve(&self, target: &Quaternion<f64>, target_rate: &Vector) -> (Attitude, [Finite; 3]) {
-        let written = match self.attitude {
+        let written = match self.attitude.0 {
             StartValue::Written(attitude) => attitude,
             StartValue::Target => Attitude::new(*target),
         };
-        let attitude = self
-            .attitude_error
-            .map_or(written, |error| Attitude::new(written.get() * rotation(&vector(&error))));
-        let rate = match self.rate {
+        let attitude =
+            self.attitude.1.map_or(written, |error| Attitude::new(written.get() * rotation(&vector(&error))));
+        let rate = match self.rate.0 {
             StartValue::Written(rate) => rate,
             StartValue::Target => {
                 let axes = attitude.get().conjugate() * target;
@@ -63,7 +93,7 @@ impl InitialMotion {
         };
         let sum = |axis: usize, error: &[Finite; 3]| Finite::new(rate[axis].get() + error[axis].get());
         let with = |error: [Finite; 3]| [0, 1, 2].map(|axis| sum(axis, &error).unwrap_or(rate[axis]));
-        (attitude, self.rate_error.map_or(rate, with))
+        (attitude, self.rate.1.map_or(rate, with))
     }
 }
 

@@ -50,13 +50,7 @@ pub struct Spacecraft {
 impl Spacecraft {
     /// Returns the attitude and rates at the start, as written.
     pub const fn initial_motion(&self) -> InitialMotion {
-        let Self { attitude, attitude_error, rate, rate_error, .. } = self;
-        InitialMotion {
-            attitude: *attitude,
-            attitude_error: *attitude_error,
-            rate: *rate,
-            rate_error: *rate_error,
-        }
+        InitialMotion::new((self.attitude, self.attitude_error), (self.rate, self.rate_error))
     }
 
     /// Returns the mass properties of the hub.

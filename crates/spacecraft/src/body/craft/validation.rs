@@ -52,6 +52,9 @@ pub fn validate(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(),
 }
 
 fn hub(spacecraft: &Spacecraft) -> Result<(), ConfigError> {
+    if let Some(fault) = spacecraft.initial_motion().fault() {
+        return Err(fault);
+    }
     let inertia = tensor(&spacecraft.inertia);
     if let Some(why) = asymmetry(&inertia) {
         return Err(ConfigError::new("inertia", why));

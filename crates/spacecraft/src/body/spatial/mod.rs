@@ -123,13 +123,7 @@ impl From<&Spatial> for ThreeAxisModel {
 impl Spatial {
     /// Returns the attitude and rates at the start, as written.
     pub const fn initial_motion(&self) -> InitialMotion {
-        let Self { attitude, attitude_error, rate, rate_error, .. } = self;
-        InitialMotion {
-            attitude: *attitude,
-            attitude_error: *attitude_error,
-            rate: *rate,
-            rate_error: *rate_error,
-        }
+        InitialMotion::new((self.attitude, self.attitude_error), (self.rate, self.rate_error))
     }
 
     /// Returns the model of the body, after checking that its values are consistent with each other.
@@ -139,6 +133,9 @@ impl Spatial {
     pub fn solve(&self) -> Result<ThreeAxisModel, ConfigError> {
         let model = ThreeAxisModel::from(self);
         let refused = |key: &str, why: String| Err(ConfigError::new(key, why));
+        if let Some(fault) = self.initial_motion().fault() {
+            return Err(fault);
+        }
         if let Some(why) = asymmetry(&model.inertia) {
             return refused("inertia", why);
         }
