@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._named import library
-from flexsc._values import checked
+from flexsc._values import checked, number_to_vary
 
 if TYPE_CHECKING:
     import numpy as np
@@ -68,7 +68,7 @@ def optimise(
     checked(scenario)
     if isinstance(keys, str) or not keys:
         raise ValueError(f"keys must be a list of names, got {keys!r}")
-    start = np.array([_number(key, scenario.get(key)) for key in keys])
+    start = np.array([number_to_vary(key, scenario.get(key)) for key in keys])
     scale = np.where(start == 0.0, 1.0, np.abs(start))
     limits = _limits(list(keys), bounds)
 
@@ -105,12 +105,6 @@ def _measured(scenario: Scenario, metric: str | Callable[[Metrics], float], run:
         return float(value)
     except (TypeError, ValueError):
         raise ValueError(f"the metric must be a number, it is {value!r}") from None
-
-
-def _number(key: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError(f"{key} has no number to vary, it is {value!r}")
-    return float(value)
 
 
 def _limits(

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _units
 from flexsc._columns import Lookup
 from flexsc._named import Named, library, no_such
-from flexsc._values import checked
+from flexsc._population import evaluate
+from flexsc._values import checked, number_to_vary
 
 if TYPE_CHECKING:
     import numpy as np
@@ -161,7 +160,7 @@ def sensitivities(
         step: The step of each key relative to its value, 1e-3 if omitted; or a mapping from each key to its
             step in the unit of the key, which a key with the value 0 needs.
         run: Number of the run, which selects the noise. Keys of `[uncertain]` keep their values.
-        jobs: Number of threads; if omitted, one per core, or one with parts written in Python.
+        jobs: Number of threads, as in `evaluate`.
         yes: As in `Scenario.simulate`.
 
     Returns:
@@ -184,20 +183,15 @@ def sensitivities(
     checked(scenario)
     keys, metrics = _names("keys", keys), _names("metrics", metrics)
     steps = {key: _step(scenario, key, step) for key in keys}
-    points = [scenario]
-    points += [
-        scenario.with_(key, scenario.get(key) + place * h) for key, h in steps.items() for place in _PLACES
-    ]
-    threads = jobs or (1 if scenario.parts else os.cpu_count() or 1)
-
-    def measured(point: Scenario) -> list[float]:
-        found = point.simulate(run, "none", yes).metrics
-        return [_number(name, found[name]) for name in metrics]
-
-    with ThreadPoolExecutor(threads) as pool:
-        first, *others = np.array(list(pool.map(measured, points)), dtype=np.float64)
-    # Of shape (keys, places, metrics).
-    around = np.array(others, dtype=np.float64).reshape(len(keys), len(_PLACES), len(metrics))
+    # A row for each place of each key: the values of all keys.
+    points = np.repeat([[float(scenario.get(key)) for key in keys]], len(keys) * len(_PLACES), axis=0)
+    for k, own in enumerate(steps.values()):
+        points[k * len(_PLACES) : (k + 1) * len(_PLACES), k] += np.array(_PLACES) * own
+    of_run = scenario.simulate(run, "none", yes).metrics
+    first = np.array([_number(name, of_run[name]) for name in metrics], dtype=np.float64)
+    around = evaluate(scenario, keys, points, metrics, run=run, jobs=jobs, yes=yes)
+    _check_runs(scenario, keys, points[np.isnan(around).all(axis=1)], run, yes)
+    around = around.reshape(len(keys), len(_PLACES), len(metrics))
     h = np.array(list(steps.values()))[:, None]
     wide, narrow = (around[:, 1] - around[:, 0]) / (2.0 * h), (around[:, 3] - around[:, 2]) / h
     found = (4.0 * narrow - wide) / 3.0
@@ -217,11 +211,18 @@ def _names(what: str, names: Sequence[str]) -> list[str]:
     return list(names)
 
 
+def _check_runs(scenario: Scenario, keys: list[str], points: Values, run: int, yes: bool) -> None:
+    """Raise the error of the first point without any value, if it has one."""
+    for point in points.tolist():
+        scenario.with_(dict(zip(keys, point, strict=True))).simulate(run, "none", yes)
+
+
 def _step(scenario: Scenario, key: str, step: float | Mapping[str, float] | None) -> float:
     """The step of a key, in its unit."""
     value = scenario.get(key)
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ValueError(f"{key} has no number to vary, it is {value!r}")
+    number_to_vary(key, value)
+    if isinstance(value, int):
+        raise ValueError(f"{key} is a whole number, {value}, by which there are no derivatives")
     if isinstance(step, Mapping):
         if key not in step:
             raise ValueError(f"step has no entry for {key}; it has {', '.join(step) or 'none'}")

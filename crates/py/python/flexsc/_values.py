@@ -178,6 +178,17 @@ def checked(scenario: Scenario) -> Scenario:
     return scenario
 
 
+def number_to_vary(key: str, value: object) -> float:
+    """Return the value of a key that is to be varied as a number.
+
+    Raises:
+        ValueError: The value is not a number.
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ValueError(f"{key} has no number to vary, it is {value!r}")
+    return float(value)
+
+
 def run_number(number: int) -> int:
     """Check the number of a run."""
     if not 0 <= index(number) < 2**63:
