@@ -143,3 +143,104 @@ fn what_does_not_go_with_it_is_refused() {
         "`estimator.adaptive` predicts by the pulses of groups",
     );
 }
+
+/// A rigid body with the thrusters of the shipped orbit correction, and a burn from 1.25 s to 3 s.
+fn burning(force: &str, attitude: &str) -> String {
+    let jets = text("orbit-correction");
+    let jets = &jets[jets.find("[actuator.jets]").expect("jets")..jets.find("[reference]").expect("an end")];
+    let jets = jets.replace("minimum_on = 0.01 ", "minimum_on = 0.0 ").replace(
+        "from = 320.0, to = 420.0, force = [0.0, 0.0, 36.0]",
+        &format!("from = 1.25, to = 3.0, force = {force}"),
+    );
+    format!(
+        "duration = 5.0\n[spacecraft]\nmass = 2800.0\ninertia = [[2600, 0, 0], [0, 1900, 0], [0, 0, 2700]]\n\
+         attitude = {attitude}\npoints = [{{ name = \"bus\" }}]\n[law.pd]\nk_p = 100.0\nk_d = 0.0\nperiod = 0.5\n[log]\nperiod = 0.5\n{jets}"
+    )
+}
+
+const THRUSTER_TORQUES: [[f64; 3]; 4] = [
+    [7.139_696_961_966_999_5, -4.937_686_860_769_999, 1.22],
+    [7.139_696_961_966_999_5, 4.541_707_063_323_333, -1.18],
+    [-7.139_696_961_966_999_5, 4.541_707_063_323_333, 1.18],
+    [-7.139_696_961_966_999_5, -4.937_686_860_769_999, -1.22],
+];
+const AXIAL_FORCE: f64 = 9.899_494_936_611_665;
+
+/// Returns the angular impulse (N m s) and the axial impulse (N s) of each cycle of half a second.
+fn impulses(trace: &Trace) -> Vec<([f64; 3], f64)> {
+    let impulse = |on: &Vec<f64>| {
+        let about = |axis: usize| on.iter().zip(THRUSTER_TORQUES).map(|(on, torque)| on * torque[axis]).sum();
+        ([0, 1, 2].map(about), on.iter().sum::<f64>() * AXIAL_FORCE)
+    };
+    pulses(trace).iter().map(impulse).collect()
+}
+
+/// A burn gives its impulse, a partial cycle a part of it, without a torque; the body keeps its attitude.
+#[test]
+fn a_burn_gives_the_commanded_impulse() {
+    let (metrics, trace) = flown(&burning("[0.0, 0.0, 36.0]", "[1.0, 0.0, 0.0, 0.0]"));
+    let cycles = impulses(&trace);
+    assert_eq!(cycles.len(), 4, "1.0 to 3.0 s");
+    for (index, (angular, axial)) in cycles.iter().enumerate() {
+        let exact = if index == 0 { 9.0 } else { 18.0 };
+        assert!((axial - exact).abs() < 1e-9, "{index}: {axial}");
+        assert!(angular.iter().all(|part| part.abs() < 1e-3), "{index}: {angular:?}");
+    }
+    let impulse = metrics.number("burn_impulse_n_s").expect("a burn");
+    assert!((impulse - 63.0).abs() < 1e-8, "{impulse}");
+    let speed = *trace.topic("/position").and_then(|rows| rows.numbers("z_m_s")?.last()).expect("a row");
+    assert!((speed - 63.0 / 2800.0).abs() < 1e-7, "{speed}");
+    // A thruster that fails is missing in the impulse along the force.
+    let failing = burning("[0.0, 0.0, 36.0]", "[1.0, 0.0, 0.0, 0.0]").replace(
+        "specific_impulse",
+        "faults = [{ dead = { from = 2.0, thruster = \"b\" } }]\nspecific_impulse",
+    );
+    let (weak, _) = flown(&failing);
+    assert!(weak.number("burn_impulse_n_s").expect("a burn") < 55.0);
+}
+
+/// With more force than the thrusters have, the torque of the law comes first and they are off-modulated: SciPy's `linprog`
+/// (tests/golden/burn_oracle.py) finds the same on-times for the demanded torque.
+#[test]
+fn the_torque_comes_before_the_force() {
+    let attitude = "[0.9999988750004219, 0.001, -0.0005, 0.001]";
+    let (_, trace) = flown(&burning("[0.0, 0.0, 60.0]", attitude));
+    let asked = match trace.topic("/torques").and_then(|rows| rows.get("axes")) {
+        Some(Column::Rows(_, columns)) => columns.numbers("feedback_nm").expect("numbers").to_vec(),
+        _ => panic!("no torques"),
+    };
+    let golden = crate::traces::golden_rows("burn.csv");
+    let all = pulses(&trace);
+    for (row, cycle) in golden.iter().zip([0, 2]) {
+        let demand = &asked[3 * cycle..3 * cycle + 3];
+        assert!(row[..3].iter().zip(demand).all(|(a, b)| (a - b).abs() < 1e-12), "{demand:?}");
+        assert!(row[3..].iter().zip(&all[cycle]).all(|(a, b)| (a - b).abs() < 1e-11), "{:?}", all[cycle]);
+    }
+}
+
+#[test]
+fn burns_that_cannot_be_flown_are_refused() {
+    let good = burning("[0.0, 0.0, 36.0]", "[1.0, 0.0, 0.0, 0.0]");
+    let burn = "{ from = 1.25, to = 3.0, force = [0.0, 0.0, 36.0] }";
+    let cases = [
+        (good.replace("to = 3.0", "to = 1.0"), "burns[0].to", "must be later than `from`, 1.25 s, got 1"),
+        (
+            good.replace(burn, &format!("{burn}, {{ from = 2.0, to = 4.0, force = [0, 0, 1] }}")),
+            "burns[1].from",
+            "at or after the end of the burn before, 3 s, got 2",
+        ),
+        (good.replace("36.0]", "0.0]"), "burns[0].force", "must not be zero"),
+        (good.replace("36.0]", "-36.0]"), "burns[0].force", "without turning it"),
+    ];
+    for (text, key, why) in cases {
+        let error = Scenario::parse("burn.toml", &text).expect_err(why).to_string();
+        assert!(error.contains(key) && error.contains(why), "{key}: {error}");
+    }
+    let grouped = text("momentum-unloading").replacen(
+        "specific_impulse",
+        &format!("burns = [{burn}]\nspecific_impulse"),
+        1,
+    );
+    let error = Scenario::parse("burn.toml", &grouped).expect_err("unloading").to_string();
+    assert!(error.contains("burns") && error.contains("unload"), "{error}");
+}

@@ -3,6 +3,9 @@
 
 `cargo clippy` would check all third-party crates again, which takes four times as long as the lints. Here
 clippy gets the arguments of the compiler for each crate that is built. A warning of either fails the build.
+
+A crate is compiled a second time for its unit tests, which are quick: with less optimisation, which cargo can set for
+a crate, and not for its tests alone. No result depends on how much a crate is optimised.
 """
 
 import os
@@ -27,8 +30,16 @@ def linted(arguments: list[str], out: str) -> list[str]:
     return [*changed, "-Dwarnings"]
 
 
+def lightened(arguments: list[str]) -> list[str]:
+    """The arguments of the compiler, for unit tests with less optimisation."""
+    if "--test" not in arguments:
+        return arguments
+    less = {"opt-level=3": "opt-level=1", "codegen-units=1": "codegen-units=4"}
+    return [less.get(argument, argument) for argument in arguments]
+
+
 def main() -> int:
-    command = sys.argv[1:]
+    command = lightened(sys.argv[1:])
     # Cargo also asks for the version, and builds crates that the command does not name.
     if "--crate-name" not in command or "CARGO_PRIMARY_PACKAGE" not in os.environ:
         return subprocess.run(command, check=False, close_fds=False).returncode

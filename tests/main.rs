@@ -66,6 +66,7 @@ mod saturation;
 mod several_actuators;
 mod several_sensors;
 mod shaped;
+mod stage_actuators;
 mod state_space;
 mod station;
 mod swinging;

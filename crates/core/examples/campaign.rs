@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     )?;
 
     println!("{} runs", columns.runs());
-    for metric in columns.finish().iter().filter(|metric| PRINTED.contains(&metric.name)) {
+    for metric in columns.finish().iter().filter(|metric| PRINTED.contains(&metric.name.as_str())) {
         let [low, _, median, _, high] = metric.quantiles;
         println!(
             "{:24} median {median:10.3e}, 5 % to 95 % {low:10.3e} to {high:10.3e} {}",

@@ -40,7 +40,7 @@ pub use manifest::Manifest;
 pub use merge::Merge;
 pub use parquet::parquet_is_built_in;
 pub use row_maker::RowMaker;
-pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED};
+pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED, list_element};
 pub use sampling::Sampling;
 pub use summary::CampaignSummary;
 

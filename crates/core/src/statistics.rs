@@ -8,8 +8,8 @@ pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 /// Statistics of one metric over the runs that have a value of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
-    /// Name of the metric.
-    pub name: &'static str,
+    /// Name of the metric; of an element of a list, `NAME[i]`.
+    pub name: String,
     /// Unit of the metric.
     pub unit: &'static str,
     /// Number of runs with a finite value; all others are left out.
@@ -28,24 +28,21 @@ pub struct Statistics {
 #[derive(Clone, Debug, Default)]
 pub struct MetricColumns {
     runs: usize,
-    columns: Vec<(&'static MetricDescription, Vec<f64>)>,
+    columns: Vec<(&'static MetricDescription, Option<usize>, Vec<f64>)>,
 }
 
 impl MetricColumns {
     /// Adds a run.
     pub fn add(&mut self, run: &Metrics) {
         if self.runs == 0 {
-            let counts = |(meaning, value): &NamedMetric| match value {
-                MetricValue::Count(_) | MetricValue::Number(_) => true,
-                MetricValue::Word(_) => goal::NAMES.contains(&meaning.name),
-                MetricValue::Numbers(_) | MetricValue::Quantities(_) => false,
-            };
-            self.columns =
-                run.0.iter().filter(|value| counts(value)).map(|value| (value.0, Vec::new())).collect();
+            self.columns = run.0.iter().flat_map(columns_of).collect();
         }
         self.runs += 1;
-        for (meaning, values) in &mut self.columns {
+        for (meaning, element, values) in &mut self.columns {
             values.push(match run.get(meaning.name) {
+                Some(list @ (MetricValue::Numbers(_) | MetricValue::Quantities(_))) => {
+                    element.and_then(|index| list.numbers().get(index).copied()).unwrap_or(f64::NAN)
+                }
                 Some(MetricValue::Count(count)) => *count as f64,
                 Some(MetricValue::Number(number)) => *number,
                 Some(MetricValue::Word(word)) => goal::score(word).unwrap_or(f64::NAN),
@@ -62,20 +59,36 @@ impl MetricColumns {
     /// Returns the statistics of each metric. A goal or a requirement counts as 1 if it is met and as 0 if it is
     /// missed: the mean is the fraction of runs that meet it.
     pub fn finish(self) -> Vec<Statistics> {
-        self.columns.into_iter().map(|(meaning, values)| Statistics::from_values(meaning, values)).collect()
+        let columns = self.columns.into_iter();
+        columns.map(|(meaning, element, values)| Statistics::from_values(meaning, element, values)).collect()
     }
 }
 
+/// Returns empty columns for a metric: one for a number or a verdict, one for each element of a list.
+fn columns_of((meaning, value): &NamedMetric) -> Vec<(&'static MetricDescription, Option<usize>, Vec<f64>)> {
+    let elements: Vec<Option<usize>> = match value {
+        MetricValue::Count(_) | MetricValue::Number(_) => vec![None],
+        MetricValue::Word(_) if goal::NAMES.contains(&meaning.name) => vec![None],
+        MetricValue::Word(_) => Vec::new(),
+        MetricValue::Numbers(_) | MetricValue::Quantities(_) => {
+            (0..value.numbers().len()).map(Some).collect()
+        }
+    };
+    elements.into_iter().map(|element| (*meaning, element, Vec::new())).collect()
+}
+
 impl Statistics {
-    /// Computes the statistics of a metric from its values, which are NaN for runs without one.
-    pub fn from_values(meaning: &MetricDescription, mut values: Vec<f64>) -> Self {
+    /// Computes the statistics of a metric, or of an element of a list, from its values, which are NaN for runs without
+    /// one.
+    pub fn from_values(meaning: &MetricDescription, element: Option<usize>, mut values: Vec<f64>) -> Self {
         values.retain(|v| !v.is_nan());
         let described = values.len();
         values.retain(|v| v.is_finite());
         values.sort_by(f64::total_cmp);
         let (mean, sd) = mean_and_sd(&values);
         Self {
-            name: meaning.name,
+            name: element
+                .map_or_else(|| meaning.name.to_owned(), |index| format!("{}[{index}]", meaning.name)),
             unit: meaning.unit,
             runs: values.len(),
             infinite: described - values.len(),
@@ -154,9 +167,9 @@ mod tests {
             gathered.add(&run);
         }
         let described = gathered.finish();
-        assert_eq!((described[0].name, described[0].runs, described[0].mean), ("goal", 4, 0.75));
+        assert_eq!((described[0].name.as_str(), described[0].runs, described[0].mean), ("goal", 4, 0.75));
         assert_eq!(
-            (described[2].name, described[2].runs, described[2].mean),
+            (described[2].name.as_str(), described[2].runs, described[2].mean),
             ("time_outside_s", 4, 13.5 / 4.0)
         );
     }

@@ -1,5 +1,6 @@
 //! Campaigns for Python: their work as whole parts, on threads here or in other processes, and their directories.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -25,7 +26,7 @@ use super::table::column;
 use super::{Scenario, detail};
 
 /// Name, unit, number of runs, mean, standard deviation, and quantiles with their values.
-type Summary = (&'static str, &'static str, usize, f64, f64, Vec<(f64, f64)>);
+type Summary = (String, &'static str, usize, f64, f64, Vec<(f64, f64)>);
 /// First run, and the one after the last.
 type Span = (u64, u64);
 
@@ -236,7 +237,7 @@ impl Work {
         let (rows, statistics) = aside(py, move |stop| {
             let rows = rows(&work, runs, jobs, stop)?;
             let columns = |names: &[&str]| -> Result<_, DirectoryError> {
-                Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
+                Ok(names.iter().map(|name| rows.column(name).map(Cow::into_owned)).collect())
             };
             let statistics = work.statistics(rows.len(), columns)?;
             Ok((rows, statistics))
@@ -262,15 +263,15 @@ impl Work {
         let rows = aside(py, move |stop| rows(&work, runs, jobs, stop))?.map_err(failed)?;
         let columns = metrics.iter().map(|name| match rows.column(name) {
             None => Err(PyValueError::new_err(format!("the scenario has no metric {name:?}"))),
-            Some(ColumnCells::Lists(_)) => {
-                Err(PyValueError::new_err(format!("the metric {name:?} is a list, and not a number")))
-            }
+            Some(column) if matches!(*column, ColumnCells::Lists(_)) => Err(PyValueError::new_err(format!(
+                "the metric {name:?} is a list: name an element, such as \"{name}[0]\""
+            ))),
             Some(column) => Ok(column.numbers()),
         });
         let columns = columns.collect::<PyResult<Vec<_>>>()?;
         let row = |row: usize| columns.iter().map(|column| column[row]).collect::<Vec<_>>();
         let numbers: Vec<Vec<f64>> = (0..rows.len()).map(row).collect();
-        let error = rows.column(ERROR).and_then(|column| match column {
+        let error = rows.column(ERROR).and_then(|column| match &*column {
             ColumnCells::Words(errors) => errors.iter().flatten().next().cloned(),
             _ => None,
         });

@@ -134,7 +134,7 @@ fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a
         return names.iter().copied().filter(|name| has_runs(name).is_some()).collect();
     }
     let varies = |s: &&Statistics| s.sd > 0.0 || s.infinite > 0;
-    let all: Vec<&str> = statistics.iter().filter(varies).map(|s| s.name).collect();
+    let all: Vec<&str> = statistics.iter().filter(varies).map(|s| s.name.as_str()).collect();
     let (main, rest): (Vec<&str>, Vec<&str>) = all.iter().partition(|name| MAIN.contains(name));
     let mut names: Vec<&str> = MAIN.into_iter().filter(|name| main.contains(name)).collect();
     names.extend(rest);

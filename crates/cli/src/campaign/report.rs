@@ -36,7 +36,7 @@ pub fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Cl
         header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
         writer.write_record(header)?;
         for s in statistics {
-            let mut cells = vec![s.name.to_owned(), s.unit.to_owned(), s.runs.to_string()];
+            let mut cells = vec![s.name.clone(), s.unit.to_owned(), s.runs.to_string()];
             let numbers = [s.mean, s.sd].into_iter().chain(s.quantiles);
             cells.extend(numbers.map(|n| if n.is_finite() { format!("{n:e}") } else { String::new() }));
             writer.write_record(cells)?;
@@ -63,7 +63,7 @@ impl CampaignReport {
             say!("{}", points.text().trim_end());
             return;
         }
-        let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name);
+        let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name.as_str());
         for s in self.statistics.iter().filter(is_verdict).filter(|s| s.runs > 0) {
             say!("  {:32}{}", s.name, success_rate(s.runs as u64, s.mean));
         }

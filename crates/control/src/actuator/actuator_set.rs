@@ -23,6 +23,8 @@ pub struct ActuatorSet {
     unloader: Option<UnloaderState>,
     /// Demand of the laws about each axis.
     demands: Vec<Demand>,
+    /// For each stage of the law, its start and which actuators execute demands; empty if all do throughout.
+    stages: Vec<(Instant, Vec<bool>)>,
 }
 
 /// Returns the share of a demand. Magnetic moments are not shared: they are for magnetorquers alone.
@@ -43,6 +45,7 @@ impl ActuatorSet {
             keepers: Vec::new(),
             unloader: None,
             demands: vec![Demand::Torque(0.0); axes],
+            stages: Vec::new(),
         };
         for (kind, task, actuator) in members {
             match task {
@@ -58,6 +61,19 @@ impl ActuatorSet {
             }
         }
         several
+    }
+
+    /// Limits the execution of demands to some of the actuators, in the order of the scenario without the unloading
+    /// one, from each of these instants on; the first is the start of the run.
+    #[must_use]
+    pub fn in_stages(self, stages: Vec<(Instant, Vec<bool>)>) -> Self {
+        Self { stages, ..self }
+    }
+
+    /// Returns true if an actuator executes demands at an instant.
+    fn executes(&self, index: usize, now: Instant) -> bool {
+        let stage = self.stages.iter().rfind(|(from, _)| *from <= now);
+        stage.is_none_or(|(_, executing)| executing[index])
     }
 
     /// Iterates over all actuators, the unloading one included.
@@ -77,10 +93,13 @@ impl ActuatorSet {
 
     /// Commands one of the actuators with its share of the demands.
     fn pass_on(&mut self, index: usize, now: Instant, rigid: [f64; 3]) {
+        let executes = self.executes(index, now);
         let (actuator, shares) = &mut self.executing[index];
         let mut own = [Demand::Torque(0.0); 3];
-        for ((own, demand), share) in own.iter_mut().zip(&self.demands).zip(shares) {
-            *own = shared(*demand, *share);
+        if executes {
+            for ((own, demand), share) in own.iter_mut().zip(&self.demands).zip(shares) {
+                *own = shared(*demand, *share);
+            }
         }
         actuator.command(now, &own[..self.demands.len()], rigid);
     }

@@ -38,6 +38,28 @@ impl From<ActuatorKind> for AssignedActuator {
 /// Declares the keys of an actuator in a list: the kinds, and the keys of the task.
 macro_rules! keys {
     ($($(#[doc = $doc:literal])* $key:ident: $name:ident($kind:ident)),* $(,)?) => {
+        /// Name of a kind of actuator, as in a scenario.
+        #[derive(Copy, Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, JsonSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ActuatorName {
+            $(
+                $(#[doc = $doc])*
+                $name,
+            )*
+            /// An actuator of another crate, or of Python.
+            Own,
+        }
+
+        impl ActuatorName {
+            /// Returns the name as in a scenario.
+            pub fn as_str(self) -> &'static str {
+                match self {
+                    $(Self::$name => stringify!($key),)*
+                    Self::Own => "own",
+                }
+            }
+        }
+
         /// An actuator of a list: exactly one of the kinds, and which part of the demand it executes.
         #[derive(Default, serde::Serialize, serde::Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]

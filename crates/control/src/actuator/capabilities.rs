@@ -110,6 +110,8 @@ pub struct JetCycle {
     pub each: Vec<f64>,
     /// Current fraction of the thrust of each thruster, for jets that are allocated individually or may fail.
     pub open: Vec<f64>,
+    /// Impulse in the cycles of burns until the end of the pulses, along the commanded force (N s).
+    pub burn_impulse: f64,
 }
 
 impl JetCycle {

@@ -3,7 +3,8 @@
 //!
 //! The on-times t solve a linear programme: the smallest sum of flows times t with B t = impulse and 0 <= t <= period,
 //! where the columns of B are the torques of the thrusters, and also their forces if these must cancel. An impulse
-//! beyond the capability is scaled down to the largest one in its direction.
+//! beyond the capability is scaled down to the largest one in its direction. In a burn a force is commanded as well: its
+//! on-times meet the torque first, and then the force as closely as they can.
 
 use flexsc_dynamics::wrench::{ForceEffect, Wrench};
 use flexsc_formats::document::ConfigError;
@@ -12,6 +13,7 @@ use flexsc_numerics::simplex::LinearProgramme;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
 
+use super::burns::BurnProgramme;
 use super::valves::Valves;
 use super::{
     Actuator, ActuatorEvent, AxisEffort, Capabilities, Demand, GroupEffect, JetCycle, Jets, PulseWidth,
@@ -23,6 +25,7 @@ use crate::part::{Occasion, Part, ReportContext};
 #[derive(Clone, Debug)]
 pub struct AllocatedJets {
     programme: LinearProgramme,
+    burns: BurnProgramme,
     /// Torque (N m) and propellant flow (kg/s) of each thruster.
     torques: Vec<Vector>,
     flows: Vec<f64>,
@@ -39,6 +42,8 @@ pub struct AllocatedJets {
     waiting: Vec<f64>,
     executed: Vec<f64>,
     ends: Vec<Option<Instant>>,
+    /// Directions of the forces commanded in the next cycle and in the current one; zero for none.
+    thrust_directions: [Vector; 2],
     valves: Valves,
     pulses: u64,
 }
@@ -119,6 +124,7 @@ impl AllocatedJets {
         let torque = |axis: usize, side: usize| groups[axis][side].push.torque[axis].abs();
         Self {
             programme: programme(nozzles, cycle.seconds(), jets.force_free),
+            burns: BurnProgramme::new(&jets.burns, nozzles, cycle.seconds()),
             torques: nozzles.iter().map(|nozzle| nozzle.push.torque).collect(),
             flows: nozzles.iter().map(|nozzle| nozzle.flow).collect(),
             // There is no demand about an axis without a group.
@@ -135,6 +141,7 @@ impl AllocatedJets {
             waiting: vec![0.0; count],
             executed: vec![0.0; count],
             ends: vec![None; count],
+            thrust_directions: [Vector::zeros(); 2],
             valves: Valves::new(jets, nozzles),
             pulses: 0,
         }
@@ -154,7 +161,13 @@ impl AllocatedJets {
     fn begin(&mut self, now: Instant) {
         let period = self.period.seconds();
         let b = right_hand_side(&self.torque_demand(), self.programme.rows() > 3);
-        let (times, _) = self.programme.cheapest(&b, &self.flows);
+        let (mut times, attainable) = self.programme.cheapest(&b, &self.flows);
+        let executed_at = if self.delayed { now + self.period } else { now };
+        let burn = self.burns.demand(executed_at, self.period);
+        if let Some((impulse, _)) = &burn {
+            times = self.burns.on_times(&(self.torque_demand() * attainable), impulse);
+        }
+        let direction = burn.map_or_else(Vector::zeros, |(_, direction)| direction);
         let commanded: Vec<f64> = times.into_iter().map(|t| self.width.on_time(t, period)).collect();
         let before = std::mem::replace(&mut self.waiting, commanded);
         if self.delayed {
@@ -167,7 +180,10 @@ impl AllocatedJets {
             *end = (*on > 0.0).then(|| now + Span::from_seconds(*on));
             self.pulses += u64::from(*on > 0.0);
         }
+        self.thrust_directions =
+            if self.delayed { [direction, self.thrust_directions[0]] } else { [Vector::zeros(), direction] };
         self.open(now);
+        self.valves.set_commanded(self.thrust_directions[1]);
     }
 
     fn open(&mut self, now: Instant) {
@@ -205,6 +221,7 @@ impl PulsedActuator for AllocatedJets {
         cycle.on = on;
         cycle.fuel = self.valves.propellant(left);
         cycle.fuels = self.valves.fuels(left);
+        cycle.burn_impulse = self.valves.burn_impulse(left);
         cycle.pulses = self.pulses;
         cycle.burning = [0.0; 3];
         cycle.each.clone_from(&self.executed);

@@ -9,7 +9,7 @@ use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuator, AllocatedJets, Failure, JetsState, PulseWidth, jet_allocation};
+use super::{Actuator, AllocatedJets, Burn, Failure, JetsState, PulseWidth, jet_allocation};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::requirement::{OFF_HUB, Requirements, Rule};
 
@@ -45,6 +45,9 @@ pub struct Jets {
     /// For `least_propellant`: whether the forces of the pulses must cancel.
     #[serde(default, skip_serializing_if = "is_default")]
     pub force_free: bool,
+    /// For `least_propellant`: burns, in which a force is commanded beside the torques.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub burns: Vec<Burn>,
     /// For `groups`: the thrusters that act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<ThrusterGroups>,
@@ -173,6 +176,12 @@ impl Jets {
         if let Some(index) = self.thrusters.iter().position(moves) {
             needs.require(Rule::FixedJets, false, &format!("thrusters[{index}].point"), OFF_HUB);
         }
+        needs.require(
+            Rule::JetCycle,
+            place.executes || self.burns.is_empty(),
+            "burns",
+            "must be left out of jets that unload wheels: they execute no commands",
+        );
         if place.executes {
             self.require_cycle(offers, needs);
         }
@@ -267,7 +276,15 @@ impl Jets {
             }
             let tensor = body.inertia;
             let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
-            return jet_allocation::largest_torques(self, &self.thruster_effects(body), inertia, acts);
+            let nozzles = self.thruster_effects(body);
+            let misplaced = Burn::inconsistency(&self.burns).map(|fault| fault.within("burns"));
+            if let Some(fault) = misplaced.or_else(|| Burn::capability_fault(&self.burns, &nozzles)) {
+                return Err(fault);
+            }
+            return jet_allocation::largest_torques(self, &nozzles, inertia, acts);
+        }
+        if !self.burns.is_empty() {
+            return Err(ConfigError::new("burns", "apply only to `allocation = \"least_propellant\"`"));
         }
         if self.force_free {
             return Err(ConfigError::new(

@@ -4,6 +4,7 @@ mod actuator_set;
 mod allocation_role;
 mod assignment;
 mod axis_actuators;
+mod burns;
 mod capabilities;
 mod control_moment_gyros;
 mod control_moment_gyros_state;
@@ -44,10 +45,11 @@ use crate::part::Part;
 
 pub use actuator_set::ActuatorSet;
 pub use allocation_role::{ActuatorTask, AssignedMember};
-pub use assignment::AssignedActuator;
+pub use assignment::{ActuatorName, AssignedActuator};
 pub use axis_actuators::{
     AxisActuator, AxisActuatorContext, AxisActuators, AxisProperties, AxisTorques, AxisWaves,
 };
+pub use burns::Burn;
 pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, WaveformActuator};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;

@@ -1,6 +1,7 @@
 //! Valves of jets: which thrusters are open, their failures, and the propellant flow.
 
 use flexsc_dynamics::wrench::{ForceEffect, Wrench};
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Instant;
 
@@ -21,6 +22,9 @@ pub(super) struct Valves {
     /// Propellant used by each thruster (kg), and its flow (kg/s).
     fuels: Vec<f64>,
     flows: Vec<f64>,
+    /// Direction of the force that is commanded, zero for none, and the impulse along it until `since` (N s).
+    commanded: Vector,
+    impulse: f64,
 }
 
 impl Valves {
@@ -47,6 +51,8 @@ impl Valves {
             flow: 0.0,
             fuels: vec![0.0; nozzles.len()],
             flows: vec![0.0; nozzles.len()],
+            commanded: Vector::zeros(),
+            impulse: 0.0,
         }
     }
 
@@ -78,6 +84,7 @@ impl Valves {
         let seconds = now.since(self.since).seconds();
         self.fuel += self.flow * seconds;
         self.fuels.iter_mut().zip(&self.flows).for_each(|(fuel, flow)| *fuel += flow * seconds);
+        self.impulse += self.along_command(|_| seconds);
         self.since = now;
         for (index, (own, failing)) in self.open.iter_mut().zip(&mut self.failing).enumerate() {
             *own = open(index);
@@ -101,6 +108,28 @@ impl Valves {
     pub fn fuels(&self, remaining: impl Fn(usize) -> f64) -> Vec<f64> {
         let consumed = |(index, (fuel, flow)): (usize, (&f64, &f64))| fuel + flow * remaining(index);
         self.fuels.iter().zip(&self.flows).enumerate().map(consumed).collect()
+    }
+
+    /// Sets the direction of the force that is commanded from the next change on; zero for none.
+    pub fn set_commanded(&mut self, direction: Vector) {
+        self.commanded = direction;
+    }
+
+    /// Returns the impulse of thrusters that stay open for these times (s), along the commanded force (N s).
+    fn along_command(&self, seconds: impl Fn(usize) -> f64) -> f64 {
+        if self.commanded == Vector::zeros() {
+            return 0.0;
+        }
+        let along = |(index, (nozzle, part)): (usize, (&ThrusterEffect, f64))| {
+            nozzle.push.force.dot(&self.commanded) * part * seconds(index)
+        };
+        self.parts().enumerate().map(along).sum()
+    }
+
+    /// Returns the impulse along the forces that were commanded (N s) until `remaining` (s) after the last change,
+    /// without further changes.
+    pub fn burn_impulse(&self, remaining: impl Fn(usize) -> f64) -> f64 {
+        self.impulse + self.along_command(remaining)
     }
 
     /// Returns the current fraction of the thrust of each thruster.

@@ -70,11 +70,16 @@ pub enum Event {
 }
 
 impl Controllers {
-    /// Creates the laws before a run, about axes with these actuator authorities.
-    pub fn new(law: &LawKind, authorities: &[Authority]) -> Self {
+    /// Creates the laws before a run, about axes with these actuator authorities; `by_stage` has those of each stage
+    /// about each axis, or is empty if all stages have the same.
+    pub fn new(law: &LawKind, authorities: &[Authority], by_stage: &[Vec<Authority>]) -> Self {
         let axis = |(axis, authority)| {
             let place = if let LawKind::PerAxis(laws) = law { laws.key_prefix(axis) } else { String::new() };
-            ControllerState { law: law.about(axis).start(authority), hold: ControlOutput::NONE, place }
+            let law = match (law.about(axis), by_stage.get(axis)) {
+                (LawKind::Stages(stages), Some(authorities)) => stages.start_with(authorities),
+                (law, _) => law.start(authority),
+            };
+            ControllerState { law, hold: ControlOutput::NONE, place }
         };
         match law.start_three_axis(authorities) {
             Some(law) => Self { three_axis: Some((law, ThreeAxisOutput::NONE)), ..Self::default() },

@@ -228,6 +228,16 @@ impl LawKind {
         if let Self::PerAxis(laws) = self { laws.about(axis) } else { self }
     }
 
+    /// Returns the stages of a law in sequence; empty for any other law.
+    pub fn stages(&self) -> &[Stage] {
+        if let Self::Stages(laws) = self { laws.as_slice() } else { &[] }
+    }
+
+    /// Returns true if the law changes the actuators that execute its commands.
+    pub fn selects_actuators(&self) -> bool {
+        self.stages().iter().any(|stage| stage.actuators.is_some())
+    }
+
     /// Checks the law's own settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
         match self {

@@ -14,9 +14,14 @@ impl LawKind {
         self.tunable().first().map_or(f64::NAN, |number| number.value)
     }
 
-    /// Returns the inertia tensor in the law's model of a three-axis body, row by row (kg m²), if the law has its own.
+    /// Returns the inertia tensor in the law's model of a three-axis body, row by row (kg m²), if the law, or a stage of
+    /// it, has its own.
     pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
-        if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
+        match self {
+            Self::Attitude(law) => law.inertia.as_ref(),
+            Self::Stages(laws) => laws.laws().find_map(Self::inertia),
+            _ => None,
+        }
     }
 
     /// Returns the relay law, if the law is one.

@@ -12,6 +12,7 @@ use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
     ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
+use crate::actuator::ActuatorName;
 use crate::custom::PartError;
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::{Part, ReportContext};
@@ -32,15 +33,37 @@ pub struct Stage {
     pub from: Time,
     /// The law.
     pub law: LawKind,
+    /// Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`; default: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actuators: Option<Vec<ActuatorName>>,
 }
 
 impl Stage {
-    fn begins(&self) -> Instant {
+    /// Returns the start time.
+    pub fn begins(&self) -> Instant {
         Instant::START + Span::from_seconds(self.from.get())
+    }
+
+    /// Returns true if actuators of a kind execute the commands of the law.
+    pub fn commands(&self, kind: &str) -> bool {
+        self.actuators.as_ref().is_none_or(|names| names.iter().any(|name| name.as_str() == kind))
     }
 }
 
 impl Stages {
+    /// Returns the stages in the order of their start times.
+    pub fn as_slice(&self) -> &[Stage] {
+        &self.0
+    }
+
+    /// Creates the run-time state of the laws about an axis, each with the authority of the actuators of its stage.
+    pub fn start_with(&self, authorities: &[Authority]) -> Box<dyn Law> {
+        let laws = self.0.iter().zip(authorities);
+        let stages = laws.map(|(stage, authority)| (stage.begins(), stage.law.start(authority)));
+        let places = (0..self.0.len()).map(|index| self.place(index)).collect();
+        Box::new(StagesState { stages: stages.collect(), active: 0, places, tuned: None })
+    }
+
     /// Iterates over the laws.
     pub fn laws(&self) -> impl Iterator<Item = &LawKind> {
         self.0.iter().map(|stage| &stage.law)
@@ -69,9 +92,13 @@ impl Stages {
             let why = format!("must be later than the one before, got {}", self.0[late + 1].from.get());
             return Some(ConfigError::new(format!("[{}].from", late + 1), why));
         }
+        let inertia = self.laws().find_map(LawKind::inertia);
         self.0.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
             match &stage.law {
+                law if law.inertia().is_some_and(|own| Some(own) != inertia) => {
+                    Some(ConfigError::new(format!("{key}.inertia"), "must be that of the stages before"))
+                }
                 law if law.offers().is_three_axis => {
                     let why = "acts about three axes together: a stage has a law about each axis";
                     Some(ConfigError::new(key, why))
@@ -99,9 +126,7 @@ impl LawSpec for Stages {
     }
 
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
-        let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
-        let places = (0..self.0.len()).map(|index| self.place(index)).collect();
-        Box::new(StagesState { stages: stages.collect(), active: 0, places, tuned: None })
+        self.start_with(&vec![*authority; self.0.len()])
     }
 
     /// Returns the shortest period of the laws, and the most that one of them reads.

@@ -39,7 +39,7 @@ use super::manifest::{LARGEST, Manifest};
 use super::parquet::{ParquetFile, parquet_is_built_in};
 use super::part;
 use super::row_maker::{NOTE, RowMaker};
-use super::rows::{ColumnCells, RunRows};
+use super::rows::{ColumnCells, ColumnKind, RunRows, list_element};
 
 /// Name of the manifest's file.
 pub const MANIFEST: &str = "manifest.toml";
@@ -196,10 +196,29 @@ impl Directory {
         Ok(self.columns(&[name])?.remove(0))
     }
 
-    /// Returns several columns, opening each part once.
-    pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
+    /// Returns several columns, or elements `NAME[i]` of columns of lists, opening each part once.
+    pub fn columns<'a>(&self, names: &[&'a str]) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
         let kind =
             |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
+        let resolved = |name: &&'a str| match list_element(name).filter(|_| kind(name).is_none()) {
+            Some((list, index)) => (list, Some(index)),
+            None => (*name, None),
+        };
+        let resolved: Vec<(&str, Option<usize>)> = names.iter().map(resolved).collect();
+        let stored: Vec<&str> = resolved.iter().map(|(name, _)| *name).collect();
+        let pick = |((_, element), column): ((&str, Option<usize>), Option<ColumnCells>)| match element {
+            Some(index) => column?.element(index),
+            None => column,
+        };
+        Ok(resolved.into_iter().zip(self.stored_columns(&stored, kind)?).map(pick).collect())
+    }
+
+    /// Returns columns that are stored, opening each part once; `kind` returns the type of a column.
+    fn stored_columns(
+        &self,
+        names: &[&str],
+        kind: impl Fn(&str) -> Option<ColumnKind>,
+    ) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
         let mut all: Vec<Option<ColumnCells>> =
             names.iter().map(|name| kind(name).map(ColumnCells::empty)).collect();
         let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();

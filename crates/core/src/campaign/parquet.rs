@@ -355,7 +355,10 @@ mod tests {
         assert_eq!((reading.rows(), reading.metadata("a").as_deref()), (3, Some("b")));
         assert_eq!(reading.fields(), rows.fields.to_vec());
         for field in rows.fields.iter() {
-            assert_eq!(reading.column(&field.name).expect("read").as_ref(), rows.column(&field.name));
+            assert_eq!(
+                reading.column(&field.name).expect("read").as_ref(),
+                rows.column(&field.name).as_deref()
+            );
         }
         assert_eq!(reading.column("other").expect("read"), None);
         std::fs::write(&file, b"PAR1 and no more").expect("written");

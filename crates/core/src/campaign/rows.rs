@@ -1,5 +1,6 @@
 //! Rows of a campaign's table, one for each run, held as typed columns.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -119,6 +120,12 @@ impl Campaign {
     }
 }
 
+/// Returns the name of a list and the index in it of a name `NAME[i]`.
+pub fn list_element(name: &str) -> Option<(&str, usize)> {
+    let (list, index) = name.strip_suffix(']')?.rsplit_once('[')?;
+    Some((list, index.parse().ok()?))
+}
+
 /// Returns a number as a float; NaN for a value of another type.
 fn number(value: &Drawn) -> f64 {
     value.as_float().or_else(|| Some(value.as_integer()? as f64)).unwrap_or(f64::NAN)
@@ -189,6 +196,19 @@ impl ColumnCells {
         }
     }
 
+    /// Returns the elements of lists at an index, null where a list has none; `None` for another column.
+    pub fn element(&self, index: usize) -> Option<Self> {
+        let Self::Lists(cells) = self else { return None };
+        let at = |cell: &Option<Vec<f64>>| cell.as_ref().and_then(|list| list.get(index).copied());
+        Some(Self::Numbers(cells.iter().map(|cell| at(cell).unwrap_or(f64::NAN)).collect()))
+    }
+
+    /// Returns the length of the longest list; 0 for another column.
+    pub fn elements(&self) -> usize {
+        let Self::Lists(cells) = self else { return 0 };
+        cells.iter().flatten().map(Vec::len).max().unwrap_or(0)
+    }
+
     fn push_null(&mut self) {
         match self {
             Self::Integers(cells) => cells.push(None),
@@ -253,10 +273,16 @@ impl RunRows {
         self.len() == 0
     }
 
-    /// Returns a column by its name.
-    pub fn column(&self, name: &str) -> Option<&ColumnCells> {
-        let place = self.fields.iter().position(|field| field.name == name)?;
-        self.columns.get(place)
+    /// Returns a column by its name, or the elements `NAME[i]` of a column of lists.
+    pub fn column(&self, name: &str) -> Option<Cow<'_, ColumnCells>> {
+        let named = |name: &str| {
+            let place = self.fields.iter().position(|field| field.name == name)?;
+            self.columns.get(place)
+        };
+        named(name).map(Cow::Borrowed).or_else(|| {
+            let (list, index) = list_element(name)?;
+            named(list)?.element(index).map(Cow::Owned)
+        })
     }
 
     /// Appends the row of a run.

@@ -52,9 +52,8 @@ impl RowMaker {
     ) -> Result<Vec<Statistics>, E> {
         let keys: Vec<&str> = self.campaign.keys().collect();
         let counts = |kind: ColumnKind, name: &str| match kind {
-            ColumnKind::Integers | ColumnKind::Numbers => true,
+            ColumnKind::Integers | ColumnKind::Numbers | ColumnKind::Lists => true,
             ColumnKind::Words => goal::NAMES.contains(&name),
-            ColumnKind::Lists => false,
         };
         let meaning = |name: &str| metrics::meaning(name, Some(self.campaign.scenario()));
         let metrics = self.fields().iter().filter(|field| !keys.contains(&field.name.as_str()));
@@ -66,10 +65,17 @@ impl RowMaker {
         for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
             let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
             for ((_, meaning), column) in some.iter().zip(columns(&names)?) {
-                all.push(Statistics::from_values(
-                    meaning,
-                    column.map_or_else(Vec::new, |column| column.numbers()),
-                ));
+                let Some(column) = column else {
+                    all.push(Statistics::from_values(meaning, None, Vec::new()));
+                    continue;
+                };
+                if !matches!(column, ColumnCells::Lists(_)) {
+                    all.push(Statistics::from_values(meaning, None, column.numbers()));
+                }
+                for index in 0..column.elements() {
+                    let element = column.element(index).map_or_else(Vec::new, |cells| cells.numbers());
+                    all.push(Statistics::from_values(meaning, Some(index), element));
+                }
             }
         }
         Ok(all)

@@ -164,6 +164,7 @@ metrics! {
         "Propellant used by the jets about x, y and z, if groups fire them and none can fail";
     FUEL_THRUSTERS = "fuel_thrusters_kg", "kg",
         "Propellant used by each thruster, in the order of the scenario, if each is commanded individually or can fail";
+    BURN_IMPULSE = "burn_impulse_n_s", "N s", "Impulse of the jets in the cycles of burns, along the commanded force";
     FIRINGS = "firings", "", "Number of jet pulses on all axes";
     FIRING_CYCLES = "firing_cycles", "", "Number of control cycles in which any jet fires";
     ZERO_CROSSINGS = "wheel_zero_crossings", "", "Number of zero crossings of the speed of wheels with friction, including reversals after sticking";

@@ -9,8 +9,8 @@ use flexsc_record::{
 
 use super::goal::{self, GoalMetrics};
 use super::{
-    ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES,
-    FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
+    ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, BURN_IMPULSE, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE,
+    FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
     GYRO_MOMENTUM_PEAK, LATE_SHARE, MOMENT_SHARE, MOMENTUM_END, MOMENTUM_PEAK, MOMENTUM_SHARE, MetricValue,
     NamedMetric, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, SLEW_PEAK, SLEW_RMS,
     TORQUE_ERROR, TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS,
@@ -40,6 +40,8 @@ pub struct ThreeAxisMetrics {
     fuel: f64,
     /// Propellant used (kg) by axis or by thruster, and true if by thruster.
     fuels: (Vec<f64>, bool),
+    /// Impulse of the jets in burns (N s), if there are any.
+    burn_impulse: Option<f64>,
     /// Number of pulses, and number of cycles with any.
     firings: (u64, u64),
     /// Elastic energy: initial, largest, and last (J).
@@ -88,6 +90,7 @@ impl ThreeAxisMetrics {
             end: end.seconds(),
             late: scenario.duration.seconds() - LATE,
             jets: scenario.study.fires(),
+            burn_impulse: scenario.actuator.jets().filter(|(jets, _)| !jets.burns.is_empty()).map(|_| 0.0),
             has_friction: scenario
                 .study
                 .bearings
@@ -170,6 +173,7 @@ impl ThreeAxisMetrics {
     fn observe_jets(&mut self, jets: &JetCycle) {
         self.fuel = jets.fuel;
         self.fuels.0.clone_from(&jets.fuels);
+        self.burn_impulse.iter_mut().for_each(|impulse| *impulse = jets.burn_impulse);
         self.firings.1 += u64::from(jets.pulses > self.firings.0);
         self.firings.0 = jets.pulses;
     }
@@ -224,7 +228,8 @@ impl ThreeAxisMetrics {
         ];
         let fuels = if self.fuels.1 { &FUEL_THRUSTERS } else { &FUEL_AXES };
         let fuels = (fuels, MetricValue::Numbers(self.fuels.0));
-        let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets);
+        let burn = self.burn_impulse.map(|impulse| (&BURN_IMPULSE, MetricValue::Number(impulse)));
+        let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets).chain(burn);
         let friction = friction.into_iter().filter(|_| self.has_friction);
         let rate = [(&RATE_END, MetricValue::Number(self.rate))].into_iter().filter(|_| self.magnetic);
         let stored = [

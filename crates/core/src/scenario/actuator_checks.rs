@@ -1,6 +1,7 @@
 //! Checks of the tasks of actuators: axes, unloading, and shares that sum to the whole demand.
 
 use flexsc_control::actuator::{ActuatorTask, AssignedActuator, AssignedMember, WheelUnloading};
+use flexsc_control::law::Stage;
 use flexsc_control::offers::{ActuatorMember, Offers};
 use flexsc_control::one_or_many::OneOrMany;
 use flexsc_formats::document::ConfigError;
@@ -43,8 +44,91 @@ impl ScenarioSpec {
         twice.and_then(|(_, axis)| at("axes", &format!("names `{}` twice", AXES[axis.index()])))
     }
 
-    /// Checks that the shares about each axis sum to 1.
+    /// Checks that the shares about each axis sum to 1, in each stage of the law if stages select actuators.
     pub(super) fn validate_shares(&self, offers: &Offers) -> Option<ConfigError> {
+        if !self.law.selects_actuators() {
+            return self.validate_sums(offers);
+        }
+        let misplaced = self.validate_selection(offers);
+        misplaced.or_else(|| {
+            let mut stages = self.law.stages().iter().enumerate();
+            stages.find_map(|(index, stage)| self.validate_stage(index, stage, offers))
+        })
+    }
+
+    /// Checks that stages that select actuators fit the other parts.
+    fn validate_selection(&self, offers: &Offers) -> Option<ConfigError> {
+        let selects = |stage: &Stage| stage.actuators.is_some();
+        let index = self.law.stages().iter().position(selects)?;
+        let at = |why: &str| Some(ConfigError::new(format!("law.stages[{index}].actuators"), why));
+        if offers.body.has_manoeuvre {
+            return at(
+                "must be left out with a `[manoeuvre]`, whose torque all actuators execute from its begin to its end",
+            );
+        }
+        if self.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some()) {
+            return at(
+                "must be left out with `[estimator.adaptive]`, which predicts what the same actuators do throughout",
+            );
+        }
+        None
+    }
+
+    /// Checks the actuators that a stage of the law selects.
+    fn validate_stage(&self, index: usize, stage: &Stage, offers: &Offers) -> Option<ConfigError> {
+        let key = format!("law.stages[{index}].actuators");
+        let at = |key: String, why: String| Some(ConfigError::new(key, why));
+        for (entry, name) in stage.actuators.iter().flatten().enumerate() {
+            let (key, name) = (format!("{key}[{entry}]"), name.as_str());
+            let mut named = offers.actuators.iter().filter(|member| member.is_listed && member.kind == name);
+            match named.next() {
+                None => {
+                    let kinds = offers.actuators.iter().filter(|member| member.is_listed);
+                    let kinds: Vec<String> = kinds.map(|member| format!("`{}`", member.kind)).collect();
+                    return at(
+                        key,
+                        format!("must be one of the actuators, {}, got `{name}`", kinds.join(", ")),
+                    );
+                }
+                Some(member) if !member.executes => {
+                    let why = format!("must execute commands, and `{}` unloads wheels", member.key);
+                    return at(key, why);
+                }
+                Some(_) => {}
+            }
+        }
+        let law = stage.law.offers();
+        let selected: Vec<&ActuatorMember> =
+            offers.actuators.iter().filter(|member| member.executes && stage.commands(member.kind)).collect();
+        if law.commands_moments {
+            let has_torquers = selected.iter().any(|member| member.kind == "magnetorquers");
+            let unloads = |member: &ActuatorMember| !member.executes && member.kind == "magnetorquers";
+            if has_torquers || offers.actuators.iter().any(unloads) {
+                return None;
+            }
+            return at(key, "must include `magnetorquers`, which execute the law's moments".to_owned());
+        }
+        if law.is_open {
+            return None;
+        }
+        AXES.iter().enumerate().take(self.axis_count()).find_map(|(axis, name)| {
+            let about = if self.axis_count() == 1 { String::new() } else { format!(" about {name}") };
+            let serving = selected.iter().filter(|member| member.shares[axis] > 0.0);
+            let each: Vec<String> = serving
+                .clone()
+                .map(|member| format!("{} of `{}`", member.shares[axis], member.key))
+                .collect();
+            let sum: f64 = serving.map(|member| member.shares[axis]).sum();
+            if (sum - 1.0).abs() <= ROUNDING {
+                return None;
+            }
+            let found = if each.is_empty() { "no actuator".to_owned() } else { each.join(", ") };
+            at(key.clone(), format!("must have shares that sum to 1{about}, got {sum} ({found})"))
+        })
+    }
+
+    /// Checks that the shares of all actuators about each axis sum to 1.
+    fn validate_sums(&self, offers: &Offers) -> Option<ConfigError> {
         for (axis, name) in AXES.iter().enumerate().take(self.axis_count()) {
             let serves = |member: &&ActuatorMember| member.shares[axis] > 0.0;
             let serving: Vec<&ActuatorMember> = offers.actuators.iter().filter(serves).collect();

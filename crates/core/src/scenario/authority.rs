@@ -1,8 +1,10 @@
 //! Authority of the actuators about each axis, and the error bands that laws keep with it.
 
-use flexsc_control::actuator::{ActuatorAuthority, ActuatorKind, ActuatorPlacement, GroupEffect, PulseWidth};
+use flexsc_control::actuator::{
+    ActuatorAuthority, ActuatorKind, ActuatorPlacement, AssignedMember, GroupEffect, PulseWidth,
+};
 use flexsc_control::estimator::adaptive;
-use flexsc_control::law::{ActiveDamping, Authority, ErrorBand};
+use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, Stage};
 use flexsc_control::sensor::Tachometer;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
@@ -17,13 +19,17 @@ use super::resolved::ResolvedScenario;
 const NO_MOTION: f64 = 1.0;
 
 impl ResolvedScenario {
-    /// Returns the authority of all actuators about an axis, until the first of them is at its limit with its share.
-    pub(super) fn authority(&self, written: &ScenarioSpec, axis: usize) -> Authority {
+    /// Returns the authority about an axis of all actuators, or of those in a stage of the law, until the first of them
+    /// is at its limit with its share.
+    pub(super) fn authority(&self, written: &ScenarioSpec, axis: usize, stage: Option<&Stage>) -> Authority {
         let (placement, inertia) =
             (self.placement(self.groups.as_ref(), None), self.axes[axis].commanded_inertia());
         let alone = |kind: &ActuatorKind| kind.authority(axis, inertia, &placement);
         let members = written.actuator.members();
-        let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
+        let acts = |member: &&AssignedMember<'_>| {
+            member.share(axis) > 0.0 && stage.is_none_or(|stage| stage.commands(member.kind.kind()))
+        };
+        let acting: Vec<_> = members.iter().filter(acts).collect();
         let ActuatorAuthority { accelerations, width, delay } = match &acting[..] {
             [] => ActuatorAuthority { accelerations: [0.0; 2], width: PulseWidth::default(), delay: 0.0 },
             [only] => alone(&only.kind),

@@ -20,7 +20,24 @@ impl Scenario {
             };
             each_table(key, value, look, &mut remarks);
         }
+        remarks.extend(self.known_inertia());
         remarks
+    }
+
+    /// Returns the remark that a law knows an inertia that differs from run to run.
+    fn known_inertia(&self) -> Option<ConfigError> {
+        let commands_torque = self.law.kind() != "open" && self.law.kind() != "b_dot";
+        if self.study.axes.len() != 3 || !commands_torque || self.law.inertia().is_some() {
+            return None;
+        }
+        let changes_inertia = |key: &&String| {
+            let is_mass =
+                key.split(['.', '[']).any(|name| ["mass", "inertia", "centre", "at"].contains(&name));
+            is_mass && ["spacecraft", "body", "appendage"].iter().any(|table| key.starts_with(table))
+        };
+        let key = self.written.uncertain.keys().find(changes_inertia)?;
+        let why = "changes the inertia from run to run, and the law knows that of each run: give an attitude law `inertia` to study its error";
+        Some(ConfigError::new(format!("uncertain.{}", bare_or_quoted(key)), why))
     }
 }
 

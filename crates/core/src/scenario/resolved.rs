@@ -6,7 +6,7 @@ use flexsc_control::actuator::{
     GroupEffect, GyroAxes, ThrusterEffect,
 };
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
-use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
+use flexsc_control::law::{AttitudeProfile, Authority, Stage, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
@@ -38,6 +38,8 @@ pub struct ResolvedScenario {
     pub drift: Option<FrequencyDrift>,
     /// Authority of the actuators about each axis.
     pub authorities: Vec<Authority>,
+    /// Authority about each axis in each stage of the law; empty if no stage selects actuators.
+    pub stage_authorities: Vec<Vec<Authority>>,
     /// Period of the law, if it has one.
     pub law_period: Option<Span>,
     /// Sampling period; `None` if the angle is measured at every instant.
@@ -116,7 +118,15 @@ impl ResolvedScenario {
             BodyAxes::One(body) => study.axes.push(body.clone()),
             BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body, unmet)?,
         }
-        study.authorities = (0..study.axes.len()).map(|axis| study.authority(written, axis)).collect();
+        let last_stage = written.law.stages().last();
+        let axes = 0..study.axes.len();
+        study.authorities = axes.clone().map(|axis| study.authority(written, axis, last_stage)).collect();
+        if written.law.selects_actuators() {
+            let stages = written.law.stages();
+            let in_stages =
+                |axis| stages.iter().map(|stage| study.authority(written, axis, Some(stage))).collect();
+            study.stage_authorities = axes.map(in_stages).collect();
+        }
         if let Some(fault) = unmet.first(Rule::ObserverInputs) {
             return Err(fault);
         }
@@ -302,7 +312,12 @@ impl ResolvedScenario {
             member.kind.start(own, &self.placement(groups, tachometer))
         };
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
-        Box::new(ActuatorSet::new(settings.len(), started))
+        let executing = || members.iter().filter(|member| member.executes());
+        let in_stage = |stage: &Stage| {
+            (stage.begins(), executing().map(|member| stage.commands(member.kind.kind())).collect())
+        };
+        let stages = scenario.law.stages().iter().filter(|_| scenario.law.selects_actuators());
+        Box::new(ActuatorSet::new(settings.len(), started).in_stages(stages.map(in_stage).collect()))
     }
 }
 

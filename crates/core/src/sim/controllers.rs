@@ -51,7 +51,11 @@ impl ControlLaws {
     /// Creates the laws of a scenario, before its start.
     pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         Self {
-            laws: Controllers::new(&scenario.law, &scenario.study.authorities),
+            laws: Controllers::new(
+                &scenario.law,
+                &scenario.study.authorities,
+                &scenario.study.stage_authorities,
+            ),
             crossing: None,
             pending_event: None,
             external_command_pending: false,

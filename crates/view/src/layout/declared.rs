@@ -107,7 +107,7 @@ fn reported_topics(scenario: &Scenario) -> Vec<&'static str> {
     let estimator = (!matches!(scenario.estimator, Some(EstimatorKind::Own(_))))
         .then(|| estimator::start(&scenario.estimator_context(), seed));
     let laws = (!matches!(scenario.law, LawKind::Own(_)))
-        .then(|| Controllers::new(&scenario.law, &scenario.study.authorities));
+        .then(|| Controllers::new(&scenario.law, &scenario.study.authorities, &[]));
     let is_own = |assigned: &AssignedActuator| matches!(assigned.kind, ActuatorKind::Own(_));
     let actuator = (!scenario.actuator.iter().any(is_own)).then(|| scenario.study.actuator(scenario, seed));
     let parts = (sensors.iter().map(|sensor| &**sensor as &dyn Part))

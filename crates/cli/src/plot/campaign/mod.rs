@@ -189,7 +189,7 @@ fn metrics<'a>(
     path: &Path,
     runs: &'a CampaignRuns,
 ) -> Result<Vec<&'a MetricColumn>, CliError> {
-    let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
+    let named = |name: &str| runs.metrics.iter().find(|metric| metric.name == name);
     if requested.is_empty() {
         // A metric that only repeats a key is left out.
         let is_informative = |metric: &&MetricColumn| {
@@ -206,7 +206,7 @@ fn metrics<'a>(
     }
     let metric = |name: &String| {
         named(name).ok_or_else(|| {
-            let names: Vec<_> = runs.metrics.iter().map(|metric| metric.meaning.name).collect();
+            let names: Vec<_> = runs.metrics.iter().map(|metric| metric.name.as_str()).collect();
             let (path, names) = (path.display(), names.join(", "));
             CliError::Arguments(format!(
                 "{path}: there is no metric `{name}` that is a number\n\nhint: it has {names}"
@@ -218,7 +218,7 @@ fn metrics<'a>(
 
 /// Returns the figures of a kind, with their names.
 fn drawn(kind: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Vec<(String, Figure)> {
-    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, kind.name(), metric.meaning.name);
+    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, kind.name(), metric.name);
     let each = |figure: &dyn Fn(&MetricColumn) -> Option<Figure>| {
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };

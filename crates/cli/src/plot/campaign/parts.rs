@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker};
+use flexsc_core::campaign::{
+    ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker, list_element,
+};
 use flexsc_core::metrics::{self, goal};
 
 use super::table::{CampaignKey, CampaignRuns, MetricColumn, ScenarioSource, TextCells};
@@ -63,13 +65,20 @@ pub fn campaign_runs(
     // Words and lists have no place on an axis.
     let numeric = |key: &&str| work.fields().iter().any(|field| field.name == *key && is_number(&field));
     let drawn: Vec<&str> = keys.iter().copied().filter(numeric).collect();
-    let fields: Vec<(&ColumnHeading, _)> = all
+    let element = |name: &String| {
+        let (list, _) = list_element(name)?;
+        let is_list = |field: &&ColumnHeading| field.name == list && field.kind == ColumnKind::Lists;
+        work.fields().iter().find(is_list)?;
+        Some((name.clone(), metrics::meaning(list, Some(scenario))?))
+    };
+    let fields: Vec<(String, _)> = all
         .into_iter()
         .filter(|field| wanted(&field.name))
-        .filter_map(|field| Some((field, metrics::meaning(&field.name, Some(scenario))?)))
+        .filter_map(|field| Some((field.name.clone(), metrics::meaning(&field.name, Some(scenario))?)))
+        .chain(named.iter().filter_map(element))
         .collect();
     let names: Vec<&str> =
-        drawn.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
+        drawn.iter().copied().chain(fields.iter().map(|(name, _)| name.as_str())).collect();
     let mut columns = read(&names)?.into_iter().map(|column| {
         let texts = match &column {
             Some(ColumnCells::Integers(_)) => TextCells::Integers,
@@ -86,7 +95,7 @@ pub fn campaign_runs(
         swept: varied.contains(name),
     };
     let keys = drawn.iter().zip(columns.by_ref()).map(key).collect();
-    let metric = |((_, meaning), (texts, values))| MetricColumn { meaning, texts, values };
+    let metric = |((name, meaning), (texts, values))| MetricColumn { meaning, name, texts, values };
     let metrics = fields.into_iter().zip(columns).map(metric).collect();
     Ok(CampaignRuns {
         name: scenario.name.clone(),

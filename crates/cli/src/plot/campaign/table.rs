@@ -73,6 +73,8 @@ pub struct CampaignKey {
 /// Metric of the runs.
 pub struct MetricColumn {
     pub meaning: &'static MetricDescription,
+    /// Name of the metric, or of an element of it.
+    pub name: String,
     /// Values of the metric as in the table, and as numbers; NaN for a run without a value.
     pub texts: TextCells,
     pub values: Vec<f64>,
@@ -190,7 +192,12 @@ impl TextTable {
                 // Words and lists are not numbers.
                 let goal = metrics::goal::NAMES.contains(&meaning.name);
                 if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
-                    all.push(MetricColumn { meaning, texts: TextCells::Cells(texts), values });
+                    all.push(MetricColumn {
+                        meaning,
+                        name: meaning.name.to_owned(),
+                        texts: TextCells::Cells(texts),
+                        values,
+                    });
                 }
             } else {
                 let drawn = scenario.as_ref().map(|(scenario, _)| scenario.uncertain.contains_key(header));
@@ -236,7 +243,7 @@ impl CampaignRuns {
     /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
     /// it.
     pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
-        let (_, most) = self.requirement().filter(|(name, _)| *name == metric.meaning.name)?;
+        let (_, most) = self.requirement().filter(|(name, _)| *name == metric.name)?;
         let sorted = metric.sorted();
         let successes = sorted.iter().filter(|value| **value <= most).count();
         let part = 100.0 * successes as f64 / sorted.len().max(1) as f64;
@@ -294,7 +301,7 @@ impl MetricColumn {
             "N m s" => "_nm_s",
             _ => "",
         };
-        let name = self.meaning.name;
+        let name = self.name.as_str();
         let named = name.strip_suffix(suffix).unwrap_or(name);
         // A body without inertia has accelerations as torques.
         let bare = named.strip_suffix("_nm").or_else(|| named.strip_suffix("_nm_s"));

@@ -20,7 +20,7 @@ const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_
 
 /// Returns a measure of how bad a value is; `None` if the metric is neutral or has no value.
 fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
-    let (name, value) = (metric.meaning.name, metric.values[index]);
+    let (name, value) = (metric.name.as_str(), metric.values[index]);
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
         // A goal is 1 if it is met.
@@ -69,7 +69,7 @@ fn worst<'a>(
         for (_, index) in bad.into_iter().take(most) {
             let text = metric.text(index);
             let value = if text.is_empty() { "never".to_owned() } else { text };
-            worst.push(reported(metric.meaning.name, index, value));
+            worst.push(reported(&metric.name, index, value));
         }
     }
     worst
