@@ -5,7 +5,6 @@ from __future__ import annotations
 import types
 import typing
 from collections.abc import Mapping, Sequence
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _keys
@@ -15,14 +14,16 @@ from flexsc.scenario import Keys
 if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
+# The types of the keys of each class, which take long to find.
+_HINTS: dict[type[Any], dict[str, Any]] = {}
+
 
 def part_at(scenario: Scenario, key: str, kind: type[Part] | None) -> Any:
     """Return the part at a key: see `Scenario.part`."""
     found = _keys.get(scenario, key)
     if found is not None:
         root, *path = _keys.steps(key)
-        kinds = _kinds_of(Keys, str(root)) if root in _hints(Keys) else ()
-        found = _descend(_read(kinds, scenario.get(_keys.written([root]))), path)
+        found = _descend(_read(_kinds_of(Keys, str(root)), scenario.get(_keys.written([root]))), path)
     if _has_own(found):
         raise ValueError(f"`{key}` has a part of your own: `Scenario.parts` has it")
     if kind is not None and not isinstance(found, kind):
@@ -88,23 +89,18 @@ def _part(kind: type[Any], content: Any) -> Any:
     )
 
 
-@cache
-def _python_names(kind: type[Any]) -> dict[str, str]:
+def _python_names(kind: type[Part]) -> dict[str, str]:
     """The names of the keys of a class in Python, which keeps some for itself, by those of a file."""
     return {name.rstrip("_"): name for name in kind._names}
 
 
-@cache
 def _kinds_of(owner: type[Any], name: str) -> tuple[Any, ...]:
     """The types that a key of a class may be."""
-    return _kinds(_hints(owner)[name])
-
-
-@cache
-def _hints(owner: type[Any]) -> dict[str, Any]:
-    """The types of the keys of a class. Arrays of NumPy count as sequences."""
-    arrays = types.SimpleNamespace(NDArray=Sequence)
-    return typing.get_type_hints(owner, localns={"npt": arrays})
+    if owner not in _HINTS:
+        # Arrays of NumPy count as sequences.
+        arrays = types.SimpleNamespace(NDArray=Sequence)
+        _HINTS[owner] = typing.get_type_hints(owner, localns={"npt": arrays})
+    return _kinds(_HINTS[owner].get(name))
 
 
 def _kinds(kind: Any) -> tuple[Any, ...]:
