@@ -149,7 +149,7 @@ class Scenario(ScenarioFile):
         of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
         actuator of a list keeps its `axes` and its `share`.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
-        repeated without the objects, and campaigns run in this process only.
+        repeated without the objects, and campaigns are not written to directories.
 
         >>> class Off(flexsc.Law):
         ...     period = 1.0
