@@ -27,7 +27,11 @@ class Copies:
     _origin: Scenario
 
     scenario: Scenario
-    """The scenario from which the runs are drawn."""
+    """The scenario from which the runs are drawn.
+
+    >>> sims.scenario.name
+    'four-clamped-modes'
+    """
 
     def _set(self, native: engine.Simulators | OneCopy, scenario: Scenario) -> None:
         self.scenario = self._origin = scenario
@@ -44,25 +48,41 @@ class Copies:
 
     @property
     def runs(self) -> npt.NDArray[np.uint64]:
-        """The run number of each copy, of shape (n,)."""
+        """The run number of each copy, of shape (n,).
+
+        >>> sims.runs[:3].tolist()
+        [0, 1, 2]
+        """
         with self._lock:
             return self._native.runs
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
-        """The time of each copy (s), of shape (n,)."""
+        """The time of each copy (s), of shape (n,).
+
+        >>> sims.time[:2].tolist()
+        [0.1, 0.1]
+        """
         with self._lock:
             return self._native.time
 
     @property
     def done(self) -> npt.NDArray[np.bool_]:
-        """Whether each copy has reached its end, of shape (n,). It stays there until it is reset."""
+        """Whether each copy has reached its end, of shape (n,). It stays there until it is reset.
+
+        >>> sims.done.any().item()
+        False
+        """
         with self._lock:
             return self._native.done
 
     @property
     def failed(self) -> npt.NDArray[np.bool_]:
-        """Which copies have failed, of shape (n,). Their values are NaN until they are reset."""
+        """Which copies have failed, of shape (n,). Their values are NaN until they are reset.
+
+        >>> sims.failed.any().item()
+        False
+        """
         import numpy as np
 
         failed = np.zeros(len(self), dtype=np.bool_)
@@ -72,19 +92,31 @@ class Copies:
 
     @property
     def axes(self) -> int:
-        """The number of values in a command: 1, or 3 about x, y and z."""
+        """The number of values in a command: 1, or 3 about x, y and z.
+
+        >>> sims.axes
+        3
+        """
         with self._lock:
             return self._native.axes
 
     @property
     def command_unit(self) -> str:
-        """The unit of commands: see `Simulator.command_unit`."""
+        """The unit of commands: see `Simulator.command_unit`.
+
+        >>> sims.command_unit
+        'N m'
+        """
         with self._lock:
             return self._native.command_unit
 
     @property
     def command_limit(self) -> npt.NDArray[np.float64]:
-        """The largest command about each axis for the nominal scenario: see `Simulator.command_limit`."""
+        """The largest command about each axis for the nominal scenario: see `Simulator.command_limit`.
+
+        >>> sims.command_limit.shape
+        (3,)
+        """
         import numpy as np
 
         with self._lock:
@@ -92,17 +124,29 @@ class Copies:
 
     @property
     def state(self) -> Quantities:
-        """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
+        """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k).
+
+        >>> sims.state["rate"].shape, sims.state.units["rate"]
+        ((100, 3), 'rad/s')
+        """
         return self._fields.view("state", self._observe_row())
 
     @property
     def measured(self) -> Quantities:
-        """The latest measurements of the sensors: see `Simulator.measured`."""
+        """The latest measurements of the sensors: see `Simulator.measured`.
+
+        >>> sims.measured["error"].shape
+        (100, 3)
+        """
         return self._fields.view("measured", self._observe_row())
 
     @property
     def believed(self) -> Quantities:
-        """The input of the laws: see `Simulator.believed`."""
+        """The input of the laws: see `Simulator.believed`.
+
+        >>> sims.believed["rate"].shape
+        (100, 3)
+        """
         return self._fields.view("believed", self._observe_row())
 
     def _observe_row(self) -> npt.NDArray[np.float64]:

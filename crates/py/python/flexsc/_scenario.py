@@ -170,7 +170,11 @@ class Scenario(ScenarioFile):
 
     @property
     def parts(self) -> dict[str, object]:
-        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`."""
+        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`.
+
+        >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
+        {}
+        """
         return dict(engine.parts_of(self._native))
 
     def linearise(

@@ -95,17 +95,29 @@ class ScenarioFile:
 
     @property
     def name(self) -> str:
-        """Name of the study."""
+        """Name of the study.
+
+        >>> flexsc.Scenario.example("relay-fixed").name
+        'relay-fixed'
+        """
         return self._native.name
 
     @property
     def seed(self) -> int:
-        """Seed of all randomness."""
+        """Seed of all randomness.
+
+        >>> flexsc.Scenario.example("relay-fixed").with_("seed", 3).seed
+        3
+        """
         return self._native.seed
 
     @property
     def duration(self) -> float:
-        """Simulated time (s)."""
+        """Simulated time (s).
+
+        >>> flexsc.Scenario.example("relay-fixed").duration
+        20000.0
+        """
         return self._native.duration
 
     @property
@@ -132,6 +144,9 @@ class ScenarioFile:
 
         For a spatial body: `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
         of the elastic rate at the gyro per jump of the rigid rate that the jets cause about x, y and z.
+
+        >>> flexsc.Scenario.example("relay-fixed").modes["period"].round(2).tolist()         # s
+        [14.28, 8.32]
         """
         from flexsc._modes import modes
 
@@ -139,7 +154,11 @@ class ScenarioFile:
 
     @property
     def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,)."""
+        """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,).
+
+        >>> list(flexsc.Scenario.example("rotation-robust").outputs)
+        ['section_1', 'section_2', 'section_3', 'section_4']
+        """
         from flexsc._modes import outputs
 
         return outputs(self._native)

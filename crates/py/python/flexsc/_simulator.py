@@ -42,7 +42,11 @@ class Snapshot:
 
     @property
     def time(self) -> float:
-        """The time of the snapshot (s)."""
+        """The time of the snapshot (s).
+
+        >>> sim.snapshot().time == sim.time
+        True
+        """
         return self._native.time
 
     def __repr__(self) -> str:
@@ -71,9 +75,17 @@ class Simulator:
     __slots__ = ("_fields", "_lock", "_metrics", "_native", "_row", "run", "scenario")
 
     scenario: Scenario
-    """The simulated scenario."""
+    """The simulated scenario.
+
+    >>> sim.scenario.name
+    'four-clamped-modes'
+    """
     run: int
-    """The number of the run."""
+    """The number of the run.
+
+    >>> sim.run
+    0
+    """
 
     def __init__(self, scenario: Scenario, run: int = 0) -> None:
         # The engine refuses to be read while it advances, and other threads continue meanwhile.
@@ -97,19 +109,31 @@ class Simulator:
 
     @property
     def time(self) -> float:
-        """The time of the run (s)."""
+        """The time of the run (s).
+
+        >>> sim.time
+        0.1
+        """
         with self._lock:
             return self._native.time
 
     @property
     def done(self) -> bool:
-        """Whether the run has reached the end of the scenario's `duration`."""
+        """Whether the run has reached the end of the scenario's `duration`.
+
+        >>> sim.done
+        False
+        """
         with self._lock:
             return self._native.done
 
     @property
     def axes(self) -> int:
-        """The number of values in a command: 1, or 3 about x, y and z."""
+        """The number of values in a command: 1, or 3 about x, y and z.
+
+        >>> sim.axes
+        3
+        """
         with self._lock:
             return self._native.axes
 
@@ -119,6 +143,9 @@ class Simulator:
         hub.
 
         It is empty for the command of a wheel on one axis.
+
+        >>> sim.command_unit
+        'N m'
         """
         with self._lock:
             return self._native.command_unit
@@ -126,7 +153,11 @@ class Simulator:
     @property
     def command_limit(self) -> npt.NDArray[np.float64]:
         """The largest command about each axis that the actuator can execute, of shape (axes,); infinite
-        without a limit."""
+        without a limit.
+
+        >>> sim.command_limit.shape
+        (3,)
+        """
         import numpy as np
 
         with self._lock:
@@ -144,6 +175,9 @@ class Simulator:
         (rad/s), with and without the elastic part at the first sensor; `modes` (m sqrt(kg)) and `mode_rates`
         of shape (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,)
         if there are wheels.
+
+        >>> sim.state["rate"].shape, sim.state.units["rate"]
+        ((3,), 'rad/s')
         """
         return self._fields.view("state", self._observe_row())
 
@@ -153,13 +187,20 @@ class Simulator:
         (rad/s).
 
         NaN before the first sample. Without a sampled sensor they are the true motion at the present time.
+
+        >>> sim.measured["error"].shape
+        (3,)
         """
         return self._fields.view("measured", self._observe_row())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws, from the estimators: the same quantities as `measured`, at the last
-        sample."""
+        sample.
+
+        >>> sim.believed["rate"].shape
+        (3,)
+        """
         return self._fields.view("believed", self._observe_row())
 
     def _observe_row(self) -> npt.NDArray[np.float64]:
@@ -178,6 +219,10 @@ class Simulator:
                 it like a command of the law: in its periods and within its limits. With None the last command
                 stays in force, or the law if no command has been given yet.
             dt: The length of the step (s).
+
+        >>> sim.step([0.0, 0.1, 0.0], 2.5)                                  # N m, s
+        >>> round(sim.time, 9)
+        2.6
 
         Raises:
             ValueError: The command has another shape or is not finite, or `dt` is not a positive time.
@@ -293,12 +338,25 @@ class Simulator:
         return stepped
 
     def snapshot(self) -> Snapshot:
-        """Save the state of the run, including all future noise, for `restore`."""
+        """Save the state of the run, including all future noise, for `restore`.
+
+        >>> before = sim.snapshot()
+        >>> sim.step(None, 1.0)
+        >>> sim.restore(before)
+        >>> sim.time
+        0.1
+        """
         with self._lock:
             return Snapshot(self._native.copy(), self.scenario, self.run)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a snapshot, which can be used again.
+
+        >>> before = sim.snapshot()
+        >>> sim.step(None, 1.0)
+        >>> sim.restore(before)
+        >>> sim.time == before.time
+        True
 
         Raises:
             ValueError: It is of another scenario.
@@ -309,7 +367,13 @@ class Simulator:
             self._set(snapshot._native.copy(), self.scenario, snapshot.run)
 
     def clone(self) -> Simulator:
-        """Return a copy of the run at the same instant, which is advanced independently."""
+        """Return a copy of the run at the same instant, which is advanced independently.
+
+        >>> other = sim.clone()
+        >>> other.step(None, 1.0)
+        >>> round(other.time - sim.time, 9)
+        1.0
+        """
         with self._lock:
             return self._of(self._native.copy(), self.scenario, self.run)
 

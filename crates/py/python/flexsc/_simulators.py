@@ -171,6 +171,10 @@ class Simulators(Copies):
         Returns:
             The states at the end of the step.
 
+        >>> state = sims.step(numpy.full((100, 3), 0.01), 1.0)              # N m, s
+        >>> state["rate"].shape
+        (100, 3)
+
         Raises:
             ValueError: The commands have another shape or are not finite, or `dt` is not a positive time.
             SimulationError: Copies have failed; the text names them. The others have completed the step:
@@ -199,6 +203,11 @@ class Simulators(Copies):
 
         Returns:
             The states of all copies.
+
+        >>> first = numpy.arange(100) < 10
+        >>> state = sims.reset(first)
+        >>> sims.time[9:11].tolist()
+        [0.0, 0.1]
 
         Raises:
             ValueError: The mask or the run numbers have another shape.

@@ -41,6 +41,11 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
+    """Render modes, of which there are none, and when the next episode starts, for Gymnasium.
+
+    >>> envs.metadata["autoreset_mode"].value
+    'NextStep'
+    """
 
     def __init__(
         self,
