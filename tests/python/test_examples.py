@@ -146,7 +146,7 @@ def test_there_are_as_many_members_as_there_were() -> None:
     assert len(MEMBERS) > 300
 
 
-@pytest.mark.parametrize("name", ["flexsc", "flexsc.plot", "flexsc.scenario", "flexsc._part"])
+@pytest.mark.parametrize("name", ["flexsc", "flexsc.parts", "flexsc.plot", "flexsc.scenario", "flexsc._part"])
 def test_every_module_has_an_example_that_runs(name: str) -> None:
     if name == "flexsc.plot":
         pytest.importorskip("matplotlib")
