@@ -258,6 +258,8 @@ def test_what_a_part_answers_is_checked() -> None:
         flexsc.Hold()
     with pytest.raises(ValueError, match="state must be one of"):
         flexsc.Hold(1.0, state="push")
+    with pytest.raises(TypeError, match=r"object of a flexsc\.Law, got the class Relay; write Relay\(\)"):
+        scenario.with_parts(law=Relay)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match=r"law must be an object of a flexsc\.Law, got Servo"):
         scenario.with_parts(law=Servo(1.0, 1.0, 1.0))  # type: ignore[arg-type]
     with pytest.raises(flexsc.ScenarioError, match=r"sensor\[1\].*is not there"):

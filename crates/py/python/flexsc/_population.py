@@ -72,8 +72,6 @@ def evaluate(
     points = np.ascontiguousarray(population, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != len(keys):
         raise ValueError(f"population must be of shape (points, {len(keys)}), got {points.shape}")
-    if not np.isfinite(points).all():
-        raise ValueError("population must be finite")
     if not len(points):
         return np.empty((0,) if isinstance(metrics, str) else (0, len(names)))
     design = engine.Design()

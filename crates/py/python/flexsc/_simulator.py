@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from _thread import RLock
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 Event = Literal["sample", "decision", "switching", "window"]
 """The events that a run can be advanced to: see `Simulator.run_until`."""
+
+
+def unpicklable(run: object) -> str:
+    """Return why a run cannot be pickled."""
+    return f"cannot pickle {type(run).__name__}, a state of this process; `Simulator.result()` can be pickled"
 
 
 class Snapshot:
@@ -48,6 +53,9 @@ class Snapshot:
         True
         """
         return self._native.time
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __repr__(self) -> str:
         return f"<flexsc.Snapshot of {self.scenario.name}, run {self.run}, at {self.time:g} s>"
@@ -381,6 +389,9 @@ class Simulator:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Simulator:
         return self.clone()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __repr__(self) -> str:
         of = f"{self.scenario.name}, run {self.run}"

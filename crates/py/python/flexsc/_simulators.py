@@ -9,7 +9,7 @@ from flexsc import _native as engine
 from flexsc._copies import Copies
 from flexsc._quantities import Quantities, parse_commands
 from flexsc._scenario import Scenario
-from flexsc._simulator import Simulator, Snapshot
+from flexsc._simulator import Simulator, Snapshot, unpicklable
 from flexsc._sources import Source, check_scenarios, held, parse_sources
 from flexsc._threads import threads
 from flexsc._values import run_number
@@ -301,6 +301,9 @@ class Simulators(Copies):
             self._drawn.update(drawn)
             self._raise()
             return self.state
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __copy__(self) -> NoReturn:
         # A shallow copy would share the engine: a step of one would advance the other.

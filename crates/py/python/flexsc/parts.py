@@ -20,6 +20,7 @@ campaign it is the `error` of its row. Numbers are in SI units.
 
 from __future__ import annotations
 
+import copyreg
 from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any
@@ -68,6 +69,26 @@ __all__ = [
     "ThreeAxisLaw",
     "Truth",
 ]
+
+
+def _of_keys(kind: type[Any], keys: dict[str, Any]) -> Any:
+    return kind(**keys)
+
+
+def _keep_keys(kind: type[Any], names: Sequence[str]) -> None:
+    """Let objects of a class of the engine be pickled as its keywords, those that are None left out."""
+
+    def reduced(part: Any) -> tuple[Any, ...]:
+        keys = {name: getattr(part, name) for name in names}
+        return _of_keys, (kind, {name: value for name, value in keys.items() if value is not None})
+
+    copyreg.pickle(kind, reduced)
+
+
+_keep_keys(Reading, ("angle", "attitude", "rate", "vector", "inertial", "is_direction"))
+_keep_keys(ThreeAxisHold, ("torques", "accelerations", "moments", "after", "until", "state"))
+_keep_keys(Effort, ("torques", "after"))
+
 
 # Tracebacks, `help` and pickles of classes name the place where users find them.
 for _class in (CompiledLaw, Law, ThreeAxisLaw):
