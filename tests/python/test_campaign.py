@@ -168,6 +168,20 @@ def test_runs_that_all_fail_are_an_error(fixed: Scenario, tmp_path: Path) -> Non
     assert table.statistics()["switchings"]["runs"] == 0
 
 
+def test_no_jobs_are_all_cores_everywhere(sampled: Scenario) -> None:
+    short, keys = sampled.with_("duration", 100.0), ["law.relay.k_t"]
+    runs = [flexsc.campaign(short, 5, jobs=jobs) for jobs in (None, 0, 2)]
+    assert all(table["duty"].tolist() == runs[0]["duty"].tolist() for table in runs)
+    swept = [flexsc.sweep(short, keys[0], [0.3, 0.33], jobs=jobs)["duty"].tolist() for jobs in (None, 0, 2)]
+    assert swept == [swept[0]] * 3
+    found = [flexsc.evaluate(short, keys, [[0.3], [0.33]], "duty", jobs=n).tolist() for n in (None, 0, 2)]
+    assert found == [found[0]] * 3
+    copies = [flexsc.Simulators(short, 3, jobs=jobs).step(None, 50.0)["angle"] for jobs in (None, 0, 2)]
+    assert all(angle.tolist() == copies[0].tolist() for angle in copies)
+    rollouts = flexsc.Simulators.of(flexsc.Simulator(short), 2, jobs=0)
+    assert len(rollouts) == 2
+
+
 def test_what_makes_no_campaign(fixed: Scenario) -> None:
     for runs in (0, -1, range(3, 3), range(0, 9, 2)):
         with pytest.raises(ValueError, match="runs must be"):
@@ -175,7 +189,7 @@ def test_what_makes_no_campaign(fixed: Scenario) -> None:
     with pytest.raises(ValueError, match="the number of a run must be from 0"):
         flexsc.campaign(fixed, range(-2, 1))
     for jobs in (-1, 1025):
-        with pytest.raises(ValueError, match="jobs must be from 1 to 1024"):
+        with pytest.raises(ValueError, match="jobs must be from 0 to 1024"):
             flexsc.campaign(fixed, 1, jobs=jobs)
     with pytest.raises(ScenarioError, match="`seed`"):
         flexsc.campaign(fixed, 1, seed=-1)

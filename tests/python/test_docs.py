@@ -15,8 +15,10 @@ import pytest
 from conftest import command_path
 
 ROOT = Path(__file__).parents[2]
+# What package indexes show.
+PACKAGE = ROOT / "crates/py/README.md"
 # `flexsc reproduce` runs the commands of papers.md.
-PAGES = [ROOT / "README.md", *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
+PAGES = [ROOT / "README.md", PACKAGE, *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
 VERBS = (
     "check|completions|cycle|damping|examples|export|identify|layout|log|map|merge|modes|new|observer|plan|plot|"
     "schema|simulate|sweep|top|tune"
@@ -76,3 +78,16 @@ def test_what_a_page_says_runs(page: Path, tmp_path: Path) -> None:
     script = f"BLOCKS = {code(page)!r}\nOPTIONAL = {OPTIONAL!r}\n{RUN}"
     done = run(sys.executable, "-W", "error", "-c", script)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_package_index_can_show_its_page() -> None:
+    assert f'readme = "{PACKAGE.relative_to(ROOT)}"' in (ROOT / "pyproject.toml").read_text("utf-8")
+    text = PACKAGE.read_text("utf-8")
+    links = re.findall(r"\]\(([^)]*)\)", text)
+    assert len(links) > 4
+    for link in links:
+        place = link.removeprefix("https://github.com/flexsc/flexsc/blob/main/")
+        assert place != link, "an index cannot follow a relative link"
+        assert (ROOT / place).is_file(), place
+    assert "{%" not in text
+    assert "<!--" not in text

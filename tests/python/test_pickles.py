@@ -165,3 +165,35 @@ def test_a_torque_that_no_body_survives_ends_the_run() -> None:
     scenario = shipped("relay-fixed").with_("duration", 100.0).with_parts(law=Burst())
     with pytest.raises(flexsc.SimulationError, match="the state is no longer finite"):
         scenario.simulate(log="none")
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        flexsc.Reading(angle=1e-3, rate=2e-6),
+        flexsc.Reading(attitude=[0.6, 0.0, 0.8, 0.0]),
+        flexsc.Reading(vector=[0.0, 0.0, 1.0], inertial=[1.0, 0.0, 0.0], is_direction=True),
+        flexsc.Hold(-4e-5, at_most=4e-4, until=flexsc.parts.Instant(20, 7), state="RACC"),
+        flexsc.ThreeAxisHold([0.01, 0.0, -0.02], until=flexsc.parts.Instant(20, 7), state="FIRE"),
+        flexsc.ThreeAxisHold(moments=[1.0, 0.0, 2.0], after=0.5),
+        flexsc.ThreeAxisHold(accelerations=[1e-4, 0.0, 0.0]),
+        flexsc.Effort([0.01, 0.0, 0.02], after=0.05),
+        flexsc.Effort([0.01]),
+    ],
+    ids=lambda part: type(part).__name__,
+)
+def test_what_parts_return_is_pickled_and_copied(part: object) -> None:
+    names = [name for name in dir(part) if not name.startswith("_")]
+    assert len(names) >= 2
+    for again in (pickled(part), copy.copy(part), copy.deepcopy(part)):
+        for name in names:
+            mine, other = getattr(part, name), getattr(again, name)
+            assert (mine == other, type(mine)) == (True, type(other)), name
+
+
+def test_states_of_runs_say_why_they_are_not_pickled() -> None:
+    sim = flexsc.Simulator(shipped("relay-fixed"))
+    for state in (sim, sim.snapshot(), flexsc.Simulators.of(sim, 2)):
+        with pytest.raises(TypeError, match=rf"cannot pickle {type(state).__name__}, a state of"):
+            pickle.dumps(state)
+    assert pickled(sim.result()).run == 0

@@ -29,6 +29,8 @@ def test_a_point_is_the_same_alone(sampled: Scenario, tmp_path: Path, monkeypatc
     assert part[0] == values[7, 0]
     assert (flexsc.evaluate(short, keys, population, "duty", run=6) != values[:, 0]).any()
     assert list(tmp_path.iterdir()) == []
+    with pytest.raises(ValueError, match="jobs must be from 0 to 1024, got -1"):
+        flexsc.evaluate(short, keys, population, "duty", jobs=-1)
 
 
 def test_what_fails_is_missing(fixed: Scenario) -> None:

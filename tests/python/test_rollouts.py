@@ -198,8 +198,8 @@ def test_other_scenarios_and_numbers_are_refused(uncertain: flexsc.Scenario) -> 
     for copies in (0, 20_000_000, 2.0):
         with pytest.raises(ValueError, match="copies of each of 1 sources must be 1 to 10000000, got"):
             Simulators.of(sim, copies)  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="jobs must be from 1 to 1024, got 0"):
-        Simulators.of(sim, 2, 0)
+    with pytest.raises(ValueError, match="jobs must be from 0 to 1024, got -1"):
+        Simulators.of(sim, 2, -1)
     same(everything(rollouts), before)
     for bad in (rollouts, rollouts.snapshot()):
         with pytest.raises(TypeError, match="cannot pickle"):

@@ -205,7 +205,7 @@ def test_clones_go_their_own_ways(uncertain: flexsc.Scenario) -> None:
         pickle.dumps(sim.snapshot())
 
 
-@pytest.mark.parametrize("jobs", [1, 2, 8])
+@pytest.mark.parametrize("jobs", [0, 1, 2, 8])
 def test_many_are_what_each_is_alone(uncertain: flexsc.Scenario, jobs: int) -> None:
     runs = [4, 0, 7, *range(20, 60)]
     sims = Simulators(uncertain, runs, jobs)
@@ -306,8 +306,8 @@ def test_bad_arguments_are_told(uncertain: flexsc.Scenario) -> None:
         sims.reset(runs=[1.5, 2, 3, 4])
     with pytest.raises(ValueError, match="one or more"):
         Simulators(uncertain, 0)
-    with pytest.raises(ValueError, match="jobs must be"):
-        Simulators(uncertain, 1, jobs=0)
+    with pytest.raises(ValueError, match="jobs must be from 0 to 1024, got 1025"):
+        Simulators(uncertain, 1, jobs=1025)
     assert sim.time == 1.0
     assert (sims.time == 0.0).all(), "nothing moved"
 

@@ -230,6 +230,14 @@ def test_logs_are_the_commands(sampled: Scenario, command: Command, tmp_path: Pa
         flexsc.campaign(short, 3, out=tmp_path / "mine", log="full")
     flexsc.campaign(short, 3, out=tmp_path / "mine", log="full", force=True)
     assert flexsc.read_log(tmp_path / "mine" / names[0]).scenario == short.draw(0)
+
+    def begun(*_: int) -> None:
+        raise AssertionError("logs of more than 20 GB need yes=True")
+
+    many = sampled.with_("duration", 2e4)
+    with pytest.raises(ValueError, match="yes=True"):
+        flexsc.campaign(many, 5000, out=tmp_path / "big", log="full", progress=begun)
+    assert not flexsc.estimate(many, 5000)["needs_yes"], "it is the logs that do"
     wrong: Any
     for wrong in ({"log": "events"}, {"log": "events", "out": "s3://bucket/a"}, {"log": "everything"}):
         with pytest.raises(ValueError, match="log "):

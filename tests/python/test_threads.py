@@ -49,6 +49,82 @@ def test_runs_in_threads_are_the_same(sampled: Scenario) -> None:
     assert got == expected
 
 
+def while_it_advances(advance: Callable[[], object], read: Callable[[], object]) -> int:
+    """Reads while another thread advances, and returns how often the read waited for it."""
+    thread = threading.Thread(target=advance)
+    waited = 0
+    thread.start()
+    while thread.is_alive():
+        began = time.monotonic()
+        read()
+        waited += time.monotonic() - began > 0.02
+    thread.join()
+    return waited
+
+
+def test_a_run_is_read_while_it_advances(fixed: Scenario) -> None:
+    scenario = fixed.with_("duration", 1e7)
+    sim = flexsc.Simulator(scenario)
+    seen: set[float] = set()
+    other = flexsc.Simulator(scenario)
+    copies = flexsc.Simulators(scenario, 2)
+
+    def advance() -> None:
+        for _ in range(4):
+            sim.step(None, 5e5)
+
+    def read() -> None:
+        snapshot = sim.snapshot()
+        assert snapshot.time == other._of(snapshot._native.copy(), scenario, 0).time
+        assert sim.state["angle"].shape == sim.measured["angle"].shape == sim.believed["angle"].shape
+        assert "at" in repr(sim)
+        assert (sim.axes, sim.done, sim.command_unit, sim.command_limit.shape) == (1, False, "rad/s²", (1,))
+        assert sim.clone().time <= sim.time
+        seen.update(copies.restore(sim)["angle"].tolist())
+        seen.add(sim.time)
+
+    assert while_it_advances(advance, read) > 0, "the steps were too short to tell"
+    assert seen >= {2e6}
+    assert {time for time in seen if time >= 1.0} <= {5e5, 1e6, 1.5e6, 2e6}
+
+
+def test_copies_are_read_while_they_advance(fixed: Scenario) -> None:
+    sims = flexsc.Simulators(fixed.with_("duration", 1e7), 8, jobs=2)
+    seen: set[float] = set()
+
+    def advance() -> None:
+        for _ in range(4):
+            sims.step(None, 1e5)
+
+    def read() -> None:
+        seen.update(sims.time.tolist())
+        assert sims.state["angle"].shape == sims.measured["angle"].shape == (8,)
+        assert len(sims) == len(sims.runs) == len(sims.snapshot()) == 8
+        assert not (sims.done | sims.failed).any()
+        assert (sims.axes, sims.command_unit, sims.command_limit.shape) == (1, "rad/s²", (1,))
+        assert sims[3].time in {0.0, 1e5, 2e5, 3e5, 4e5}
+
+    assert while_it_advances(advance, read) > 0, "the steps were too short to tell"
+    assert seen <= {0.0, 1e5, 2e5, 3e5, 4e5}
+    assert sims.time.tolist() == [4e5] * 8
+
+
+def test_a_law_that_reads_its_own_copies_does_not_wait_for_them(fixed: Scenario) -> None:
+    sims: list[flexsc.Simulators] = []
+
+    class Curious(flexsc.Law):
+        period = 1.0
+
+        def decide(self, event: flexsc.parts.Event) -> flexsc.Hold:
+            if sims and event.time > 5.0:
+                assert sims[0].state
+            return flexsc.Hold(0.0)
+
+    sims.append(flexsc.Simulators(fixed.with_parts(law=Curious()), 2, jobs=1))
+    with pytest.raises(flexsc.SimulationError, match="another thread is advancing the runs"):
+        sims[0].step(None, 10.0)
+
+
 @contextmanager
 def interrupted() -> Generator[None, None, None]:
     """What is done within is interrupted soon, as by Ctrl-C, and ends at once."""

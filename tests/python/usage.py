@@ -1,6 +1,7 @@
 """What a user writes, for the type checker; it runs too."""
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +38,8 @@ built: flexsc.Scenario = flexsc.Scenario(
 )
 built = built.with_("law", flexsc.scenario.Pd(k_p=1.0, k_d=1.0, period=0.5))
 hashed: int = hash(built)
+pd: flexsc.scenario.Pd = built.part("law", flexsc.scenario.Pd)
+damped: flexsc.Scenario = built.with_("law", replace(pd, k_d=2.0))
 figures: list[str] = flexsc.plot.figures(result)
 axes = flexsc.plot.draw(result, figures[0])
 axes.set_title("mine")

@@ -62,11 +62,12 @@ from flexsc.parts import (
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
-    from flexsc._linear import Linear, Signal
+    from flexsc._linear import Linear
     from flexsc._margins import Margins
     from flexsc._optimisation import optimise
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
+    from flexsc._signal import Signal
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -156,7 +157,7 @@ _LATER = {
     "Linear": "_linear",
     "Margins": "_margins",
     "Sensitivities": "_sensitivity",
-    "Signal": "_linear",
+    "Signal": "_signal",
     "StateSpace": "structure",
     "Structure": "structure",
     "appendage_from_matrices": "structure",

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
 from flexsc._blocks import AXES, Block, refused
-from flexsc._linear import Linear, Signal
+from flexsc._linear import Linear
+from flexsc._signal import Signal
 
 if TYPE_CHECKING:
     import numpy as np

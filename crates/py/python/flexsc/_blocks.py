@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc._linear import Signal
 from flexsc._sampling import held
+from flexsc._signal import Signal
 
 if TYPE_CHECKING:
     import numpy as np

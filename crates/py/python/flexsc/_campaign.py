@@ -48,7 +48,8 @@ def campaign(
     Args:
         scenario: The scenario from which the runs are drawn.
         runs: The number of runs, or their range (of step 1).
-        jobs: Number of threads, at most 1024; if omitted, one per core, or one in each task of an executor.
+        jobs: Number of threads, at most 1024; 0 for one per core. If omitted, one per core, or one in each
+            task of an executor.
             Parts written in Python run one at a time on any number of threads: with them the default is one.
         seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
@@ -131,7 +132,7 @@ def sweep(
         key: The key, such as `law.relay.k_t`, or a mapping from each key to its values.
         values: The values of a single key, such as `numpy.linspace(0.28, 0.40, 25)`: numbers, words,
             booleans, or whatever else the key accepts. Of an array of shape (runs, n) each row is a value.
-        jobs: Number of threads, at most 1024; if omitted, one per core.
+        jobs: Number of threads, at most 1024; 0, or if omitted, one per core.
         seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
         points: Points that set several keys together: a mapping from each key to a column of values, a
@@ -253,7 +254,9 @@ class _Study(NamedTuple):
             self.draws,
             self.log,
         )
-        threads, report = threads_of(jobs, scenario), callback(progress)
+        # A task of an executor has one thread unless it is to have more.
+        threads = threads_of(1 if jobs is None and executor is not None else jobs, scenario)
+        report = callback(progress)
         if out is None and executor is None and report is None:
             columns, summaries = work.make(work.runs, threads)
             return _checked(Table(work, columns.__getitem__, lambda: summaries))

@@ -65,11 +65,23 @@ class Quadratic:
     """
 
     error: float = 0.1
-    """The error with a cost of 1 (rad)."""
+    """The error with a cost of 1 (rad).
+
+    >>> flexsc.gym.Quadratic(error=0.01).error
+    0.01
+    """
     rate: float = 0.1
-    """The rate with a cost of 1 (rad/s)."""
+    """The rate with a cost of 1 (rad/s).
+
+    >>> flexsc.gym.Quadratic(rate=0.02).rate
+    0.02
+    """
     effort: float = 0.01
-    """The cost of the largest command about one axis."""
+    """The cost of the largest command about one axis.
+
+    >>> flexsc.gym.Quadratic(effort=0.1).effort
+    0.1
+    """
 
     def __call__(self, simulators: Simulators, actions: Array) -> Array:
         """Return the rewards of a step, of shape (n,)."""
@@ -89,9 +101,17 @@ class Beyond:
     """
 
     error: float = np.inf
-    """The largest error (rad)."""
+    """The largest error (rad).
+
+    >>> flexsc.gym.Beyond(error=0.1).error
+    0.1
+    """
     rate: float = np.inf
-    """The largest rate (rad/s)."""
+    """The largest rate (rad/s).
+
+    >>> flexsc.gym.Beyond(rate=0.5).rate
+    0.5
+    """
 
     def __call__(self, simulators: Simulators) -> Mask:
         """Return which episodes end, of shape (n,)."""

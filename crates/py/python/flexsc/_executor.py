@@ -168,7 +168,7 @@ def run(
                 missing,
                 task_s,
                 done,
-                lambda parts: (_write, store.name, work.hash, parts, jobs or 1, log, force),
+                lambda parts: (_write, store.name, work.hash, parts, jobs, log, force),
             )
         else:
 
@@ -177,7 +177,7 @@ def run(
                     (kept.path / _RUNS / name).write_bytes(data)
 
             distribute(
-                executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep
+                executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs), keep
             )
         if kept is None:
             store.finish()

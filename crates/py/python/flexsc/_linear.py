@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from flexsc._sampling import sampled
+from flexsc._signal import Signal, positions
 from flexsc._values import counted
 
 if TYPE_CHECKING:
@@ -20,18 +21,6 @@ if TYPE_CHECKING:
     from flexsc._simulators import Simulators
 
 
-@dataclass(frozen=True)
-class Signal:
-    """A state, input or output of a linear model: its name and its unit.
-
-    >>> flexsc.Signal("angle", "rad").unit
-    'rad'
-    """
-
-    name: str
-    unit: str
-
-
 @dataclass(frozen=True, eq=False)
 class Linear:
     """A linear model: x' = a x + b u, y = c x + d u, or with a sampling period x[k+1] = a x[k] + b u[k].
@@ -42,21 +31,53 @@ class Linear:
     """
 
     a: npt.NDArray[np.float64]
-    """Shape (states, states)."""
+    """Shape (states, states).
+
+    >>> model.a.shape
+    (6, 6)
+    """
     b: npt.NDArray[np.float64]
-    """Shape (states, inputs)."""
+    """Shape (states, inputs).
+
+    >>> model.b.shape                                                   # the torque of the actuator
+    (6, 1)
+    """
     c: npt.NDArray[np.float64]
-    """Shape (outputs, states)."""
+    """Shape (outputs, states).
+
+    >>> model.c.shape
+    (8, 6)
+    """
     d: npt.NDArray[np.float64]
-    """Shape (outputs, inputs)."""
+    """Shape (outputs, inputs).
+
+    >>> model.d.tolist()[0]
+    [0.0]
+    """
     states: tuple[Signal, ...]
-    """The names and units of the states."""
+    """The names and units of the states.
+
+    >>> [state.unit for state in model.states[:2]]
+    ['rad', 'rad/s']
+    """
     inputs: tuple[Signal, ...]
-    """The names and units of the inputs."""
+    """The names and units of the inputs.
+
+    >>> model.inputs
+    (Signal(name='torque', unit='rad/s²'),)
+    """
     outputs: tuple[Signal, ...]
-    """The names and units of the outputs."""
+    """The names and units of the outputs.
+
+    >>> [output.name for output in model.outputs[:2]]
+    ['angle', 'rate']
+    """
     period: float | None = None
-    """Sampling period (s); None for continuous time."""
+    """Sampling period (s); None for continuous time.
+
+    >>> model.period is None, flexsc.Scenario.example("relay-fixed").linearise(period=0.5).period
+    (True, 0.5)
+    """
 
     def eigenfrequencies(self) -> npt.NDArray[np.float64]:
         """Return the natural frequencies |s| of the poles (rad/s), increasing; a pair of poles counts once.
@@ -195,17 +216,7 @@ class Linear:
         Raises:
             KeyError: There is no signal of this name.
         """
-
-        def places(names: Sequence[str] | None, signals: tuple[Signal, ...]) -> list[int]:
-            known = [signal.name for signal in signals]
-            if names is None:
-                return list(range(len(known)))
-            for name in names:
-                if name not in known:
-                    raise KeyError(f"no signal {name!r}; there are {', '.join(known)}")
-            return [known.index(name) for name in names]
-
-        into, out = places(inputs, self.inputs), places(outputs, self.outputs)
+        into, out = positions(inputs, self.inputs), positions(outputs, self.outputs)
         return Linear(
             self.a,
             self.b[:, into],

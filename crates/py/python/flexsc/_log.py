@@ -37,17 +37,28 @@ class Log(Topics):
 
     @property
     def topics(self) -> list[str]:
-        """The names of the topics, without their slash."""
+        """The names of the topics, without their slash.
+
+        >>> log.topics[:2]
+        ['command', 'law']
+        """
         return list(self._names)
 
     @property
     def metadata(self) -> dict[str, str]:
-        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ..."""
+        """The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
+
+        >>> log.metadata["seed"]
+        '1'
+        """
         return self._native.metadata
 
     @cached_property
     def scenario(self) -> Scenario | None:
         """The simulated scenario, if the log contains it.
+
+        >>> log.scenario.duration                                           # s
+        100.0
 
         Raises:
             ScenarioError: This version does not accept it.

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from flexsc import _native as engine
 from flexsc._attitude_loop import attitude_loop
 from flexsc._blocks import AXES, Block, estimator, kind_of, law_about, law_about_three_axes, refused
-from flexsc._linear import Linear, Signal
+from flexsc._linear import Linear
 from flexsc._sampling import whole_and_part
+from flexsc._signal import Signal
 
 if TYPE_CHECKING:
     import numpy as np

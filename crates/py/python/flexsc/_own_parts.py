@@ -46,7 +46,7 @@ def run(
         if progress is not None:
             progress(finished, end - first)
 
-    distribute(executor, parts, task_s, done, lambda some: (_rows, scenario, study, some, jobs or 1), keep)
+    distribute(executor, parts, task_s, done, lambda some: (_rows, scenario, study, some, jobs), keep)
     columns = {name: _joined([rows[part][name] for part in parts]) for name in rows[parts[0]]}
 
     def statistics() -> Any:

@@ -34,7 +34,11 @@ class Plan(Mapping[str, Any]):
 
     def torque(self, time: npt.ArrayLike) -> npt.NDArray[Any]:
         """Return the command at times (s), in their shape (N m, or rad/s² if the hub's motion is
-        prescribed)."""
+        prescribed).
+
+        >>> plan.torque([0.0, 3.0]).round(3).tolist()                        # N m
+        [0.0, 390.102]
+        """
         import numpy as np
 
         times = np.asarray(time, dtype=np.float64)
@@ -46,6 +50,10 @@ class Plan(Mapping[str, Any]):
         Args:
             peak_torque: Plan each for this peak torque (N m), in its own time; if omitted, for the time of
                 the scenario.
+
+        >>> rivals = plan.compare()
+        >>> rivals[0]["command"], round(rivals[0]["peak_torque_nm"], 1)       # N m
+        ('sine p=0', 316.4)
         """
         rows: list[dict[str, Any]] = json.loads(
             engine.rivals_json(self._scenario._native, self._band, peak_torque)

@@ -43,8 +43,8 @@ def evaluate(
         run: Number of the run, which selects the noise.
         missing: The value of a metric at a point where it has none, or that the scenario does not accept, or
             whose run fails: NaN, or `math.inf` for an optimiser that minimises.
-        jobs: Number of threads, at most 1024; if omitted, one per core. With parts written in Python, which
-            run one at a time, the default is one.
+        jobs: Number of threads, at most 1024; 0, or if omitted, one per core. With parts written in Python,
+            which run one at a time, the default is one.
         yes: Run even if the estimate is more than 10 h on one core or 4 GB of memory.
 
     Returns:
@@ -72,8 +72,6 @@ def evaluate(
     points = np.ascontiguousarray(population, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != len(keys):
         raise ValueError(f"population must be of shape (points, {len(keys)}), got {points.shape}")
-    if not np.isfinite(points).all():
-        raise ValueError("population must be finite")
     if not len(points):
         return np.empty((0,) if isinstance(metrics, str) else (0, len(names)))
     design = engine.Design()

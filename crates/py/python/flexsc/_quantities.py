@@ -28,7 +28,11 @@ class Quantities(Lookup["npt.NDArray[np.float64]"]):
     __slots__ = ("_values", "units")
 
     units: Mapping[str, str]
-    """The unit of each quantity, empty for a dimensionless one."""
+    """The unit of each quantity, empty for a dimensionless one.
+
+    >>> sim.state.units["rate"]
+    'rad/s'
+    """
 
     def __init__(self, values: dict[str, npt.NDArray[np.float64]], units: Mapping[str, str]) -> None:
         self._values = values

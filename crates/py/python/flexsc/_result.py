@@ -34,7 +34,11 @@ class Topics(Lookup[Topic]):
 
     @property
     def topics(self) -> list[str]:
-        """The names of the topics, without the slash that they have in a log file."""
+        """The names of the topics, without the slash that they have in a log file.
+
+        >>> run.topics[:2]
+        ['command', 'law']
+        """
         raise NotImplementedError
 
     def _topic(self, name: str) -> Topic:
@@ -113,7 +117,11 @@ class Samples(Topics):
     """
 
     times: npt.NDArray[np.float64]
-    """The times (s), of shape (rows,)."""
+    """The times (s), of shape (rows,).
+
+    >>> run.sample([50.0, 12.5]).times.tolist()
+    [50.0, 12.5]
+    """
 
     def __init__(self, times: npt.NDArray[np.float64], topics: dict[str, Topic]) -> None:
         self.times = times
@@ -126,7 +134,11 @@ class Samples(Topics):
 
     @property
     def topics(self) -> list[str]:
-        """The names of the topics."""
+        """The names of the topics.
+
+        >>> run.sample([50.0, 12.5]).topics[:2]
+        ['law', 'attitude']
+        """
         return list(self._topics)
 
     def _topic(self, name: str) -> Topic:
@@ -148,12 +160,24 @@ class Result(Topics):
     """
 
     scenario: Scenario
-    """The simulated scenario."""
+    """The simulated scenario.
+
+    >>> run.scenario.duration                                           # s
+    100.0
+    """
     run: int
-    """The number of the run."""
+    """The number of the run.
+
+    >>> run.run
+    0
+    """
     metrics: Metrics
     """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
-    `metrics.unit(name)` returns their units."""
+    `metrics.unit(name)` returns their units.
+
+    >>> run.metrics["switchings"], run.metrics.unit("cycle_period_s")
+    (15, 's')
+    """
 
     def __init__(
         self,
@@ -183,7 +207,11 @@ class Result(Topics):
 
     @property
     def topics(self) -> list[str]:
-        """The names of the topics."""
+        """The names of the topics.
+
+        >>> run.topics[:2]
+        ['command', 'law']
+        """
         return list(self._topics)
 
     def _topic(self, name: str) -> Topic:

@@ -35,7 +35,9 @@ def by_role(
         if part is None:
             continue
         if not isinstance(part, kind):
-            found = part.__name__ if isinstance(part, type) else type(part).__name__
+            is_class = isinstance(part, type) and issubclass(part, kind)
+            name = part.__name__ if isinstance(part, type) else type(part).__name__
+            found = f"the class {name}; write {name}()" if is_class else name
             raise TypeError(f"{role} must be an object of a flexsc.{kind.__name__}, got {found}")
         brought.append((role, part))
     return brought

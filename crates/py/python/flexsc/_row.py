@@ -22,9 +22,17 @@ class Row(NamedTuple):
     """
 
     scenario: Scenario
-    """The scenario, with the values of the row in place of the keys that vary."""
+    """The scenario, with the values of the row in place of the keys that vary.
+
+    >>> table.row(2).scenario.get("body.planar.angle") == table["body.planar.angle"][2].item()
+    True
+    """
     run: int
-    """The number of the run, which selects its noise."""
+    """The number of the run, which selects its noise.
+
+    >>> table.row(2).run
+    2
+    """
 
     def simulate(self, log: Detail = "events", yes: bool = False) -> Result:
         """Simulate the run again, to the bit: see `Scenario.simulate`.

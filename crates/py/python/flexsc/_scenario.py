@@ -1,34 +1,29 @@
-"""Scenarios, their results, and logs: topics as mappings of columns."""
+"""Scenarios: their keys and parts, and their runs."""
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Mapping, Sequence
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from flexsc import _keys
 from flexsc import _native as engine
-from flexsc._missing import reading
-from flexsc._named import no_such
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
-from flexsc._signature import LateSignature, of_scenario
-from flexsc._values import arrays, counted, document, plain, run_number, toml
+from flexsc._scenario_file import ScenarioFile
+from flexsc._values import arrays, run_number, toml
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-    from typing_extensions import Unpack
-
     from flexsc._linear import Linear
     from flexsc._open_loop import Break
+    from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
-    from flexsc.scenario import Keys
+
+P = TypeVar("P", bound="Part")
 
 
-class Scenario:
+class Scenario(ScenarioFile):
     """A study: everything that a scenario file contains. It is valid and immutable.
 
     Args:
@@ -48,145 +43,7 @@ class Scenario:
     <flexsc.Scenario ringing: 100 s, 1 mode, seed 0>
     """
 
-    __slots__ = ("_native",)
-    _native: engine.Scenario
-    if not TYPE_CHECKING:
-        # For `help`, and for the completion of keys in notebooks.
-        __signature__ = LateSignature(of_scenario)
-
-    def __init__(
-        self, values: Mapping[str, object] | None = None, name: str = "scenario", **keys: Unpack[Keys]
-    ) -> None:
-        if values is not None and not isinstance(values, Mapping):
-            hint = "Scenario.load reads a file, Scenario.parse a text"
-            raise TypeError(f"a scenario is made of a dict, not of a {type(values).__name__}; {hint}")
-        given = {key: value for key, value in keys.items() if value is not None}
-        text = document(name, {"name": name, **(values or {}), **given})
-        self._native = engine.Scenario.from_values(text, name)
-
-    @classmethod
-    def _of(cls, native: engine.Scenario) -> Scenario:
-        scenario = cls.__new__(cls)
-        scenario._native = native
-        return scenario
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Scenario:
-        """Read a scenario file.
-
-        >>> import flexsc, pathlib, tempfile
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     path = pathlib.Path(folder) / "mine.toml"
-        ...     length = path.write_text(flexsc.Scenario.example("relay-fixed").to_toml())
-        ...     flexsc.Scenario.load(path)
-        <flexsc.Scenario relay-fixed: 20000 s, 2 modes, seed 1>
-
-        Raises:
-            FileNotFoundError: There is no such file. The error is a `ScenarioError` too.
-            ScenarioError: The file cannot be read or is not accepted; the text gives the line, the key and
-                the accepted values.
-        """
-        return cls._of(reading(path, engine.Scenario.load))
-
-    @classmethod
-    def parse(cls, text: str, name: str = "scenario") -> Scenario:
-        """Read a scenario from TOML text. `name` is its name if the text has none; it is also used in errors.
-
-        >>> import flexsc
-        >>> text = "duration = 60.0\\n[body.planar]\\nangle = 1e-3\\n[law.open]"
-        >>> flexsc.Scenario.parse(text, "drifting")
-        <flexsc.Scenario drifting: 60 s, 0 modes, seed 0>
-
-        Raises:
-            ScenarioError: The text is not accepted.
-        """
-        return cls._of(engine.Scenario.parse(text, name))
-
-    @classmethod
-    def example(cls, name: str) -> Scenario:
-        """Read a shipped scenario by its name, one of `flexsc.examples()`.
-
-        >>> import flexsc
-        >>> flexsc.Scenario.example("relay-fixed").duration
-        20000.0
-
-        Raises:
-            KeyError: There is no scenario of this name.
-        """
-        examples = dict(engine.examples())
-        if name not in examples:
-            raise no_such("no example", name, examples)
-        return cls.parse(examples[name], name)
-
-    @property
-    def name(self) -> str:
-        """Name of the study."""
-        return self._native.name
-
-    @property
-    def seed(self) -> int:
-        """Seed of all randomness."""
-        return self._native.seed
-
-    @property
-    def duration(self) -> float:
-        """Simulated time (s)."""
-        return self._native.duration
-
-    @property
-    def remarks(self) -> list[str]:
-        """Remarks on values that are accepted and probably not meant, such as a damping ratio above 1.
-
-        The command prints them as notes before a run.
-
-        >>> scenario = flexsc.Scenario.example("wheel-scheduled-gain")
-        >>> scenario.with_("body.planar.modes[0].damping", 5.0).remarks[0].partition(" and ")[0]
-        '`body.planar.modes[0].damping` is a ratio,'
-        """
-        return self._native.remarks
-
-    @property
-    def modes(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The elastic modes, as arrays of shape (modes,).
-
-        For a single-axis body: `frequency` (rad/s), `period` (s), `damping` (ratio), `gain` (response of the
-        angle per unit of reduced torque), `excitability`, the gain divided by the squared frequency (s²),
-        `effective_inertia`, the gain times the moment of inertia (kg m²), and `free_frequency` and
-        `clamped_frequency` (rad/s), with the hub free and with the hub held; NaN where a value does not
-        apply.
-
-        For a spatial body: `frequency`, `period` and `damping`, and `influence` of shape (modes, 3): the jump
-        of the elastic rate at the gyro per jump of the rigid rate that the jets cause about x, y and z.
-        """
-        from flexsc._modes import modes
-
-        return modes(self._native)
-
-    @property
-    def outputs(self) -> dict[str, npt.NDArray[np.float64]]:
-        """The observed coordinates by name: their weights on rigid angle and modes, of shape (1 + modes,)."""
-        from flexsc._modes import outputs
-
-        return outputs(self._native)
-
-    def to_dict(self) -> dict[str, Any]:
-        """The scenario with all its defaults, as a dictionary that `Scenario(...)` accepts.
-
-        >>> import flexsc
-        >>> flexsc.Scenario.example("relay-fixed").to_dict()["law"]["relay"]["k_t"]
-        0.31
-        """
-        values: dict[str, Any] = plain(self._native.to_json())
-        return values
-
-    def to_toml(self) -> str:
-        """The scenario with all its defaults, as TOML.
-
-        >>> import flexsc
-        >>> flexsc.Scenario.example("relay-fixed").to_toml().splitlines()[0]
-        'name = "relay-fixed"'
-        """
-        return self._native.to_toml()
+    __slots__ = ()
 
     def get(self, key: str) -> Any:
         """Return the value of a key, as in `to_dict`: its default if it is not set, and None without one.
@@ -203,6 +60,38 @@ class Scenario:
             KeyError: There is no such key; the text has those that there are.
         """
         return _keys.get(self, key)
+
+    @overload
+    def part(self, key: str) -> Any: ...
+    @overload
+    def part(self, key: str, kind: type[P]) -> P: ...
+    def part(self, key: str, kind: type[P] | None = None) -> Any:
+        """Return the part at a key as a class of `flexsc.scenario`, with its defaults.
+
+        A list of parts, such as `sensor`, is a list of classes, and a table of them, such as `uncertain`, a
+        dict. A value that is no part is that of `get`. `with_` sets the part again, as it is or changed.
+
+        Args:
+            key: The path of the key, such as `actuator`, `sensor[1]` or `body.planar.modes[0]`.
+            kind: The class that the part has to be; an editor then completes its keys.
+
+        >>> import flexsc
+        >>> from dataclasses import replace
+        >>> from flexsc.scenario import Wheels
+        >>> observer = flexsc.Scenario.example("earth-observer")
+        >>> wheels = observer.part("actuator", Wheels)
+        >>> weaker = observer.with_("actuator", replace(wheels, torque=0.5 * wheels.torque))      # N m
+        >>> weaker.get("actuator.wheels.torque") / observer.get("actuator.wheels.torque")
+        0.5
+
+        Raises:
+            KeyError: There is no such key; the text has those that there are.
+            TypeError: The part is of another class.
+            ValueError: The part is one of your own, which `parts` has.
+        """
+        from flexsc._part_reader import part_at
+
+        return part_at(self, key, kind)
 
     def without(self, *keys: str) -> Scenario:
         """Return a scenario without some keys: what they were for has its default, or is left out.
@@ -260,7 +149,7 @@ class Scenario:
         of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
         actuator of a list keeps its `axes` and its `share`.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
-        repeated without the objects, and campaigns run in this process only.
+        repeated without the objects, and campaigns are not written to directories.
 
         >>> class Off(flexsc.Law):
         ...     period = 1.0
@@ -281,7 +170,11 @@ class Scenario:
 
     @property
     def parts(self) -> dict[str, object]:
-        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`."""
+        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`.
+
+        >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
+        {}
+        """
         return dict(engine.parts_of(self._native))
 
     def linearise(
@@ -440,28 +333,6 @@ class Scenario:
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
         return Result(self, run, log, metrics, final, took, stepped, until)
-
-    def __eq__(self, other: object) -> bool:
-        return self._native == other._native if isinstance(other, Scenario) else NotImplemented
-
-    def __hash__(self) -> int:
-        # Two scenarios are equal with zeros of either sign, but differ as texts.
-        return hash(self.to_toml().replace("-0.0", "0.0"))
-
-    def __repr__(self) -> str:
-        return f"<flexsc.Scenario {self.name}: {self._about()}>"
-
-    def _about(self) -> str:
-        return f"{self.duration:g} s, {counted(self._native.mode_count, 'mode')}, seed {self.seed}"
-
-    def _repr_html_(self) -> str:
-        from flexsc import _html
-
-        values = self.to_dict()
-        figure = engine.modes_figure(self._native)
-        text = _html.folded("all keys", _html.pre(self.to_toml()))
-        shown = _html.picture(figure) if figure else ""
-        return _html.heading(self.name, self._about()) + _html.line(values.get("about", "")) + shown + text
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -41,17 +41,41 @@ class Sensitivities(Lookup["Named[float]"]):
     """
 
     scenario: Scenario
-    """The scenario with its own values."""
+    """The scenario with its own values.
+
+    >>> found.scenario == scenario
+    True
+    """
     varied: list[str]
-    """The keys."""
+    """The keys.
+
+    >>> found.varied
+    ['body.planar.modes[0].frequency']
+    """
     metrics: list[str]
-    """The metrics."""
+    """The metrics.
+
+    >>> found.metrics
+    ['settling_time_s']
+    """
     nominal: Values
-    """The metrics of the scenario itself, of shape (metrics,)."""
+    """The metrics of the scenario itself, of shape (metrics,).
+
+    >>> found.nominal.round(1).tolist()                                # s
+    [354.3]
+    """
     derivatives: Values
-    """The derivatives, of shape (metrics, keys), NaN where a metric is not smooth or has no value."""
+    """The derivatives, of shape (metrics, keys), NaN where a metric is not smooth or has no value.
+
+    >>> found.derivatives.shape
+    (1, 1)
+    """
     errors: Values
-    """Estimated absolute errors of the derivatives, of shape (metrics, keys)."""
+    """Estimated absolute errors of the derivatives, of shape (metrics, keys).
+
+    >>> (found.errors < 1e-3 * abs(found.derivatives)).tolist()
+    [[True]]
+    """
 
     _instead = "use `derivatives`, or index it by metric"
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Literal
+from _thread import RLock
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
@@ -18,6 +19,11 @@ if TYPE_CHECKING:
 
 Event = Literal["sample", "decision", "switching", "window"]
 """The events that a run can be advanced to: see `Simulator.run_until`."""
+
+
+def unpicklable(run: object) -> str:
+    """Return why a run cannot be pickled."""
+    return f"cannot pickle {type(run).__name__}, a state of this process; `Simulator.result()` can be pickled"
 
 
 class Snapshot:
@@ -41,8 +47,15 @@ class Snapshot:
 
     @property
     def time(self) -> float:
-        """The time of the snapshot (s)."""
+        """The time of the snapshot (s).
+
+        >>> sim.snapshot().time == sim.time
+        True
+        """
         return self._native.time
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __repr__(self) -> str:
         return f"<flexsc.Snapshot of {self.scenario.name}, run {self.run}, at {self.time:g} s>"
@@ -53,7 +66,7 @@ class Simulator:
 
     The run stops after the measurements at an instant and before the response to them. A command computed
     from `measured` or `state` therefore acts from that instant on. However a run is divided into steps, the
-    results are bit-identical.
+    results are bit-identical. Another thread that reads the run waits until a step has ended.
 
     Args:
         scenario: The scenario to simulate. Its `[law]` commands the actuator until the first command is
@@ -67,14 +80,24 @@ class Simulator:
     (0.1, (3,))
     """
 
-    __slots__ = ("_fields", "_metrics", "_native", "_row", "run", "scenario")
+    __slots__ = ("_fields", "_lock", "_metrics", "_native", "_row", "run", "scenario")
 
     scenario: Scenario
-    """The simulated scenario."""
+    """The simulated scenario.
+
+    >>> sim.scenario.name
+    'four-clamped-modes'
+    """
     run: int
-    """The number of the run."""
+    """The number of the run.
+
+    >>> sim.run
+    0
+    """
 
     def __init__(self, scenario: Scenario, run: int = 0) -> None:
+        # The engine refuses to be read while it advances, and other threads continue meanwhile.
+        self._lock = RLock()
         self._set(engine.Simulator(scenario._native, run_number(run)), scenario, run_number(run))
 
     def _set(self, native: engine.Simulator, scenario: Scenario, run: int) -> None:
@@ -88,23 +111,39 @@ class Simulator:
     @classmethod
     def _of(cls, native: engine.Simulator, scenario: Scenario, run: int) -> Simulator:
         simulator = cls.__new__(cls)
+        simulator._lock = RLock()
         simulator._set(native, scenario, run)
         return simulator
 
     @property
     def time(self) -> float:
-        """The time of the run (s)."""
-        return self._native.time
+        """The time of the run (s).
+
+        >>> sim.time
+        0.1
+        """
+        with self._lock:
+            return self._native.time
 
     @property
     def done(self) -> bool:
-        """Whether the run has reached the end of the scenario's `duration`."""
-        return self._native.done
+        """Whether the run has reached the end of the scenario's `duration`.
+
+        >>> sim.done
+        False
+        """
+        with self._lock:
+            return self._native.done
 
     @property
     def axes(self) -> int:
-        """The number of values in a command: 1, or 3 about x, y and z."""
-        return self._native.axes
+        """The number of values in a command: 1, or 3 about x, y and z.
+
+        >>> sim.axes
+        3
+        """
+        with self._lock:
+            return self._native.axes
 
     @property
     def command_unit(self) -> str:
@@ -112,16 +151,25 @@ class Simulator:
         hub.
 
         It is empty for the command of a wheel on one axis.
+
+        >>> sim.command_unit
+        'N m'
         """
-        return self._native.command_unit
+        with self._lock:
+            return self._native.command_unit
 
     @property
     def command_limit(self) -> npt.NDArray[np.float64]:
         """The largest command about each axis that the actuator can execute, of shape (axes,); infinite
-        without a limit."""
+        without a limit.
+
+        >>> sim.command_limit.shape
+        (3,)
+        """
         import numpy as np
 
-        return np.array(self._native.command_limit, dtype=np.float64)
+        with self._lock:
+            return np.array(self._native.command_limit, dtype=np.float64)
 
     @property
     def state(self) -> Quantities:
@@ -135,6 +183,9 @@ class Simulator:
         (rad/s), with and without the elastic part at the first sensor; `modes` (m sqrt(kg)) and `mode_rates`
         of shape (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,)
         if there are wheels.
+
+        >>> sim.state["rate"].shape, sim.state.units["rate"]
+        ((3,), 'rad/s')
         """
         return self._fields.view("state", self._observe_row())
 
@@ -144,20 +195,28 @@ class Simulator:
         (rad/s).
 
         NaN before the first sample. Without a sampled sensor they are the true motion at the present time.
+
+        >>> sim.measured["error"].shape
+        (3,)
         """
         return self._fields.view("measured", self._observe_row())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws, from the estimators: the same quantities as `measured`, at the last
-        sample."""
+        sample.
+
+        >>> sim.believed["rate"].shape
+        (3,)
+        """
         return self._fields.view("believed", self._observe_row())
 
     def _observe_row(self) -> npt.NDArray[np.float64]:
-        if self._row is None:
-            self._row = self._native.look()
-            self._row.flags.writeable = False
-        return self._row
+        with self._lock:
+            if self._row is None:
+                self._row = self._native.look()
+                self._row.flags.writeable = False
+            return self._row
 
     def step(self, command: npt.ArrayLike | None, dt: float) -> None:
         """Advance by a time, or to the end of the scenario if that is earlier.
@@ -169,14 +228,20 @@ class Simulator:
                 stays in force, or the law if no command has been given yet.
             dt: The length of the step (s).
 
+        >>> sim.step([0.0, 0.1, 0.0], 2.5)                                  # N m, s
+        >>> round(sim.time, 9)
+        2.6
+
         Raises:
             ValueError: The command has another shape or is not finite, or `dt` is not a positive time.
             SimulationError: The state is no longer finite, or the law switches without end.
         """
-        if command is not None:
-            self._native.steer(parse_commands(command, (self.axes,), self.command_unit))
-        self._row = self._metrics = None
-        self._native.step(dt)
+        with self._lock:
+            native = self._native
+            if command is not None:
+                native.steer(parse_commands(command, (native.axes,), native.command_unit))
+            self._row = self._metrics = None
+            native.step(dt)
 
     def run_until(self, event: float | Event, limit: float = float("inf")) -> bool:
         """Advance to a time or an event, or to the end of the scenario if that is earlier.
@@ -199,13 +264,14 @@ class Simulator:
         (True, True)
         """
         until = limit if isinstance(event, str) else float(event)
-        if not until >= self.time:
-            raise ValueError(f"the run is at {self.time:g} s and cannot go on to {until:g} s")
-        self._row = self._metrics = None
-        if isinstance(event, str):
-            return self._native.run_to_next(event, until)
-        self._native.run_until(min(until, 1e15))
-        return self.time >= until
+        with self._lock:
+            if not until >= self.time:
+                raise ValueError(f"the run is at {self.time:g} s and cannot go on to {until:g} s")
+            self._row = self._metrics = None
+            if isinstance(event, str):
+                return self._native.run_to_next(event, until)
+            self._native.run_until(min(until, 1e15))
+            return self.time >= until
 
     @property
     def metrics(self) -> Metrics:
@@ -223,9 +289,10 @@ class Simulator:
             ValueError: The run is a copy of `Simulators` that did not keep its commands.
             SimulationError: As `step`.
         """
-        if self._metrics is None:
-            self._metrics = self.result("none").metrics
-        return self._metrics
+        with self._lock:
+            if self._metrics is None:
+                self._metrics = self.result("none").metrics
+            return self._metrics
 
     def result(self, log: Detail = "events") -> Result:
         """Return the run so far as a result: metrics, columns, `at`, `sample`, `to_mcap` and figures.
@@ -245,7 +312,9 @@ class Simulator:
             ValueError: The run is a copy of `Simulators` that did not keep its commands.
             SimulationError: As `step`.
         """
-        return self.scenario._simulate(self.run, log, True, self._stepped(), self.time)
+        with self._lock:
+            stepped, until = self._stepped(), self.time
+        return self.scenario._simulate(self.run, log, True, stepped, until)
 
     def to_mcap(self, path: str | os.PathLike[str], log: Logged = "events") -> int:
         """Write the log of the run so far and return the number of bytes.
@@ -269,34 +338,60 @@ class Simulator:
         return engine.to_mcap(self.scenario._native, self.run, log, path, self._stepped())
 
     def _stepped(self) -> engine.Commands:
-        stepped = self._native.commands()
+        with self._lock:
+            stepped = self._native.commands()
         if stepped is None:
             hint = "Simulators(..., keep_commands=True) keeps them"
             raise ValueError(f"the commands to run {self.run} were not kept: {hint}")
         return stepped
 
     def snapshot(self) -> Snapshot:
-        """Save the state of the run, including all future noise, for `restore`."""
-        return Snapshot(self._native.copy(), self.scenario, self.run)
+        """Save the state of the run, including all future noise, for `restore`.
+
+        >>> before = sim.snapshot()
+        >>> sim.step(None, 1.0)
+        >>> sim.restore(before)
+        >>> sim.time
+        0.1
+        """
+        with self._lock:
+            return Snapshot(self._native.copy(), self.scenario, self.run)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Return to a snapshot, which can be used again.
+
+        >>> before = sim.snapshot()
+        >>> sim.step(None, 1.0)
+        >>> sim.restore(before)
+        >>> sim.time == before.time
+        True
 
         Raises:
             ValueError: It is of another scenario.
         """
         if snapshot.scenario != self.scenario:
             raise ValueError(f"the snapshot is of another scenario, {snapshot.scenario.name}")
-        self._set(snapshot._native.copy(), self.scenario, snapshot.run)
+        with self._lock:
+            self._set(snapshot._native.copy(), self.scenario, snapshot.run)
 
     def clone(self) -> Simulator:
-        """Return a copy of the run at the same instant, which is advanced independently."""
-        return self._of(self._native.copy(), self.scenario, self.run)
+        """Return a copy of the run at the same instant, which is advanced independently.
+
+        >>> other = sim.clone()
+        >>> other.step(None, 1.0)
+        >>> round(other.time - sim.time, 9)
+        1.0
+        """
+        with self._lock:
+            return self._of(self._native.copy(), self.scenario, self.run)
 
     __copy__ = clone
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Simulator:
         return self.clone()
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __repr__(self) -> str:
         of = f"{self.scenario.name}, run {self.run}"

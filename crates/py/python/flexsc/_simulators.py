@@ -6,23 +6,23 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc import _native as engine
-from flexsc._quantities import Fields, Quantities, parse_commands
+from flexsc._copies import Copies
+from flexsc._quantities import Quantities, parse_commands
 from flexsc._scenario import Scenario
-from flexsc._simulator import Simulator, Snapshot
-from flexsc._sources import Source, check_scenarios, parse_sources
+from flexsc._simulator import Simulator, Snapshot, unpicklable
+from flexsc._sources import Source, check_scenarios, held, parse_sources
+from flexsc._threads import threads
 from flexsc._values import run_number
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from flexsc._one_copy import OneCopy
-
 # More copies than this are a mistake: each takes some kilobytes.
 _MOST = 10_000_000
 
 
-class Simulators:
+class Simulators(Copies):
     """Many runs of a scenario advanced together in steps, on all cores.
 
     Copy i is run `runs[i]`, with its keys of `[uncertain]` drawn. It is bit-identical to
@@ -32,7 +32,7 @@ class Simulators:
     Args:
         scenario: The scenario from which the runs are drawn.
         runs: The number of runs, or the run number of each.
-        jobs: Number of threads; if omitted, one per core.
+        jobs: Number of threads, at most 1024; 0, or if omitted, one per core.
         seed: Seed that replaces the scenario's.
         keep_commands: Whether copies keep their commands, 40 bytes each, so that `sims[i].metrics`,
             `sims[i].result()` and `sims[i].to_mcap(path)` can repeat their runs.
@@ -46,15 +46,7 @@ class Simulators:
     (100, 4)
     """
 
-    __slots__ = ("_drawn", "_fields", "_native", "_origin", "_rows", "scenario")
-    _native: engine.Simulators | OneCopy
-    # Scenarios of copies: as drawn, or of the states that they were set to.
-    _drawn: dict[int, Scenario]
-    # The scenario of the sources that copies began from.
-    _origin: Scenario
-
-    scenario: Scenario
-    """The scenario from which the runs are drawn."""
+    __slots__ = ()
 
     def __init__(
         self,
@@ -69,19 +61,15 @@ class Simulators:
         if count > _MOST:
             raise ValueError(f"runs must be at most {_MOST}, got {count}")
         numbers = range(run_number(runs)) if isinstance(runs, int) else [run_number(run) for run in runs]
-        threads = _threads(jobs)
+        count_of_threads = threads(jobs, scenario)
         scenario = scenario if seed is None else scenario.with_("seed", seed)
         if not len(numbers):
             raise ValueError("runs must be one or more, got none")
-        self._set(engine.Simulators(scenario._native, list(numbers), threads, keep_commands, True), scenario)
+        self._set(
+            engine.Simulators(scenario._native, list(numbers), count_of_threads, keep_commands, True),
+            scenario,
+        )
         self._raise()
-
-    def _set(self, native: engine.Simulators | OneCopy, scenario: Scenario) -> None:
-        self.scenario = self._origin = scenario
-        self._native = native
-        self._fields = Fields(native.fields)
-        self._rows: npt.NDArray[np.float64] | None = None
-        self._drawn = {}
 
     @classmethod
     def of(
@@ -134,7 +122,7 @@ class Simulators:
         each_copy = [one for one in sources for _ in range(copies)]
         runs = [one.run for one in each_copy]
         simulators = cls.__new__(cls)
-        native = engine.Simulators(scenario._native, runs, _threads(jobs), keep_commands, False)
+        native = engine.Simulators(scenario._native, runs, threads(jobs, scenario), keep_commands, False)
         simulators._set(native, scenario)
         simulators._origin = origin
         simulators.restore(sources if len(sources) == 1 else each_copy)
@@ -150,95 +138,18 @@ class Simulators:
         simulators._raise()
         return simulators
 
-    def __len__(self) -> int:
-        """The number of copies."""
-        return len(self._native)
-
     def __getitem__(self, index: int) -> Simulator:
         """Return a clone of one copy."""
         index = range(len(self))[index]
-        run = int(self.runs[index])
-        return Simulator._of(self._native.one(index), self._scenario_of(index, run), run)
+        with self._lock:
+            run = int(self.runs[index])
+            return Simulator._of(self._native.one(index), self._scenario_of(index, run), run)
 
     def _scenario_of(self, index: int, run: int) -> Scenario:
         """The scenario of a copy, as it is drawn or as it was restored."""
         if index not in self._drawn:
             self._drawn[index] = self.scenario.draw(run)
         return self._drawn[index]
-
-    @property
-    def runs(self) -> npt.NDArray[np.uint64]:
-        """The run number of each copy, of shape (n,)."""
-        return self._native.runs
-
-    @property
-    def time(self) -> npt.NDArray[np.float64]:
-        """The time of each copy (s), of shape (n,)."""
-        return self._native.time
-
-    @property
-    def done(self) -> npt.NDArray[np.bool_]:
-        """Whether each copy has reached its end, of shape (n,). It stays there until it is reset."""
-        return self._native.done
-
-    @property
-    def failed(self) -> npt.NDArray[np.bool_]:
-        """Which copies have failed, of shape (n,). Their values are NaN until they are reset."""
-        import numpy as np
-
-        failed = np.zeros(len(self), dtype=np.bool_)
-        failed[[index for index, _, _ in self._native.failed]] = True
-        return failed
-
-    @property
-    def axes(self) -> int:
-        """The number of values in a command: 1, or 3 about x, y and z."""
-        return self._native.axes
-
-    @property
-    def command_unit(self) -> str:
-        """The unit of commands: see `Simulator.command_unit`."""
-        return self._native.command_unit
-
-    @property
-    def command_limit(self) -> npt.NDArray[np.float64]:
-        """The largest command about each axis for the nominal scenario: see `Simulator.command_limit`."""
-        import numpy as np
-
-        return np.array(self._native.command_limit, dtype=np.float64)
-
-    @property
-    def state(self) -> Quantities:
-        """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
-        return self._fields.view("state", self._observe_row())
-
-    @property
-    def measured(self) -> Quantities:
-        """The latest measurements of the sensors: see `Simulator.measured`."""
-        return self._fields.view("measured", self._observe_row())
-
-    @property
-    def believed(self) -> Quantities:
-        """The input of the laws: see `Simulator.believed`."""
-        return self._fields.view("believed", self._observe_row())
-
-    def _observe_row(self) -> npt.NDArray[np.float64]:
-        if self._rows is None:
-            self._keep(self._native.look())
-        assert self._rows is not None
-        return self._rows
-
-    def _keep(self, rows: npt.NDArray[np.float64]) -> None:
-        rows.flags.writeable = False
-        self._rows = rows
-
-    def _raise(self) -> None:
-        failed = self._native.failed
-        if failed:
-            each = [f"copy {index}, run {run}: {why}" for index, run, why in failed[:5]]
-            more = [f"and {len(failed) - 5} more"] if len(failed) > 5 else []
-            count = f"{len(failed)} of {len(self)} copies cannot go on"
-            raise engine.SimulationError("\n".join([f"{self.scenario.name}: {count}", *each, *more]))
 
     def step(
         self,
@@ -247,6 +158,9 @@ class Simulators:
         mask: npt.NDArray[np.bool_] | None = None,
     ) -> Quantities:
         """Advance all copies by a time. Other Python threads continue meanwhile.
+
+        Threads that read the copies wait for the end of the step; if the scenario has parts written in
+        Python, they get a `RuntimeError` instead.
 
         Args:
             commands: A command for each copy, of shape (n, axes), or (n,) for one axis, as in
@@ -257,17 +171,22 @@ class Simulators:
         Returns:
             The states at the end of the step.
 
+        >>> state = sims.step(numpy.full((100, 3), 0.01), 1.0)              # N m, s
+        >>> state["rate"].shape
+        (100, 3)
+
         Raises:
             ValueError: The commands have another shape or are not finite, or `dt` is not a positive time.
             SimulationError: Copies have failed; the text names them. The others have completed the step:
                 `reset(sims.failed)` restarts the failed ones.
         """
-        native, n = self._native, len(self)
-        if commands is not None:
-            commands = parse_commands(commands, (n, native.axes), native.command_unit)
-        self._keep(native.step(commands, dt, _mask(mask, n)))
-        self._raise()
-        return self.state
+        with self._lock:
+            native, n = self._native, len(self)
+            if commands is not None:
+                commands = parse_commands(commands, (n, native.axes), native.command_unit)
+            self._keep(native.step(commands, dt, _mask(mask, n)))
+            self._raise()
+            return self.state
 
     def reset(
         self,
@@ -285,6 +204,11 @@ class Simulators:
         Returns:
             The states of all copies.
 
+        >>> first = numpy.arange(100) < 10
+        >>> state = sims.reset(first)
+        >>> sims.time[9:11].tolist()
+        [0.0, 0.1]
+
         Raises:
             ValueError: The mask or the run numbers have another shape.
             SimulationError: The keys drawn for a run do not make a valid scenario.
@@ -298,13 +222,14 @@ class Simulators:
                 raise ValueError(f"runs must be {len(self)} whole numbers from 0, got {runs!r}")
             numbers = numbers.astype(np.uint64)
         mask = _mask(mask, len(self))
-        self._keep(self._native.reset(mask, numbers))
-        for index in np.flatnonzero(mask).tolist() if self._drawn and mask is not None else ():
-            self._drawn.pop(index, None)
-        if mask is None:
-            self._drawn.clear()
-        self._raise()
-        return self.state
+        with self._lock:
+            self._keep(self._native.reset(mask, numbers))
+            for index in np.flatnonzero(mask).tolist() if self._drawn and mask is not None else ():
+                self._drawn.pop(index, None)
+            if mask is None:
+                self._drawn.clear()
+            self._raise()
+            return self.state
 
     def snapshot(self) -> list[Snapshot]:
         """Save the state of each copy, for `restore`, `Simulators.of` or `Simulator.restore`.
@@ -318,9 +243,12 @@ class Simulators:
         Raises:
             SimulationError: A copy has failed; the text names it.
         """
-        self._raise()
-        each = enumerate(self.runs.tolist())
-        return [Snapshot(self._native.one(index), self._scenario_of(index, run), run) for index, run in each]
+        with self._lock:
+            self._raise()
+            each = enumerate(self.runs.tolist())
+            return [
+                Snapshot(self._native.one(index), self._scenario_of(index, run), run) for index, run in each
+            ]
 
     def restore(
         self, snapshots: Source | Iterable[Source], mask: npt.NDArray[np.bool_] | None = None
@@ -367,10 +295,15 @@ class Simulators:
         else:
             check_scenarios([sources[index] for index in chosen], accepted, self._drawn.values())
             drawn = {index: sources[index].scenario for index in chosen}
-        self._keep(self._native.restore([one._native for one in sources], [one.run for one in sources], mask))
-        self._drawn.update(drawn)
-        self._raise()
-        return self.state
+        with self._lock, held(sources):
+            native, runs = [one._native for one in sources], [one.run for one in sources]
+            self._keep(self._native.restore(native, runs, mask))
+            self._drawn.update(drawn)
+            self._raise()
+            return self.state
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(unpicklable(self))
 
     def __copy__(self) -> NoReturn:
         # A shallow copy would share the engine: a step of one would advance the other.
@@ -378,15 +311,6 @@ class Simulators:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> NoReturn:
         self.__copy__()
-
-    def __repr__(self) -> str:
-        return f"<flexsc.Simulators of {self.scenario.name}: {len(self)} copies>"
-
-
-def _threads(jobs: int | None) -> int:
-    if jobs is not None and not 1 <= jobs <= 1024:
-        raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
-    return jobs or 0
 
 
 def _mask(mask: npt.NDArray[np.bool_] | None, count: int) -> npt.NDArray[np.bool_] | None:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Generator, Iterable
+from contextlib import ExitStack, contextmanager
 from typing import TypeAlias
 
 from flexsc._scenario import Scenario
@@ -24,6 +25,17 @@ def parse_sources(given: object) -> list[Source]:
             raise TypeError(f"a state is that of a Simulator or a Snapshot, got {type(one).__name__}")
         sources.append(one)
     return sources
+
+
+@contextmanager
+def held(sources: Iterable[Source]) -> Generator[None]:
+    """Keep other threads from advancing the simulators among the sources."""
+    with ExitStack() as locks:
+        simulators = {id(one): one for one in sources if isinstance(one, Simulator)}
+        # In the same order in all threads.
+        for _, one in sorted(simulators.items()):
+            locks.enter_context(one._lock)
+        yield
 
 
 def check_scenarios(

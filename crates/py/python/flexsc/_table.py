@@ -38,9 +38,17 @@ class Table(Columns):
     """
 
     scenario: Scenario
-    """The scenario from which the runs were drawn."""
+    """The scenario from which the runs were drawn.
+
+    >>> table.scenario.name
+    'relay-sampled'
+    """
     varied: list[str]
-    """The keys of the scenario that are varied."""
+    """The keys of the scenario that are varied.
+
+    >>> table.varied[0]
+    'body.planar.angle'
+    """
 
     def __init__(
         self,

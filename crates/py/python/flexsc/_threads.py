@@ -12,6 +12,6 @@ def threads(jobs: int | None, scenario: Scenario) -> int:
     if jobs is None:
         return 1 if scenario.parts else 0
     count = index(jobs)
-    if not (count == 0 or 1 <= count <= 1024):
-        raise ValueError(f"jobs must be from 1 to 1024, got {jobs}")
+    if not 0 <= count <= 1024:
+        raise ValueError(f"jobs must be from 0 to 1024, got {jobs}")
     return count

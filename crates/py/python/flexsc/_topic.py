@@ -29,7 +29,11 @@ class Topic(Columns):
     """
 
     name: str
-    """The name, without the slash that it has in a log file."""
+    """The name, without the slash that it has in a log file.
+
+    >>> command.name
+    'command'
+    """
 
     def __init__(
         self,

@@ -161,6 +161,9 @@ class Metrics(dict[str, Any]):
     def unit(self, name: str) -> str:
         """Return the unit of a metric; empty for a count, a ratio or a word.
 
+        >>> run.metrics.unit("cycle_period_s")
+        's'
+
         Raises:
             KeyError: The run has no such metric.
         """
@@ -168,6 +171,9 @@ class Metrics(dict[str, Any]):
 
     def doc(self, name: str) -> str:
         """Return the meaning of a metric.
+
+        >>> run.metrics.doc("switchings")
+        'Number of switchings of the law'
 
         Raises:
             KeyError: The run has no such metric.

@@ -30,7 +30,7 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
         autoreset_mode: When the next episode starts. `NextStep`: in the step after the end of an episode.
             `SameStep`: in the step that ends the episode; `info["final_obs"]` has its last observation.
             `Disabled`: at `reset` with `options={"reset_mask": mask}`.
-        jobs: Number of threads; if omitted, one per core.
+        jobs: Number of threads; 0, or if omitted, one per core.
         keep_commands: Whether the commands of episodes are kept, 40 bytes each, so that `result` can repeat
             them; with `metrics` they are.
 
@@ -41,6 +41,11 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012
+    """Render modes, of which there are none, and when the next episode starts, for Gymnasium.
+
+    >>> envs.metadata["autoreset_mode"].value
+    'NextStep'
+    """
 
     def __init__(
         self,

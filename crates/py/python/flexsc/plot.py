@@ -72,6 +72,10 @@ def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
         For a run or a log, names such as `angle`; for a campaign, names such as `distribution-gain_final`.
         The names of a directory begin with that of the scenario; with logs it also has a `fan`.
 
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
+    >>> flexsc.plot.figures(run)[:2]
+    ['phase-plane', 'torque']
+
     Raises:
         ValueError: There is nothing to draw, or no such metric.
         LogError: The log file cannot be read.
@@ -93,6 +97,11 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
 
     Returns:
         The axes, in SI units: `axes.plot(time_s, angle_rad)` adds to them.
+
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
+    >>> axes = flexsc.plot.draw(run, "angle")
+    >>> axes.get_xlabel()
+    'time (s)'
 
     Raises:
         ValueError: There is no such figure or panel.
@@ -131,6 +140,11 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
 
     Returns:
         The figure; its `axes` are the panels, from the top.
+
+    >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
+    >>> figure = flexsc.plot.figure(run, "angle")
+    >>> len(figure.axes)
+    1
 
     Raises:
         ValueError: There is no such figure.

@@ -32,21 +32,49 @@ class StateSpace:
     """
 
     frequencies: Numbers
-    """Natural frequencies w (rad/s), increasing, shape (modes,)."""
+    """Natural frequencies w (rad/s), increasing, shape (modes,).
+
+    >>> model.frequencies.round(6).tolist()
+    [2.0]
+    """
     dampings: Numbers
-    """Damping ratios zeta, shape (modes,)."""
+    """Damping ratios zeta, shape (modes,).
+
+    >>> model.dampings.round(6).tolist()
+    [0.005]
+    """
     inputs: Numbers
-    """Influence b of the inputs, shape (modes, inputs)."""
+    """Influence b of the inputs, shape (modes, inputs).
+
+    >>> model.inputs.shape
+    (1, 1)
+    """
     displacements: Numbers
-    """P, what the outputs see of the modal displacements, shape (outputs, modes)."""
+    """P, what the outputs see of the modal displacements, shape (outputs, modes).
+
+    >>> model.displacements.round(6).tolist()
+    [[0.0]]
+    """
     rates: Numbers
-    """V, what they see of the modal rates, shape (outputs, modes)."""
+    """V, what they see of the modal rates, shape (outputs, modes).
+
+    >>> model.rates.round(6).tolist()
+    [[1.0]]
+    """
     deviation: float
     """Largest relative deviation of the transfer function from that of the matrices, at the natural
-    frequencies and between them."""
+    frequencies and between them.
+
+    >>> model.deviation < 1e-9
+    True
+    """
 
     def response(self, frequencies: npt.ArrayLike) -> Complex:
-        """The transfer function at some frequencies (rad/s), shape (frequencies, outputs, inputs)."""
+        """The transfer function at some frequencies (rad/s), shape (frequencies, outputs, inputs).
+
+        >>> abs(model.response([0.0]))[0].round(6).tolist()
+        [[0.0]]
+        """
         import numpy as np
 
         s = 1j * np.atleast_1d(np.asarray(frequencies, dtype=np.float64))[:, None]
@@ -77,6 +105,10 @@ class StateSpace:
             kind: Whether the inputs are forces or torques.
             unit: What one unit of an input is: so many N or N m.
             measures: Whether the outputs are rates (rad/s) or angles (rad); a gyro sees the rates of both.
+
+        >>> structure = model.structure(arm=2.0, inputs=["roll"], outputs=["roll"])      # m
+        >>> structure.frequencies.round(6).tolist()
+        [2.0]
 
         Raises:
             ValueError: Names that are no axes, or outputs that are of the other kind.
@@ -136,6 +168,11 @@ class StateSpace:
             jets: Further keys of `[actuator.jets]`, such as `minimum_on`.
             gyro: Further keys of `[sensor.gyro]`, such as `noise`.
             keys: As of `Structure.scenario`.
+
+        >>> inertia = numpy.diag([900.0, 600.0, 1100.0])                   # kg m²
+        >>> keys = {"thrust": 1.0, "arm": 2.0, "inputs": ["roll"], "outputs": ["roll"]}       # N, m
+        >>> model.scenario(inertia, **keys)
+        <flexsc.Scenario structure: 600 s, 1 mode, seed 0>
 
         Raises:
             ValueError: As of `structure`.

@@ -47,15 +47,35 @@ class Structure:
     """
 
     frequencies: Numbers
-    """Natural frequencies (rad/s), shape (modes,)."""
+    """Natural frequencies (rad/s), shape (modes,).
+
+    >>> structure.frequencies.tolist()
+    [1.3]
+    """
     dampings: Numbers
-    """Damping ratios, shape (modes,)."""
+    """Damping ratios, shape (modes,).
+
+    >>> structure.dampings.tolist()
+    [0.005]
+    """
     positions: Mapping[str, Sequence[float]]
-    """The points by name: where they are from the centre of mass (m)."""
+    """The points by name: where they are from the centre of mass (m).
+
+    >>> structure.positions["tip"]
+    (5, 0, 0)
+    """
     shapes: Mapping[str, Numbers]
-    """For each point, shape (modes, 6): translations (1/sqrt(kg)), then rotations (rad/(m sqrt(kg)))."""
+    """For each point, shape (modes, 6): translations (1/sqrt(kg)), then rotations (rad/(m sqrt(kg))).
+
+    >>> structure.shapes["tip"].shape
+    (1, 6)
+    """
     inertia: Numbers | None = None
-    """Inertia tensor about the centre of mass (kg m²), shape (3, 3), if it is known."""
+    """Inertia tensor about the centre of mass (kg m²), shape (3, 3), if it is known.
+
+    >>> structure.inertia is None
+    True
+    """
 
     def __post_init__(self) -> None:
         modes = len(self.frequencies)
@@ -70,7 +90,11 @@ class Structure:
                 raise ValueError(f"shapes: must have shape ({modes}, 6) at `{point}`, got {shape.shape}")
 
     def keep(self, modes: npt.ArrayLike) -> Structure:
-        """The structure with some of its modes: indices, or a bool for each."""
+        """The structure with some of its modes: indices, or a bool for each.
+
+        >>> structure.keep([0]).frequencies.size
+        1
+        """
         import numpy as np
 
         chosen = np.asarray(modes)
@@ -84,6 +108,10 @@ class Structure:
 
         Args:
             inertia: Inertia tensor about the centre of mass (kg m²); left out, the structure's own.
+
+        >>> inertia = numpy.diag([900.0, 600.0, 1100.0])                   # kg m²
+        >>> structure.body(inertia)["modes"][0]["frequency"]
+        1.3
 
         Raises:
             ValueError: No inertia tensor is known.
@@ -134,6 +162,19 @@ class Structure:
             name: Name of the scenario.
             keys: Further keys at the top, such as `seed`.
 
+        >>> inertia = numpy.diag([900.0, 600.0, 1100.0])                   # kg m²
+        >>> pushes = {"roll": ([0, 1, 0], [0, 0, 1]), "pitch": ([0, 0, 0], [0, 0, -1])}
+        >>> pushes["yaw"] = ([0, 0, 0], [0, 1, 0])
+        >>> keys = {"point": "tip", "thrust": 1.0}                         # N
+        >>> thrusters = [
+        ...     {**keys, "name": axis + name, "offset": offset, "direction": [sign * x for x in direction]}
+        ...     for axis, (offset, direction) in pushes.items()
+        ...     for name, sign in (("+", 1), ("-", -1))
+        ... ]
+        >>> groups = {axis: {"plus": [axis + "+"], "minus": [axis + "-"]} for axis in pushes}
+        >>> structure.scenario(inertia, gyro="tip", jets={"thrusters": thrusters, "groups": groups})
+        <flexsc.Scenario structure: 600 s, 1 mode, seed 0>
+
         Raises:
             ValueError: No inertia tensor is known.
             ScenarioError: A key or a value is not accepted.
@@ -152,7 +193,14 @@ class Structure:
         return Scenario(values, name)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the modes as the CSV file that `modes` of a `[body.spatial]` may name."""
+        """Write the modes as the CSV file that `modes` of a `[body.spatial]` may name.
+
+        >>> import pathlib, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     structure.to_csv(pathlib.Path(folder) / "modes.csv")
+        ...     flexsc.from_csv(pathlib.Path(folder) / "modes.csv").frequencies.tolist()
+        [1.3]
+        """
         write_modes(path, self.body([[1, 0, 0], [0, 1, 0], [0, 0, 1]])["modes"])
 
     def __repr__(self) -> str:

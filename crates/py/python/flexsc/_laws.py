@@ -1,0 +1,291 @@
+"""Laws written in Python, and compiled ones."""
+
+from __future__ import annotations
+
+import ctypes
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from flexsc._own_part import OwnPart
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._native import Authority, Event, Hold, ThreeAxisEvent, ThreeAxisHold
+
+
+class Law(OwnPart):
+    """A control law about one axis; on a three-axis body one copy acts about each axis.
+
+    >>> class Weak(Law):
+    ...     def decide(self, event):
+    ...         return Hold(-1e-6 if event.angle > 0.0 else 1e-6, after=1.0)
+    """
+
+    period: float | None = None
+    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one.
+
+    >>> class Damper(Law):
+    ...     period = 0.25
+    ...     def decide(self, event):
+    ...         return Hold(-30.0 * event.rate)
+    >>> Damper().period
+    0.25
+    """
+    reads: Literal["nothing", "field", "motion", "dominant_mode", "elastic_rates"] = "motion"
+    """The quantities that it reads from an estimator.
+
+    >>> class Detumble(Law):
+    ...     reads = "field"
+    ...     def decide(self, event):
+    ...         return Hold(moment=-1e6 * event.field_rate, after=0.5)     # A m²
+    >>> Detumble.reads
+    'field'
+    """
+    promise: float | None = None
+    """The distance from the goal (rad) within which it keeps the angle, for the metrics; None without a
+    promise.
+
+    >>> class Keeper(Weak):
+    ...     promise = 1e-3
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).with_parts(law=Keeper())
+    >>> scenario.simulate().metrics["goal_band_rad"]
+    0.001
+    """
+    switches: bool = False
+    """Whether the torque changes only together with the state given by a hold, as for a relay.
+
+    >>> class Pushing(Weak):
+    ...     switches = True
+    ...     def decide(self, event):
+    ...         torque, state = (-1e-6, "W-") if event.angle > 0.0 else (1e-6, "W+")       # rad/s²
+    ...         return Hold(torque, after=1.0, state=state)
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0).with_parts(law=Pushing())
+    >>> scenario.simulate()["command"]["state"][0].item()
+    'W+'
+    """
+    tracks: bool = False
+    """Whether it follows a manoeuvre while it lasts; otherwise its goal is the end of the manoeuvre.
+
+    >>> class Following(Weak):
+    ...     tracks = True
+    >>> Following().tracks, Weak().tracks
+    (True, False)
+    """
+    tunable: Mapping[str, float] = MappingProxyType({})
+    """The parameters that an adaptation may tune, by name, with their initial values.
+
+    >>> class Tuned(Weak):
+    ...     tunable = {"strength": 1e-6}
+    >>> Tuned().tunable["strength"]
+    1e-06
+    """
+
+    def start(self, authority: Authority) -> None:
+        """Start a run about the axis `authority.axis`.
+
+        >>> class PerAxis(Weak):
+        ...     def start(self, authority):
+        ...         self.gain = (4.0, 6.0, 5.0)[authority.axis]                # N m/rad, about x, y and z
+        ...     def decide(self, event):
+        ...         return Hold(-self.gain * event.angle - 60.0 * event.rate, after=0.25)
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_("duration", 1.0)
+        >>> run = scenario.with_parts(law=PerAxis()).simulate()
+        """
+
+    @abstractmethod
+    def decide(self, event: Event) -> Hold:
+        """Return the command from now on and the conditions for the next call.
+
+        Called at the start of the run, at the time given by the last hold, and when the angle passes one of
+        its levels: at the exact instant with a continuous sensor, otherwise at the first sample beyond the
+        level.
+
+        >>> class Bouncing(Law):
+        ...     def decide(self, event):
+        ...         if event.angle > 0.0:
+        ...             return Hold(-4e-5, at_most=-4e-4)                      # rad/s², rad
+        ...         return Hold(4e-5, at_least=4e-4)
+        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0)
+        >>> run = scenario.with_parts(law=Bouncing()).simulate(log="full")
+        >>> angle = run["attitude"]["angle_rad"]
+        >>> round(angle.max().item(), 6), round(angle.min().item(), 6)         # rad
+        (0.003645, -0.003237)
+        """
+
+    def tune(self, key: str, value: float) -> None:
+        """Accept the new value of a parameter of `tunable` that an adaptation has changed.
+
+        >>> class Tuned(Weak):
+        ...     tunable = {"strength": 1e-6}
+        ...     strength = 1e-6
+        ...     def tune(self, key, value):
+        ...         self.strength = value
+        >>> law = Tuned()
+        >>> law.tune("strength", 2e-6)
+        >>> law.strength
+        2e-06
+        """
+
+
+class ThreeAxisLaw(OwnPart):
+    """A control law about three axes together.
+
+    >>> class Coupled(ThreeAxisLaw):
+    ...     period = 0.25
+    ...     def decide(self, event):
+    ...         return [-4.0 * angle - 60.0 * rate for angle, rate in zip(event.angles, event.rates)]
+    >>> scenario = flexsc.Scenario.example("attitude-hold").with_parts(law=Coupled())
+    """
+
+    period: float | None = None
+    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one.
+
+    >>> Coupled().period
+    0.25
+    """
+    promise: float | None = None
+    """The distance from the goal (rad) within which it keeps each angle, for the metrics; None without a
+    promise.
+
+    >>> class Keeper(Coupled):
+    ...     promise = 1e-3
+    >>> Keeper().promise
+    0.001
+    """
+    tunable: Mapping[str, float] = MappingProxyType({})
+    """The parameters that an adaptation may tune, by name, with their initial values.
+
+    >>> class Tuned(Coupled):
+    ...     tunable = {"k_p": 4.0}
+    >>> Tuned().tunable["k_p"]
+    4.0
+    """
+
+    def start(self, authorities: Sequence[Authority]) -> None:
+        """Start a run; there is one authority for each axis.
+
+        >>> class Limited(Coupled):
+        ...     def start(self, authorities):
+        ...         self.limits = [authority.accelerations for authority in authorities]       # rad/s²
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_("duration", 1.0)
+        >>> run = scenario.with_parts(law=Limited()).simulate()
+        """
+
+    @abstractmethod
+    def decide(self, event: ThreeAxisEvent) -> ThreeAxisHold | Sequence[float] | npt.NDArray[np.float64]:
+        """Return the torques (N m) about the body axes from now on, of shape (3,).
+
+        `ThreeAxisHold` has accelerations or magnetic moments instead, or the time of the next call. The law
+        is called at the start of the run, and at the time given by the last hold.
+
+        >>> class Tracking(Coupled):
+        ...     def decide(self, event):
+        ...         error, rates = numpy.subtract(event.angles, event.goal_angles), numpy.array(event.rates)
+        ...         return ThreeAxisHold(accelerations=-0.01 * error - 0.1 * rates, after=0.5)     # rad/s²
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_("duration", 1.0)
+        >>> run = scenario.with_parts(law=Tracking()).simulate()
+        """
+
+    def tune(self, key: str, value: float) -> None:
+        """Accept the new value of a parameter of `tunable` that an adaptation has changed.
+
+        >>> class Tuned(Coupled):
+        ...     tunable = {"k_p": 4.0}
+        ...     def tune(self, key, value):
+        ...         self.k_p = value
+        >>> law = Tuned()
+        >>> law.tune("k_p", 5.0)
+        >>> law.k_p
+        5.0
+        """
+
+
+class CompiledLaw(Law):
+    """A law given by a compiled function, such as a `cfunc` of numba or a C function, called without Python.
+
+    The function takes nine arguments and returns nothing; all numbers are doubles:
+
+        void law(double now, double since, double cause, double angle, double rate,
+                 double goal_angle, double goal_rate, double *states, double *hold);
+
+    `now` is the time (s), and `since` the time since the last call, rounded once. `cause` is 0 at the start,
+    1 at the time given by the last hold, 2 when the angle is at least its level, and 3 when it is at most its
+    level. `states` are the law's own values, kept from call to call. The function writes to `hold`: torque
+    (N m), time until the next call (s), the levels `at_least` and `at_most` of the angle (rad) at which it is
+    called, and its state for the log: 0 to 11 for OPEN, PD, W0, RACC, RBRK, W+, LACC, LBRK, W-, COAST, FIRE
+    and BDOT. Each entry is NaN at the call; an entry left at NaN is not set.
+
+    >>> import ctypes
+    >>> kind = ctypes.CFUNCTYPE(None, *[ctypes.c_double] * 7, *[ctypes.POINTER(ctypes.c_double)] * 2)
+    >>> @kind
+    ... def damper(now, since, cause, angle, rate, goal_angle, goal_rate, states, hold):
+    ...     hold[0] = -4.0 * (angle - goal_angle) - 30.0 * (rate - goal_rate)
+    >>> CompiledLaw(damper, period=0.25).period
+    0.25
+
+    Args:
+        function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
+            process.
+        period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
+        states: Its states at the start of a run.
+        promise: The distance from the goal (rad) within which it keeps the angle; None without a promise.
+        switches: Whether its torque changes only together with its state, as for a relay.
+    """
+
+    address: int
+    """The address of the function.
+
+    >>> CompiledLaw(damper).address > 0
+    True
+    """
+    states: tuple[float, ...]
+    """Its states at the start of a run.
+
+    >>> CompiledLaw(damper, period=0.25, states=(0.0, 1.0)).states
+    (0.0, 1.0)
+    """
+
+    def __init__(
+        self,
+        function: object,
+        *,
+        period: float | None = None,
+        states: Sequence[float] = (),
+        promise: float | None = None,
+        switches: bool = False,
+    ) -> None:
+        self._function = function
+        if isinstance(function, int):
+            self.address = function
+        elif isinstance(address := getattr(function, "address", None), int):
+            self.address = address
+        else:
+            self.address = ctypes.cast(function, ctypes.c_void_p).value or 0  # type: ignore[arg-type]
+        self.period, self.states = period, tuple(float(state) for state in states)
+        self.promise, self.switches = promise, switches
+
+    def decide(self, event: Event) -> Hold:
+        """Never called: the engine calls the compiled function instead.
+
+        >>> law = CompiledLaw(damper, period=0.25)
+        >>> scenario = flexsc.Scenario.example("rotation-robust").with_("duration", 1.0).with_parts(law=law)
+        >>> scenario.simulate().metrics["peak_torque_nm"] > 0.0
+        True
+        """
+        raise NotImplementedError("a compiled law is called by its address")
+
+    def copy(self) -> CompiledLaw:
+        """Return the law itself: its states are copied for each run.
+
+        >>> law = CompiledLaw(damper, period=0.25)
+        >>> law.copy() is law
+        True
+        """
+        return self
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("a compiled law is an address in this process and cannot be pickled")
