@@ -32,6 +32,13 @@ pub fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
     numbers.unwrap_or_else(|| panic!("no {name} in {topic}"))
 }
 
+/// Returns the times of the rows of a topic (s).
+pub fn times(trace: &Trace, topic: &str) -> Vec<f64> {
+    let mut topics = trace.clone().into_columns();
+    let (_, columns) = topics.find(|(name, _)| name == &topic[1..]).unwrap_or_else(|| panic!("no {topic}"));
+    columns.numbers("time_s").expect("times").to_vec()
+}
+
 /// Returns a column of numbers of the nested rows of a topic.
 pub fn within<'a>(trace: &'a Trace, topic: &str, rows: &str, name: &str) -> &'a [f64] {
     match trace.topic(topic).and_then(|all| all.get(rows)) {

@@ -1,7 +1,7 @@
 """On-times of canted thrusters for a torque and a force: SciPy's `linprog`, for tests/jets.rs; writes burn.csv.
 
-The torques (N m) are those that the law demands in the run at 1.0 s and 1.5 s; the cycle is 0.5 s, of which the burn
-from 1.25 s on overlaps the first by half. The torque is met first; then the missing force, along each axis, is least,
+The torques (N m) are -200 times the vector part of the attitude in the run at 1.0 s and 1.5 s, which is what its law
+demands; the cycle is 0.5 s, of which the burn from 1.25 s on overlaps the first by half. The torque is met first; then the missing force, along each axis, is least,
 and then the propellant.
 """
 
@@ -15,6 +15,12 @@ FORCES = 10.0 * DIRECTIONS
 TORQUES = np.cross(OFFSETS, FORCES)
 PERIOD = 0.5
 FORCE = np.array([0.0, 0.0, 60.0])
+DEMANDS = np.array(
+    [
+        [-0.19428975589595965, 0.09608617755948236, -0.19466272044727084],
+        [-0.18960335518760352, 0.09607204794108465, -0.1905238612736507],
+    ]
+)
 
 
 def on_times(torque: np.ndarray, overlap: float) -> np.ndarray:
@@ -32,9 +38,8 @@ def on_times(torque: np.ndarray, overlap: float) -> np.ndarray:
 
 
 def main() -> None:
-    demands = np.loadtxt("burn_demands.csv", delimiter=",")
-    times = [on_times(torque, overlap) for torque, overlap in zip(demands, [0.25, 0.5], strict=True)]
-    np.savetxt("burn.csv", np.column_stack([demands, times]), delimiter=",", fmt="%.17g")
+    times = [on_times(torque, overlap) for torque, overlap in zip(DEMANDS, [0.25, 0.5], strict=True)]
+    np.savetxt("burn.csv", np.column_stack([DEMANDS, times]), delimiter=",", fmt="%.17g")
 
 
 if __name__ == "__main__":

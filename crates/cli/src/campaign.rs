@@ -220,7 +220,8 @@ fn table(
         )?;
         table = Some(path.to_owned());
     }
-    let column = |name: &str| -> Result<_, CliError> { Ok(points.column(name).cloned()) };
+    let column =
+        |name: &str| -> Result<_, CliError> { Ok(points.column(name).map(std::borrow::Cow::into_owned)) };
     let points = Points::new((campaign, &job.range), (&statistics, &job.selection), column)?;
     Ok(CampaignReport { runs, statistics, points, failed, only, table })
 }

@@ -54,27 +54,22 @@ impl Burn {
         None
     }
 
-    /// Checks that thrusters can give the direction of each force without a torque; returns the key and the reason.
+    /// Checks that thrusters can push the body along each force without turning it; returns the key and the reason.
     pub(super) fn capability_fault(burns: &[Self], nozzles: &[ThrusterEffect]) -> Option<ConfigError> {
-        let column = |nozzle: &ThrusterEffect| {
-            nozzle.push.torque.iter().chain(nozzle.push.force.iter()).copied().collect()
-        };
-        let programme =
-            LinearProgramme::new(6, nozzles.iter().map(column).collect(), vec![1.0; nozzles.len()]);
         let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
-        burns
-            .iter()
-            .position(|burn| {
-                let demand: Vec<f64> =
-                    [0.0; 3].into_iter().chain(burn.force.iter().map(|force| force.get())).collect();
-                programme.cheapest(&demand, &costs).1 <= 1e-9
-            })
-            .map(|index| {
-                ConfigError::new(
-                    format!("burns[{index}].force"),
-                    "must have a direction in which the thrusters can push the body without turning it",
-                )
-            })
+        let is_beyond = |burn: &Self| {
+            let force = vector(&burn.force);
+            let direction = force.normalize();
+            let along = |nozzle: &ThrusterEffect| nozzle.push.force.dot(&direction);
+            let column =
+                |nozzle: &ThrusterEffect| nozzle.push.torque.iter().copied().chain([along(nozzle)]).collect();
+            let columns = nozzles.iter().map(column).collect();
+            let programme = LinearProgramme::new(4, columns, vec![1.0; nozzles.len()]);
+            programme.cheapest(&[0.0, 0.0, 0.0, force.norm()], &costs).1 <= 1e-9
+        };
+        let index = burns.iter().position(is_beyond)?;
+        let why = "must have a direction in which the thrusters can push the body without turning it";
+        Some(ConfigError::new(format!("burns[{index}].force"), why))
     }
 }
 

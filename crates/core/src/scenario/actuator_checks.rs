@@ -118,7 +118,7 @@ impl ScenarioSpec {
                 .clone()
                 .map(|member| format!("{} of `{}`", member.shares[axis], member.key))
                 .collect();
-            let sum: f64 = serving.map(|member| member.shares[axis]).sum();
+            let sum = serving.map(|member| member.shares[axis]).fold(0.0, |sum, share| sum + share);
             if (sum - 1.0).abs() <= ROUNDING {
                 return None;
             }
