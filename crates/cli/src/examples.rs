@@ -40,6 +40,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "iss-ringdown-off",
     "magnetic-unloading",
     "momentum-unloading",
+    "orbit-correction",
     "panel-deployment",
     "relay-adaptive",
     "relay-fixed",

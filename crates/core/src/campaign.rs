@@ -7,6 +7,7 @@ mod command_log;
 mod contained;
 mod design;
 mod directory;
+mod directory_columns;
 mod draws;
 mod error;
 mod manifest;

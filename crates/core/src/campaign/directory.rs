@@ -39,7 +39,7 @@ use super::manifest::{LARGEST, Manifest};
 use super::parquet::{ParquetFile, parquet_is_built_in};
 use super::part;
 use super::row_maker::{NOTE, RowMaker};
-use super::rows::{ColumnCells, ColumnKind, RunRows, list_element};
+use super::rows::RunRows;
 
 /// Name of the manifest's file.
 pub const MANIFEST: &str = "manifest.toml";
@@ -55,7 +55,7 @@ const LOCK: &str = ".lock";
 const ATTEMPTS: u32 = 10;
 const MOMENT: Duration = Duration::from_millis(20);
 /// Advice for a damaged part.
-const AGAIN: &str = "delete this file and repeat the command: its runs are computed again";
+pub(super) const AGAIN: &str = "delete this file and repeat the command: its runs are computed again";
 
 /// A part's first run and the one after its last, and the size and the time of its file.
 type Whole = BTreeMap<(u64, u64), (u64, Option<SystemTime>)>;
@@ -191,67 +191,6 @@ impl Directory {
         Ok(path)
     }
 
-    /// Returns a column of all existing rows, in the order of their runs; `None` if the campaign has no such column.
-    pub fn column(&self, name: &str) -> Result<Option<ColumnCells>, DirectoryError> {
-        Ok(self.columns(&[name])?.remove(0))
-    }
-
-    /// Returns several columns, or elements `NAME[i]` of columns of lists, opening each part once.
-    pub fn columns<'a>(&self, names: &[&'a str]) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
-        let kind =
-            |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
-        let resolved = |name: &&'a str| match list_element(name).filter(|_| kind(name).is_none()) {
-            Some((list, index)) => (list, Some(index)),
-            None => (*name, None),
-        };
-        let resolved: Vec<(&str, Option<usize>)> = names.iter().map(resolved).collect();
-        let stored: Vec<&str> = resolved.iter().map(|(name, _)| *name).collect();
-        let pick = |((_, element), column): ((&str, Option<usize>), Option<ColumnCells>)| match element {
-            Some(index) => column?.element(index),
-            None => column,
-        };
-        Ok(resolved.into_iter().zip(self.stored_columns(&stored, kind)?).map(pick).collect())
-    }
-
-    /// Returns columns that are stored, opening each part once; `kind` returns the type of a column.
-    fn stored_columns(
-        &self,
-        names: &[&str],
-        kind: impl Fn(&str) -> Option<ColumnKind>,
-    ) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
-        let mut all: Vec<Option<ColumnCells>> =
-            names.iter().map(|name| kind(name).map(ColumnCells::empty)).collect();
-        let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();
-        for runs in self.parts()? {
-            for (all, column) in all.iter_mut().flatten().zip(self.columns_of(&runs, &known)?) {
-                all.append(column);
-            }
-        }
-        Ok(all)
-    }
-
-    /// Returns columns of a part.
-    pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<ColumnCells>, DirectoryError> {
-        let reading = self.open_part(runs)?;
-        names.iter().map(|name| self.column_of(&reading, runs, name)).collect()
-    }
-
-    /// A column of a part that is open.
-    pub(super) fn column_of(
-        &self,
-        reading: &ParquetFile,
-        runs: &Range<u64>,
-        name: &str,
-    ) -> Result<ColumnCells, DirectoryError> {
-        let path = self.file(runs);
-        let column = reading.column(name).map_err(damaged(&path))?;
-        let column = column.ok_or_else(|| invalid_file(&path, format!("has no column `{name}`")))?;
-        if column.len() as u64 == runs.end - runs.start {
-            return Ok(column);
-        }
-        Err(invalid_file(&path, format!("is damaged (`{name}` has {} rows); {AGAIN}", column.len())))
-    }
-
     /// Returns the path of a part's file.
     pub fn file(&self, runs: &Range<u64>) -> PathBuf {
         self.path.join(RUNS).join(part::file_name(runs))
@@ -367,7 +306,7 @@ fn within(path: &Path) -> Result<PathBuf, DirectoryError> {
 }
 
 /// A part that cannot be read: it is damaged, and can be made again.
-fn damaged(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+pub(super) fn damaged(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| match source.kind() {
         io::ErrorKind::InvalidData => invalid_file(path, format!("is damaged ({source}); {AGAIN}")),
         _ => unreadable(path)(source),

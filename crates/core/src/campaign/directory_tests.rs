@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::campaign::design::{Design, DesignBlock};
-use crate::campaign::{Campaign, Merge};
+use crate::campaign::{Campaign, ColumnCells, Merge};
 use crate::metrics::Selection;
 
 const SCENARIO: &str = r#"
