@@ -4,8 +4,8 @@
 `cargo clippy` would check all third-party crates again, which takes four times as long as the lints. Here
 clippy gets the arguments of the compiler for each crate that is built. A warning of either fails the build.
 
-A crate is compiled a second time for its unit tests, which are quick: with less optimisation, which cargo can set for
-a crate, and not for its tests alone. No result depends on how much a crate is optimised.
+A crate is compiled a second time for its unit tests, which are quick: with less optimisation, which cargo can
+set for a crate, and not for its tests alone. No result depends on how much a crate is optimised.
 """
 
 import os

@@ -49,6 +49,7 @@ __all__ = [
     "BangBang",
     "Biquad",
     "BodyKind",
+    "Burn",
     "Choice",
     "ClampedMode",
     "CommandKind",
@@ -728,6 +729,23 @@ class Biquad(Part):
     """b0, b1, b2."""
     a: Vector
     """a1, a2."""
+
+
+class Burn(Part):
+    """Force commanded in an interval.
+
+    Args:
+        from_: Start (s).
+        to: End (s).
+        force: Force on the body, in body axes (N).
+    """
+
+    from_: float
+    """Start (s)."""
+    to: float
+    """End (s)."""
+    force: Vector
+    """Force on the body, in body axes (N)."""
 
 
 class Choice(Part, kw_only=False):
@@ -1647,6 +1665,7 @@ class Jets(Part):
             Default: 0.
         allocation: How the demand is converted into pulses.
         force_free: For `least_propellant`: whether the forces of the pulses must cancel.
+        burns: For `least_propellant`: burns, in which a force is commanded beside the torques.
         groups: For `groups`: the thrusters that act together.
         faults: Intervals in which the jets fail.
     """
@@ -1673,6 +1692,8 @@ class Jets(Part):
     """How the demand is converted into pulses."""
     force_free: bool | None = None
     """For `least_propellant`: whether the forces of the pulses must cancel."""
+    burns: Sequence[Burn] | None = None
+    """For `least_propellant`: burns, in which a force is commanded beside the torques."""
     groups: Groups | None = None
     """For `groups`: the thrusters that act together."""
     faults: Sequence[FailureKind] | None = None
@@ -3128,12 +3149,28 @@ class Stage(Part):
     Args:
         law: The law.
         from_: Start time (s); 0 for the first stage. Default: 0.0.
+        actuators: Kinds of the `[[actuator]]` entries that execute the commands of the law, such as
+            `["wheels"]`; default: all.
     """
 
     law: LawKind
     """The law."""
     from_: float | None = None
     """Start time (s); 0 for the first stage. Default: 0.0."""
+    actuators: Sequence[Literal[
+        "ideal",
+        "hold",
+        "thrusters",
+        "wheel",
+        "wheels",
+        "control_moment_gyros",
+        "jets",
+        "magnetorquers",
+        "own",
+    ]] | None = None
+    """Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`;
+    default: all.
+    """
 
 
 class Stages(Part, kw_only=False):
