@@ -1,7 +1,7 @@
 """On-times of canted thrusters for a torque and a force, by SciPy's `linprog`: burn.csv, for tests/jets.rs.
 
 The torques (N m) are -200 times the vector part of the attitude in the run at 1.0 s and 1.5 s, which is what
-its law demands; the cycle is 0.5 s, of which the burn from 1.25 s on overlaps the first by half. The torque is
+its law demands; the cycle is 0.5 s, half of which the burn from 1.25 s on overlaps at first. The torque is
 met first; then the missing force, along each axis, is least, and then the propellant.
 """
 

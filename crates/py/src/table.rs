@@ -12,5 +12,9 @@ pub fn column(object: &Bound<'_, PyAny>) -> PyResult<ColumnCells> {
     if let Ok(integers) = object.extract::<PyReadonlyArray1<'_, i64>>() {
         return Ok(ColumnCells::Integers(integers.as_array().iter().copied().map(Some).collect()));
     }
+    if let Ok(lists) = object.extract::<Vec<PyReadonlyArray1<'_, f64>>>() {
+        let cell = |list: PyReadonlyArray1<'_, f64>| Some(list.as_array().to_vec());
+        return Ok(ColumnCells::Lists(lists.into_iter().map(cell).collect()));
+    }
     Ok(ColumnCells::Words(object.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
 }

@@ -65,10 +65,7 @@ impl RowMaker {
         for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
             let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
             for ((_, meaning), column) in some.iter().zip(columns(&names)?) {
-                let Some(column) = column else {
-                    all.push(Statistics::from_values(meaning, None, Vec::new()));
-                    continue;
-                };
+                let Some(column) = column else { continue };
                 if !matches!(column, ColumnCells::Lists(_)) {
                     all.push(Statistics::from_values(meaning, None, column.numbers()));
                 }

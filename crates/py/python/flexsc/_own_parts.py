@@ -53,8 +53,7 @@ def run(
         numbers = {
             name: values
             for name, values in columns.items()
-            if (isinstance(values, list) and isinstance(values[0], str))
-            or getattr(values, "dtype", None) in ("float64", "int64")
+            if isinstance(values, list) or getattr(values, "dtype", None) in ("float64", "int64")
         }
         return engine.campaign_statistics(work, numbers, end - first)
 

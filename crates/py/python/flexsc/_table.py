@@ -87,11 +87,16 @@ class Table(Columns):
     def __getitem__(self, column: str) -> npt.NDArray[Any]:
         """Return a column, of shape (rows,), which is read-only: `table[name].copy()` can be changed.
 
+        `table["line_of_sight_rms_rad[0]"]` has an element of each list, NaN where a list has none.
+
         Raises:
             KeyError: There is no such column.
         """
         if column not in self._names:
-            raise no_such("no column", column, self._names)
+            name, _, rest = column.rpartition("[")
+            if name not in self._names or not rest.removesuffix("]").isdecimal():
+                raise no_such("no column", column, self._names)
+            return _elements(self[name], int(rest.removesuffix("]")))
         if column not in self._columns:
             values = _array(column in ("run", "seed", *self.varied), self._read(column))
             if column in self._flags:
@@ -354,6 +359,15 @@ class Table(Columns):
 
     def __repr__(self) -> str:
         return f"<flexsc.Table of {self.scenario.name}: {counted(self.rows, 'run')}>"
+
+
+def _elements(lists: npt.NDArray[Any], index: int) -> npt.NDArray[Any]:
+    """The elements of lists of numbers at an index."""
+    import numpy as np
+
+    values = np.array([row[index] if index < len(row) else np.nan for row in lists], dtype=float)
+    read_only([values])
+    return values
 
 
 def of_directory(path: str | os.PathLike[str], kept: object = None) -> Table:
