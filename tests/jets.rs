@@ -207,7 +207,7 @@ fn a_burn_gives_the_commanded_impulse() {
 #[test]
 fn the_torque_comes_before_the_force() {
     let attitude = "[0.9999988750004219, 0.001, -0.0005, 0.001]";
-    let (_, trace) = flown(&burning("[0.0, 0.0, 60.0]", attitude));
+    let (_, trace) = flown(&burning("[0.0, 0.0, 40.0]", attitude));
     let attitude =
         |name: &str| trace.topic("/pointing").and_then(|rows| rows.numbers(name)).expect("attitudes");
     let times = crate::traces::times(&trace, "/pointing");
@@ -235,6 +235,11 @@ fn burns_that_cannot_be_flown_are_refused() {
         ),
         (good.replace("36.0]", "0.0]"), "burns[0].force", "must not be zero"),
         (good.replace("36.0]", "-36.0]"), "burns[0].force", "without turning it"),
+        (
+            good.replace("36.0]", "36e3]"),
+            "burns[0].force",
+            "at most 40 N, the thrust of all thrusters, got 36000",
+        ),
     ];
     for (text, key, why) in cases {
         let error = Scenario::parse("burn.toml", &text).expect_err(why).to_string();

@@ -14,7 +14,7 @@ DIRECTIONS = np.column_stack([DIRECTIONS, np.full(4, np.sqrt(0.98))])
 FORCES = 10.0 * DIRECTIONS
 TORQUES = np.cross(OFFSETS, FORCES)
 PERIOD = 0.5
-FORCE = np.array([0.0, 0.0, 60.0])
+FORCE = np.array([0.0, 0.0, 40.0])
 DEMANDS = np.array(
     [
         [-0.19428975589595965, 0.09608617755948236, -0.19466272044727084],

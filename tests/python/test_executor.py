@@ -22,7 +22,6 @@ import numpy as np
 import pytest
 from conftest import command_path
 from flexsc import Scenario, Table
-from own import Relay
 
 
 @pytest.fixture(scope="module")
@@ -96,27 +95,6 @@ def test_rows_are_the_same_on_any_executor(study: Scenario, whole: Table, tmp_pa
             study, 600, out=tmp_path / "p", executor=pool, progress=lambda *done: told.append(done)
         )
         assert told == []
-
-
-@pytest.mark.parametrize(("jobs", "threads"), [(None, 1), (0, 0), (1, 1), (3, 3)])
-def test_a_task_has_the_threads_that_are_asked_for(
-    study: Scenario, tmp_path: Path, jobs: int | None, threads: int
-) -> None:
-    """Of the engine 0 threads are one per core: without `jobs` the executor is what takes the cores."""
-
-    class Noting(ThreadPoolExecutor):
-        def submit(self, fn: Any, /, *arguments: Any, **keys: Any) -> Any:
-            given.append([one for one in arguments if type(one) is int])
-            return super().submit(fn, *arguments, **keys)
-
-    given: list[list[int]] = []
-    parts = study.without("uncertain").with_parts(law=Relay(5e-4, 1e-4, 4e-5, 1e-6, 0.31))
-    with Noting(1) as pool:
-        flexsc.campaign(study, 4, jobs, executor=pool)
-        flexsc.campaign(study, 4, jobs, out=tmp_path, executor=pool)
-        flexsc.campaign(parts, 4, jobs, executor=pool)
-    assert len(given) >= 3
-    assert all(numbers == [threads] for numbers in given)
 
 
 def test_a_directory_of_the_command_is_the_same(study: Scenario, whole: Table, tmp_path: Path) -> None:

@@ -4,12 +4,15 @@ import _thread
 import threading
 import time
 from collections.abc import Callable, Generator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import flexsc
 import pytest
 from flexsc import Scenario
+from own import Relay
 
 
 @pytest.mark.parametrize(
@@ -162,3 +165,26 @@ def test_an_identification_is_interrupted() -> None:
 def test_a_table_of_damped_modes_is_interrupted() -> None:
     with interrupted():
         flexsc.relay_damping([1.0] * 100_000, 0.1, period=1e5)
+
+
+@pytest.mark.parametrize(("jobs", "threads"), [(None, 1), (0, 0), (1, 1), (3, 3)])
+def test_a_task_has_the_threads_that_are_asked_for(
+    fixed: Scenario, tmp_path: Path, jobs: int | None, threads: int
+) -> None:
+    """Of the engine 0 threads are one per core: without `jobs` the executor is what takes the cores."""
+
+    class Noting(ThreadPoolExecutor):
+        def submit(self, fn: Any, /, *arguments: Any, **keys: Any) -> Any:
+            given.append([one for one in arguments if type(one) is int])
+            return super().submit(fn, *arguments, **keys)
+
+    given: list[list[int]] = []
+    short = fixed.with_("duration", 800.0)
+    study = short.with_("uncertain", {"law.relay.k_t": {"uniform": [0.3, 0.32]}})
+    parts = short.with_parts(law=Relay(5e-4, 1e-4, 4e-5, 1e-6, 0.31))
+    with Noting(1) as pool:
+        flexsc.campaign(study, 4, jobs, executor=pool)
+        flexsc.campaign(study, 4, jobs, out=tmp_path, executor=pool)
+        flexsc.campaign(parts, 4, jobs, executor=pool)
+    assert len(given) >= 3
+    assert all(numbers == [threads] for numbers in given)

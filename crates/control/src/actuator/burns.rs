@@ -54,10 +54,20 @@ impl Burn {
         None
     }
 
-    /// Checks that thrusters can push the body along each force without turning it; returns the key and the reason.
+    /// Checks that thrusters can push the body along each force without turning it, and that no force exceeds their
+    /// thrust; returns the key and the reason.
     pub(super) fn capability_fault(burns: &[Self], nozzles: &[ThrusterEffect]) -> Option<ConfigError> {
+        let thrust: f64 = nozzles.iter().map(|nozzle| nozzle.thrust).sum();
+        let size = |burn: &Self| vector(&burn.force).norm();
+        if let Some(index) = burns.iter().position(|burn| size(burn) > thrust) {
+            let why = format!(
+                "must be at most {thrust} N, the thrust of all thrusters, got {}",
+                size(&burns[index])
+            );
+            return Some(ConfigError::new(format!("burns[{index}].force"), why));
+        }
         let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
-        let is_beyond = |burn: &Self| {
+        let cannot_push = |burn: &Self| {
             let force = vector(&burn.force);
             let direction = force.normalize();
             let along = |nozzle: &ThrusterEffect| nozzle.push.force.dot(&direction);
@@ -67,7 +77,7 @@ impl Burn {
             let programme = LinearProgramme::new(4, columns, vec![1.0; nozzles.len()]);
             programme.cheapest(&[0.0, 0.0, 0.0, force.norm()], &costs).1 <= 1e-9
         };
-        let index = burns.iter().position(is_beyond)?;
+        let index = burns.iter().position(cannot_push)?;
         let why = "must have a direction in which the thrusters can push the body without turning it";
         Some(ConfigError::new(format!("burns[{index}].force"), why))
     }
@@ -94,9 +104,9 @@ impl BurnProgramme {
         let thruster = |nozzle: &ThrusterEffect| {
             nozzle.push.torque.iter().chain(nozzle.push.force.iter()).copied().collect()
         };
-        // The force that is missing or too large along each axis.
+        // The force that is missing or too large along each axis: at most all that is commanded and all that is given.
         let difference = |index: usize| {
-            let sign = if index.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let sign = if index.is_multiple_of(2) { 2.0 } else { -2.0 };
             (0..6).map(|row| if row == 3 + index / 2 { sign * thrust } else { 0.0 }).collect()
         };
         let columns: Vec<Vec<f64>> = nozzles.iter().map(thruster).chain((0..6).map(difference)).collect();

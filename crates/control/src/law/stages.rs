@@ -45,7 +45,7 @@ impl Stage {
     }
 
     /// Returns true if actuators of a kind execute the commands of the law.
-    pub fn commands(&self, kind: &str) -> bool {
+    pub fn selects(&self, kind: &str) -> bool {
         self.actuators.as_ref().is_none_or(|names| names.iter().any(|name| name.as_str() == kind))
     }
 }

@@ -99,7 +99,7 @@ impl ScenarioSpec {
         }
         let law = stage.law.offers();
         let selected: Vec<&ActuatorMember> =
-            offers.actuators.iter().filter(|member| member.executes && stage.commands(member.kind)).collect();
+            offers.actuators.iter().filter(|member| member.executes && stage.selects(member.kind)).collect();
         if law.commands_moments {
             let has_torquers = selected.iter().any(|member| member.kind == "magnetorquers");
             let unloads = |member: &ActuatorMember| !member.executes && member.kind == "magnetorquers";

@@ -27,7 +27,7 @@ impl ResolvedScenario {
         let alone = |kind: &ActuatorKind| kind.authority(axis, inertia, &placement);
         let members = written.actuator.members();
         let acts = |member: &&AssignedMember<'_>| {
-            member.share(axis) > 0.0 && stage.is_none_or(|stage| stage.commands(member.kind.kind()))
+            member.share(axis) > 0.0 && stage.is_none_or(|stage| stage.selects(member.kind.kind()))
         };
         let acting: Vec<_> = members.iter().filter(acts).collect();
         let ActuatorAuthority { accelerations, width, delay } = match &acting[..] {

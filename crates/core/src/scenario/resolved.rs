@@ -314,7 +314,7 @@ impl ResolvedScenario {
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
         let executing = || members.iter().filter(|member| member.executes());
         let in_stage = |stage: &Stage| {
-            (stage.begins(), executing().map(|member| stage.commands(member.kind.kind())).collect())
+            (stage.begins(), executing().map(|member| stage.selects(member.kind.kind())).collect())
         };
         let stages = scenario.law.stages().iter().filter(|_| scenario.law.selects_actuators());
         Box::new(ActuatorSet::new(settings.len(), started).in_stages(stages.map(in_stage).collect()))
