@@ -277,3 +277,27 @@ fn where_none_can_be_it_is_refused() {
         assert!(words.iter().all(|word| error.contains(word)), "{error}");
     }
 }
+
+/// The elements of its metrics, which are lists, have statistics and figures in a campaign, as numbers have.
+#[test]
+fn campaigns_have_statistics_of_each_line() {
+    let dir = Dir::new();
+    let uncertain = "[uncertain]\n\"body.spatial.attitude_error[0]\" = { uniform = [1e-3, 3e-3] }\n";
+    dir.write("v.toml", format!("{VIBRATING}{uncertain}"));
+    dir.run("simulate v.toml --runs 5 -o mc").exits(0);
+    dir.run("plot mc -o f.svg --metric line_of_sight_peak_rad[2] --what distribution").exits(0);
+    let statistics = table(&dir, "mc/statistics.csv");
+    let row = statistics.iter().find(|row| row["metric"] == "line_of_sight_peak_rad[2]").expect("a row");
+    let peak = |run: u64| {
+        let text = dir.run(&format!("simulate --from mc --row {run} --json --log none")).exits(0).out;
+        let object: serde_json::Value = serde_json::from_str(&text).expect("an object");
+        object["metrics"]["line_of_sight_peak_rad"][2].as_f64().expect("a number")
+    };
+    let peaks: Vec<f64> = (0..5).map(peak).collect();
+    let mean: f64 = row["mean"].parse().expect("a mean");
+    assert!((mean / (peaks.iter().sum::<f64>() / 5.0) - 1.0).abs() < 1e-12, "{mean} {peaks:?}");
+    assert!(peaks.iter().any(|peak| *peak != peaks[0]), "{peaks:?}");
+    dir.run("plot mc -o g.svg --metric line_of_sight_peak_rad[x]")
+        .exits(2)
+        .says(&["no metric `line_of_sight_peak_rad[x]`"]);
+}

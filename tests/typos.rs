@@ -194,4 +194,7 @@ fn what_is_probably_a_mistake_is_remarked() {
         text.split("latency = ").nth(1).and_then(|rest| rest.split([',', ' ']).next()).unwrap_or_default();
     dir.write("l.toml", text.replacen(&format!("latency = {late}"), "latency = 3.3", 1));
     dir.run("check l.toml").exits(0).says(&["remark: `sensor", "latency` is longer than the period"]);
+    let known = "[uncertain]\n\"spacecraft.inertia[0][0]\" = { relative_normal = 0.1 }\n";
+    dir.write("i.toml", format!("{text}\n{known}"));
+    dir.run("check i.toml").exits(0).says(&["remark: `uncertain", "the law knows that of each run"]);
 }

@@ -72,6 +72,19 @@ def test_wrong_populations_are_refused(
         flexsc.evaluate(fixed.with_("duration", 10.0), keys, population, metrics)
 
 
+def test_an_element_of_a_list_is_a_number(fixed: Scenario) -> None:
+    short = fixed.with_("duration", 1000.0)
+    name = "envelope_window_means_rad"
+    found = flexsc.evaluate(short, [GAIN], [[0.3], [0.33]], [f"{name}[0]", f"{name}[1]"])
+    lists = [short.with_(GAIN, gain).simulate(log="none").metrics[name] for gain in (0.3, 0.33)]
+    np.testing.assert_array_equal(found, [list(one[:2]) for one in lists])
+    table = flexsc.sweep(short, GAIN, [0.3, 0.33])
+    np.testing.assert_array_equal(table[f"{name}[1]"], found[:, 1])
+    assert np.isnan(table[f"{name}[999]"]).all()
+    with pytest.raises(KeyError):
+        table[f"{name}[x]"]
+
+
 def test_an_unknown_key_is_an_error(fixed: Scenario) -> None:
     with pytest.raises(ScenarioError, match="k_t"):
         flexsc.evaluate(fixed.with_("duration", 10.0), ["law.relay.k_tt"], [[0.3]], "duty")

@@ -261,10 +261,10 @@ class _Study(NamedTuple):
             columns, summaries = work.make(work.runs, threads)
             return _checked(Table(work, columns.__getitem__, lambda: summaries))
         if executor is not None and out is None and scenario.parts:
-            from flexsc import _own_parts
+            from flexsc import _own_parts_campaign
 
             study = (self.span, self.design.text, names, self.draws)
-            return _checked(_own_parts.run(scenario, study, work, executor, threads, task_s, report))
+            return _checked(_own_parts_campaign.run(scenario, study, work, executor, threads, task_s, report))
         from flexsc._executor import run
 
         return _checked(run(work, out, executor, threads, task_s, force, report, self.log))
