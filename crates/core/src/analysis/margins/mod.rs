@@ -19,11 +19,13 @@ use serde::Serialize;
 pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
 pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
+pub use loci::LociValues;
 pub use poles::{UnstableLoop, eigenvalues};
 
 use super::open_loop::{OpenLoop, TransferMatrices};
 use crossings::SampledTransfer;
 use frequency_response::{largest_gain, unit_circle};
+use loci::loci;
 
 /// Number of largest values on the grid that are refined.
 const REFINED: usize = 3;
@@ -57,12 +59,15 @@ pub struct SignalMargins {
     pub gain_above: Option<f64>,
     /// Smallest phase, of either sign, that makes the loop unstable (rad); pi if there is none.
     pub phase_rad: f64,
-    /// Smallest delay that makes the loop unstable (s); none if there is none.
+    /// Smallest delay that makes the loop unstable (s); none if there is none, or for several samples in a period.
     pub delay_s: Option<f64>,
     /// Modulus margin: smallest distance of the loop transfer from -1.
     pub modulus: PeakMargin,
     /// Disk margin.
     pub disk: DiskMargin,
+    /// Loop transfer over frequency: its value, or its eigenvalues for several samples in a period.
+    #[serde(skip)]
+    pub loci: Vec<LociValues>,
 }
 
 /// Margin that is the inverse of a largest value over frequency.
@@ -101,19 +106,27 @@ impl StabilityMargins {
         };
         let first = opened.signals.first().map_or("", |signal| &signal.name);
         let sensitivity = opened.transfer.sensitivity().ok_or_else(|| failed(first))?;
-        let mut poles = eigenvalues(&sensitivity.a).ok_or_else(|| failed(first))?;
-        let spectral_radius = poles::require_stable(opened, &sensitivity.a, &poles)?;
-        poles.extend(eigenvalues(&opened.transfer.a).unwrap_or_default());
-        let angles = frequency_grid(&poles);
-        let sensitivity = Sensitivity::new(&sensitivity, &angles, opened.period);
+        let closed = eigenvalues(&sensitivity.a).ok_or_else(|| failed(first))?;
+        let spectral_radius = poles::require_stable(opened, &sensitivity.a, &closed)?;
+        let mut others = eigenvalues(&opened.transfer.a).unwrap_or_default();
         let count = opened.signals.len();
         let all: Vec<usize> = (0..opened.transfer.b.ncols()).collect();
-        let mut loops = Vec::with_capacity(count);
+        let mut signals = Vec::with_capacity(count);
         for (index, signal) in opened.signals.iter().enumerate() {
             let own: Vec<usize> = all.iter().copied().filter(|place| place % count == index).collect();
             let transfer = opened.transfer.with_others_closed(&own).ok_or_else(|| failed(&signal.name))?;
-            loops.push(SignalMargins::new(&signal.name, &transfer, opened, &sensitivity, &own));
+            // The loop with the others closed has resonances of its own.
+            others.extend(eigenvalues(&transfer.a).unwrap_or_default());
+            signals.push((own, transfer));
         }
+        let sensitivity = Sensitivity::new(&sensitivity, frequency_grid(&closed, &others), opened.period);
+        let loops = opened.signals.iter().zip(&signals).map(|(signal, (own, transfer))| {
+            let response = FrequencyResponse::new(transfer);
+            let (period, samples) = (opened.period, opened.samples);
+            let transfer = SampledTransfer { response: &response, period, samples };
+            SignalMargins::new(&signal.name, &transfer, &sensitivity, own)
+        });
+        let loops = loops.collect();
         Ok(Self {
             spectral_radius,
             period_s: opened.period,
@@ -125,25 +138,12 @@ impl StabilityMargins {
 }
 
 impl SignalMargins {
-    fn new(
-        signal: &str,
-        transfer: &TransferMatrices,
-        opened: &OpenLoop,
-        sensitivity: &Sensitivity<'_>,
-        own: &[usize],
-    ) -> Self {
-        // The loop with the others closed has resonances of its own.
-        let poles = eigenvalues(&transfer.a).unwrap_or_default();
-        let mut angles = frequency_grid(&poles);
-        angles.extend(sensitivity.angles);
-        angles.sort_by(f64::total_cmp);
-        angles.dedup();
-        let response = FrequencyResponse::new(transfer);
-        let (period, samples) = (opened.period, opened.samples);
-        let crossings = Crossings::find(&SampledTransfer { response: &response, period, samples }, &angles);
+    fn new(signal: &str, transfer: &SampledTransfer<'_>, sensitivity: &Sensitivity, own: &[usize]) -> Self {
+        let loci = loci(sensitivity.loop_transfers(own));
+        let crossings = Crossings::find(transfer, &loci);
         let factors = || crossings.phase.iter().map(|crossing| crossing.factor);
         let phases = crossings.gain.iter().map(|crossing| crossing.phase_rad.abs());
-        let delays = crossings.gain.iter().map(|crossing| crossing.delay_s);
+        let delays = crossings.gain.iter().filter_map(|crossing| crossing.delay_s);
         Self {
             signal: signal.to_owned(),
             gain_below: factors().filter(|factor| *factor < 1.0).fold(0.0, f64::max),
@@ -153,24 +153,36 @@ impl SignalMargins {
             modulus: sensitivity.modulus(own),
             disk: sensitivity.disk(own),
             crossings,
+            loci,
         }
     }
 }
 
 /// Sensitivity of all signals over a grid of angles.
-struct Sensitivity<'a> {
+struct Sensitivity {
     response: FrequencyResponse,
-    angles: &'a [f64],
+    angles: Vec<f64>,
     /// Value at each angle; none at a pole.
     values: Vec<Option<DMatrix<Complex<f64>>>>,
     period: f64,
 }
 
-impl<'a> Sensitivity<'a> {
-    fn new(transfer: &TransferMatrices, angles: &'a [f64], period: f64) -> Self {
+impl Sensitivity {
+    fn new(transfer: &TransferMatrices, angles: Vec<f64>, period: f64) -> Self {
         let response = FrequencyResponse::new(transfer);
-        let values = angles.iter().map(|angle| response.at(unit_circle(*angle))).collect();
+        let values = angles.iter().map(|angle| response.scan(unit_circle(*angle))).collect();
         Self { response, angles, values, period }
+    }
+
+    /// Returns the loop transfer of some signals at each angle, with the loops of the others closed: S^-1 - 1 of their
+    /// block of the sensitivity S.
+    fn loop_transfers(&self, own: &[usize]) -> impl Iterator<Item = (f64, DMatrix<Complex<f64>>)> {
+        self.angles.iter().zip(&self.values).filter_map(|(angle, value)| {
+            let value = value.as_ref()?;
+            let own = DMatrix::from_fn(own.len(), own.len(), |row, column| value[(own[row], own[column])]);
+            let one = DMatrix::identity(own.nrows(), own.ncols());
+            Some((*angle, own.try_inverse()? - one))
+        })
     }
 
     /// Returns the modulus margin of some signals, 1/max s1(S).

@@ -2,6 +2,7 @@
 
 use flexsc_numerics::exponential::exponential;
 use nalgebra::DMatrix;
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
 /// Delay as whole periods and the rest.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -77,13 +78,26 @@ impl SampledSystem {
 }
 
 /// Returns the motion over a time (s): the transition of the state, and the response to inputs that are held.
+///
+/// The system is balanced first, by powers of 2: an exponential loses the digits by which its norm exceeds the
+/// frequencies.
 pub fn held(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> (DMatrix<f64>, DMatrix<f64>) {
     let (order, count) = b.shape();
+    let mut balanced = a * time;
+    let units = balance_parlett_reinsch(&mut balanced);
+    let mut forced = DMatrix::from_fn(order, count, |row, column| b[(row, column)] * time / units[row]);
+    let size = forced.amax();
+    let scale = if size > 0.0 && size.is_finite() { libm::exp2(libm::floor(libm::log2(size))) } else { 1.0 };
+    forced /= scale;
     let mut whole = DMatrix::zeros(order + count, order + count);
-    whole.view_mut((0, 0), (order, order)).copy_from(&(a * time));
-    whole.view_mut((0, order), (order, count)).copy_from(&(b * time));
+    whole.view_mut((0, 0), (order, order)).copy_from(&balanced);
+    whole.view_mut((0, order), (order, count)).copy_from(&forced);
     let whole = exponential(&whole);
-    (whole.view((0, 0), (order, order)).into_owned(), whole.view((0, order), (order, count)).into_owned())
+    let flow =
+        DMatrix::from_fn(order, order, |row, column| whole[(row, column)] * units[row] / units[column]);
+    let forced =
+        DMatrix::from_fn(order, count, |row, column| whole[(row, order + column)] * units[row] * scale);
+    (flow, forced)
 }
 
 #[cfg(test)]
