@@ -29,7 +29,7 @@ fn loop_break(name: &str) -> LoopBreak {
 /// Returns the spectral radius of the closed loop.
 fn closed_radius(opened: &OpenLoop) -> f64 {
     let values = eigenvalues(&opened.transfer.sensitivity().expect("exists").a).expect("converges");
-    values.iter().map(|value| libm::hypot(value.re, value.im)).fold(0.0, f64::max)
+    values.iter().map(|value| value.re.hypot(value.im)).fold(0.0, f64::max)
 }
 
 #[test]
@@ -60,8 +60,7 @@ fn loops_are_those_that_numpy_assembles() {
         // Poles that coincide have fewer digits.
         assert!((radius - number(cells[4])).abs() < 1e-10 * radius, "{case}: radius {radius} {}", cells[4]);
         let angle = number(cells[5]) * std::f64::consts::PI;
-        let value =
-            FrequencyResponse::new(&opened.transfer).at(Complex::new(libm::cos(angle), libm::sin(angle)));
+        let value = FrequencyResponse::new(&opened.transfer).at(Complex::new(angle.cos(), angle.sin()));
         let inputs = DMatrix::from_fn(opened.transfer.b.ncols(), 1, |row, _| {
             Complex::new(1.0 / (1.0 + row as f64), 0.0)
         });
@@ -70,7 +69,7 @@ fn loops_are_those_that_numpy_assembles() {
         assert_eq!(expected.len(), 2 * shown.nrows());
         let size = expected.iter().fold(0.0, |most: f64, part| most.max(part.abs()));
         for (row, part) in shown.iter().enumerate() {
-            let off = libm::hypot(part.re - expected[2 * row], part.im - expected[2 * row + 1]);
+            let off = (part.re - expected[2 * row]).hypot(part.im - expected[2 * row + 1]);
             // Two integrators lose digits at low frequencies.
             let bound = 1e-12 * (1.0 + 1e-4 / (angle * angle));
             assert!(off < bound * size, "{case} at {}: output {row} is off by {:e}", cells[5], off / size);

@@ -70,7 +70,9 @@ def variants() -> dict[str, flexsc.Scenario]:
     return {
         "kalman-late": planar,
         "kalman-hub": planar.with_("estimator.kalman.feeds", "hub"),
-        "difference-late": wheel.with_({"actuator.wheel.delay": 0.12, "law.pd.differentiation": "difference"}),
+        "difference-late": wheel.with_(
+            {"actuator.wheel.delay": 0.12, "law.pd.differentiation": "difference"}
+        ),
         "compensator": clamped.with_("law", {"state_space": compensator}),
         "accelerations": clamped.with_("law", {"state_space": compensator | {"command": "acceleration"}}),
         "observer-late": observer.with_(
@@ -80,7 +82,9 @@ def variants() -> dict[str, flexsc.Scenario]:
                 "actuator": {"wheel": {"gain": 1.0, "delay": 0.3}},
             }
         ),
-        "observer-slow-gyro": observer.with_({"sensor[0].gyro.period": 0.2, "sensor[1].star_tracker.latency": 0.7}),
+        "observer-slow-gyro": observer.with_(
+            {"sensor[0].gyro.period": 0.2, "sensor[1].star_tracker.latency": 0.7}
+        ),
     }
 
 

@@ -53,23 +53,12 @@ impl BreakPoint {
             Self::Measurement => LoopBreak::Measurement,
         }
     }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Command => "command",
-            Self::Torque => "torque",
-            Self::Measurement => "measurement",
-        }
-    }
 }
 
 /// Margins of the loop of a scenario.
 pub struct LoopMargins {
     /// Name of the scenario.
     name: String,
-    opened: BreakPoint,
-    /// Samples of the law in a period of the loop.
-    samples: usize,
     margins: StabilityMargins,
     units: Units,
 }
@@ -81,8 +70,7 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         .map_err(|fault| ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })?;
     let margins =
         StabilityMargins::new(&opened).map_err(|fault| CliError::Arguments(format!("{name}: {fault}")))?;
-    let samples = opened.samples;
-    Ok(LoopMargins { name, opened: args.opened, samples, margins, units: args.units.units })
+    Ok(LoopMargins { name, margins, units: args.units.units })
 }
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
@@ -133,7 +121,7 @@ impl LoopMargins {
 
     /// Returns a delay; nothing for several samples in a period, where a delay is more than a phase.
     fn delay(&self, delay: Option<f64>) -> String {
-        if self.samples > 1 { String::new() } else { number_or_none(delay, digits) }
+        if self.margins.samples > 1 { String::new() } else { number_or_none(delay, digits) }
     }
 
     /// Returns the cells of the modulus margin and the disk margin, with their frequencies.
@@ -215,10 +203,7 @@ impl LoopMargins {
 
 impl Results for LoopMargins {
     fn json(&self) -> Vec<Json> {
-        let mut table = json!(self.margins);
-        table["loop"] = json!(self.opened.name());
-        table["samples"] = json!(self.samples);
-        vec![with_scenario_name(&self.name, table)]
+        vec![with_scenario_name(&self.name, json!(self.margins))]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -226,9 +211,9 @@ impl Results for LoopMargins {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let StabilityMargins { spectral_radius, period_s, loops, .. } = &self.margins;
-        let name = self.opened.name();
-        let samples = match self.samples {
+        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } = &self.margins;
+        let name = opened.name();
+        let samples = match *samples {
             1 => String::new(),
             count => format!(", {}", counted(count, "sample") + " of the law"),
         };

@@ -40,7 +40,7 @@ pub fn loci(transfers: impl Iterator<Item = (f64, DMatrix<Complex<f64>>)>) -> Ve
     let mut found: Vec<LociValues> = Vec::new();
     for (angle, transfer) in transfers {
         let Some(mut here) = values(transfer) else { continue };
-        let largest = here.iter().map(|value| value.norm_sqr()).fold(0.0, f64::max);
+        let largest = here.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
         for value in here.iter_mut().filter(|value| value.norm_sqr() < largest / (WIDEST * WIDEST)) {
             *value = Complex::ZERO;
         }

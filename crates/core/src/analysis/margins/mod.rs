@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
 pub use frequency_grid::frequency_grid;
@@ -22,7 +22,7 @@ pub use frequency_response::FrequencyResponse;
 pub use loci::LociValues;
 pub use poles::{UnstableLoop, eigenvalues};
 
-use super::open_loop::{OpenLoop, TransferMatrices};
+use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 use crossings::SampledTransfer;
 use frequency_response::{largest_gain, unit_circle};
 use loci::loci;
@@ -35,14 +35,24 @@ const REFINED: usize = 3;
 pub struct StabilityMargins {
     /// Largest magnitude of a pole of the closed loop.
     pub spectral_radius: f64,
+    /// Point at which the loop is cut open.
+    #[serde(rename = "loop", serialize_with = "break_name")]
+    pub opened: LoopBreak,
     /// Period after which the loop repeats (s).
     pub period_s: f64,
+    /// Samples of the law in a period.
+    pub samples: usize,
     /// Margins of each signal at the break, with the loops of the others closed.
     pub loops: Vec<SignalMargins>,
     /// Modulus margin of all signals together.
     pub modulus: PeakMargin,
     /// Disk margin of all signals together.
     pub disk: DiskMargin,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn break_name<S: Serializer>(opened: &LoopBreak, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(opened.name())
 }
 
 /// Margins of one signal at the break.
@@ -129,7 +139,9 @@ impl StabilityMargins {
         let loops = loops.collect();
         Ok(Self {
             spectral_radius,
+            opened: opened.opened,
             period_s: opened.period,
+            samples: opened.samples,
             loops,
             modulus: sensitivity.modulus(&all),
             disk: sensitivity.disk(&all),

@@ -79,8 +79,7 @@ fn largest_signal(opened: &OpenLoop, closed: &DMatrix<f64>, pole: Complex<f64>) 
     let vector = eigenvector(closed, pole)?;
     let shown = opened.transfer.c.map(|entry| Complex::new(entry, 0.0)) * vector;
     let count = opened.signals.len();
-    let size =
-        |signal: usize| shown.iter().skip(signal).step_by(count).map(|part| part.norm_sqr()).sum::<f64>();
+    let size = |signal: usize| shown.iter().skip(signal).step_by(count).map(Complex::norm_sqr).sum::<f64>();
     let largest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
     Some(opened.signals[largest].name.clone())
 }

@@ -38,6 +38,25 @@ pub enum LoopBreak {
     Measurement,
 }
 
+impl LoopBreak {
+    /// All points.
+    pub const ALL: [Self; 3] = [Self::Command, Self::Torque, Self::Measurement];
+
+    /// Returns the point of this name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|point| point.name() == name)
+    }
+
+    /// Returns the name of the point.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Command => "command",
+            Self::Torque => "torque",
+            Self::Measurement => "measurement",
+        }
+    }
+}
+
 /// Loop that is cut open, with the sign of negative feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenLoop {
@@ -47,6 +66,8 @@ pub struct OpenLoop {
     pub states: Vec<Signal>,
     /// Signals at the break, of one sample of the law: inputs and outputs in this order, sample after sample.
     pub signals: Vec<Signal>,
+    /// Point at which the loop is cut open.
+    pub opened: LoopBreak,
     /// Period after which the loop repeats (s).
     pub period: f64,
     /// Samples of the law in a period.
@@ -97,7 +118,7 @@ impl OpenLoop {
         let law = AxisLaws::new(scenario, &body)?;
         let has_filter = parts.attitude.is_some();
         let parts = LoopParts { scenario, body, actuators, parts, law, opened };
-        if has_filter { multi_rate::lifted_loop(parts) } else { uniform_rate::sampled_loop(parts) }
+        if has_filter { multi_rate::lifted_loop(&parts) } else { uniform_rate::sampled_loop(&parts) }
     }
 }
 

@@ -109,7 +109,7 @@ impl LoopRows {
 }
 
 /// Returns the loop, cut open.
-pub fn lifted_loop(parts: LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
+pub fn lifted_loop(parts: &LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
     if parts.opened == LoopBreak::Measurement {
         let why = "reads gyro and attitude sensor: cut its loop open at the command or the torque";
         return Err(ConfigError::new("estimator.attitude", why));
@@ -119,13 +119,13 @@ pub fn lifted_loop(parts: LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
     };
     let order = parts.body.a.nrows();
     let filter = AttitudeRows::new(filter, order);
-    let schedule = Schedule::new(&parts, &filter)?;
-    let states = states(&parts, &filter, &schedule);
+    let schedule = Schedule::new(parts, &filter)?;
+    let states = states(parts, &filter, &schedule);
     let size = states.len();
     let count = usize::try_from(schedule.whole / schedule.step).unwrap_or(1);
     let rows = DMatrix::identity(size, size + 3 * count);
-    let mut rows = LoopRows::start(&rows, &parts, filter);
-    rows.run(&parts, &schedule, size);
+    let mut rows = LoopRows::start(&rows, parts, filter);
+    rows.run(parts, &schedule, size);
     let end = rows.state();
     let out = if parts.opened == LoopBreak::Torque { parts.actuators.gain } else { 1.0 };
     let outputs = stacked(&rows.commands.iter().collect::<Vec<_>>()) * -out;
@@ -139,6 +139,7 @@ pub fn lifted_loop(parts: LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
         },
         states: kept.iter().map(|place| states[*place].clone()).collect(),
         signals: parts.signals(),
+        opened: parts.opened,
         period: seconds(schedule.whole),
         samples: count,
     })

@@ -61,8 +61,8 @@ impl Controller {
 }
 
 /// Returns the loop, cut open.
-pub fn sampled_loop(parts: LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
-    let Controller { block, torque } = Controller::new(&parts)?;
+pub fn sampled_loop(parts: &LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
+    let Controller { block, torque } = Controller::new(parts)?;
     let (period, delay) = (parts.law.period.seconds(), parts.actuators.delay);
     let body = &parts.body;
     let plant = SampledSystem::new(&body.a, &body.b, period, delay);
@@ -98,5 +98,12 @@ pub fn sampled_loop(parts: LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
     let states = body.states.iter().cloned().chain(waiting).chain(block_states(&block)).collect();
     let signals = parts.signals();
     let d = DMatrix::zeros(c.nrows(), b.ncols());
-    Ok(OpenLoop { transfer: TransferMatrices { a, b, c: -c, d }, states, signals, period, samples: 1 })
+    Ok(OpenLoop {
+        transfer: TransferMatrices { a, b, c: -c, d },
+        states,
+        signals,
+        opened: parts.opened,
+        period,
+        samples: 1,
+    })
 }
