@@ -291,7 +291,7 @@ fn gain_margins_are_where_poles_leave_the_unit_circle() {
     assert!(limits >= 12, "{limits}");
 }
 
-/// Modulus and disk margins by the norms of SLICOT: `tests/golden/disk_margin_oracle.py`.
+/// Modulus and disk margins by the norms of SLICOT: `tests/golden/disk_margin_reference.py`.
 #[test]
 fn modulus_and_disk_margins_are_norms_of_slicot() {
     for (name, rows) in golden("disk_margins") {
@@ -321,7 +321,7 @@ fn golden(table: &str) -> BTreeMap<String, Vec<Vec<String>>> {
     found
 }
 
-/// Gains and phases by the poles of loops that are off, as Python finds them: `tests/golden/open_loop_oracle.py`.
+/// Gains and phases by the poles of loops that are off, as Python finds them: `tests/golden/open_loop_reference.py`.
 #[test]
 fn margins_are_those_of_the_poles_of_loops_that_are_off() {
     for (name, rows) in golden("margins") {

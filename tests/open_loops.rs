@@ -1,4 +1,4 @@
-//! Opened loops against Python's assembly with NumPy: `tests/golden/open_loop_oracle.py`.
+//! Opened loops against Python's assembly with NumPy: `tests/golden/open_loop_reference.py`.
 
 use std::fs;
 use std::path::PathBuf;

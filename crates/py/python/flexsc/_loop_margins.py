@@ -27,7 +27,7 @@ class LoopMargins:
 
     gain_crossings: dict[str, npt.NDArray[np.float64]]
     """Where the loop gain is 1, columns of shape (crossings,): `frequency` (rad/s), `phase` (rad), the phase
-    margin from -pi to pi, negative for a lead; `delay` (s), NaN for several samples of the law in a period."""
+    margin from -pi to pi, negative for a lead; `delay` (s), NaN for several samples in a period."""
     phase_crossings: dict[str, npt.NDArray[np.float64]]
     """Where the loop transfer is real and negative, columns of shape (crossings,): `frequency` (rad/s) and
     `factor`, the gain margin."""
@@ -46,8 +46,8 @@ class LoopMargins:
     modulus_frequency: float
     """Frequency (rad/s) at which the modulus margin is attained."""
     disk: float
-    """Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2), at
-    once."""
+    """Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2),
+    at once."""
     disk_frequency: float
     """Frequency (rad/s) at which the disk margin is attained."""
 
@@ -72,7 +72,7 @@ class StabilityMargins:
     loops: dict[str, LoopMargins]
     """Margins of each signal at the break, with the loops of the others closed."""
     modulus: float
-    """Modulus margin of all signals together: the inverse of the largest singular value of the sensitivity."""
+    """Modulus margin of all signals together: the inverse of the largest gain of the sensitivity."""
     modulus_frequency: float
     """Frequency (rad/s) at which the modulus margin is attained."""
     disk: float

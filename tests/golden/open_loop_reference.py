@@ -1,12 +1,13 @@
-"""Golden numbers of tests/open_loops.rs: `python tests/golden/open_loop_oracle.py`, with flexsc and NumPy installed.
+"""Golden numbers of tests/open_loops.rs and tests/margins.rs, with flexsc and SciPy installed.
 
-Python assembles the opened loops with NumPy and solves for their responses, here with the exponentials of SciPy. Each row of `open_loops.csv` has a scenario,
-the break, and either `refused`, or the number of states, the period, the spectral radius of the closed loop, and the
-response L v with v = (1, 1/2, 1/3, ...) at fractions of the Nyquist frequency: real and imaginary parts, output by
-output. `open_loops/` has the scenarios that are not shipped.
+Python assembles the opened loops with NumPy, here with the exponentials of SciPy, and solves for their
+responses; it has the body and the settled gains of filters from the engine. Each row of `open_loops.csv` has
+a scenario, the break, and either `refused`, or the number of states, the period, the spectral radius of the
+closed loop, and the response L v with v = (1, 1/2, 1/3, ...) at a fraction of the Nyquist frequency: real and
+imaginary parts, output by output. `open_loops/` has the scenarios that are not shipped.
 
-`margins.csv`, for tests/margins.rs, has the margins of each command with the other loops closed: `Linear.margins` bisects
-the poles of loops whose gain or phase is off.
+`margins.csv` has the margins of each command with the other loops closed: `Linear.margins` bisects the poles
+of loops whose gain or phase is off.
 """
 
 from pathlib import Path

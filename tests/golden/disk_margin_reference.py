@@ -1,7 +1,8 @@
-"""Golden numbers of tests/margins.rs: `python tests/golden/disk_margin_oracle.py`, with flexsc, python-control and slycot.
+"""Golden numbers of tests/margins.rs, with flexsc, python-control and slycot installed.
 
-Each row of `disk_margins.csv` has a scenario, a command or `all`, the modulus margin 1/|S| and the disk margin
-1/|S - 1/2|, by the norms of SLICOT (AB13DD) of the loops that Python opens at the command, with SciPy's exponentials.
+Each row of `disk_margins.csv` has a scenario, a command or `all`, the modulus margin 1/|S| and the disk
+margin 1/|S - 1/2|, by the norms of SLICOT (AB13DD) of the loops that Python opens at the command, with
+SciPy's exponentials.
 """
 
 from pathlib import Path
