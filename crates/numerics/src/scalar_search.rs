@@ -8,7 +8,7 @@ const MOST: u32 = 200;
 /// Returns the root between `low` and `high`, at which the function has different signs, by Brent's method
 /// (\[Brent73\]), to rounding.
 pub fn root(mut f: impl FnMut(f64) -> f64, low: f64, high: f64) -> f64 {
-    // b is the best point so far, a the one before it, and the root is between b and c.
+    // b is the best point, a the one before it, and the root is between b and c.
     let (mut a, mut b) = (low, high);
     let (mut at_a, mut at_b) = (f(a), f(b));
     let (mut c, mut at_c) = (a, at_a);
