@@ -2,8 +2,8 @@
 
 Each row of `disk_margins.csv` has a scenario, a command or `all`, the modulus margin 1/|S| and the disk
 margin 1/|S - 1/2|, by the norms of SLICOT (AB13DD) of the loops that Python opens at the command, with
-exponentials. AB13DD stops at a lower peak for the modulus about roll of `attitude-hold`, so a search by SciPy
-from the largest values on a grid has to agree, or to find more.
+SciPy's exponentials. AB13DD stops at a lower peak for the modulus about roll of `attitude-hold`: the larger
+of its value and of a search by SciPy from the largest values on a grid is taken.
 """
 
 from pathlib import Path
