@@ -223,6 +223,30 @@ fn modes_and_cycles_have_json_output() {
 }
 
 #[test]
+fn margins_of_a_loop() {
+    let dir = Dir::with(&["wheel-fast-mode", "wheel-unstable-band", "relay-fixed"]);
+    let margins = dir.run("margins wheel-fast-mode.toml --json").exits(0).json();
+    let one = &margins["loops"][0];
+    assert_eq!((&margins["loop"], &one["signal"]), (&"command".into(), &"command".into()));
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    // By the poles of loops that are off: tests/golden/margins.csv.
+    assert!((number(&one["gain_above"]) - 43.754_409).abs() < 1e-4);
+    assert!((number(&one["phase_rad"]) - 0.587_070).abs() < 1e-4);
+    assert_eq!(one["gain"].as_array().map(Vec::len), Some(9));
+    dir.run("margins wheel-fast-mode.toml --units si --loop torque")
+        .exits(0)
+        .says(&["at the torque", "43.75"]);
+    let measured = dir.run("margins wheel-fast-mode.toml --loop measurement").exits(0);
+    measured.says(&["2 loops cut open at the measurement", "all together", "crossings"]);
+    dir.run("margins wheel-fast-mode.toml -o figures --format svg").exits(0);
+    assert_eq!(dir.names("figures"), ["bode.svg", "nichols.svg", "nyquist.svg"]);
+    let unstable = ["not stable and has no margins", "magnitude 1.0476992", "0.1090 rad/s", "`command`"];
+    dir.run("margins wheel-unstable-band.toml").exits(2).says(&unstable);
+    dir.run("margins relay-fixed.toml").exits(2).says(&["law.relay", "is not linear"]);
+    dir.run("margins wheel-fast-mode.toml --loop wheel").exits(2).says(&["command, torque, measurement"]);
+}
+
+#[test]
 fn scenarios_side_by_side_have_logs_of_their_own() {
     let dir = Dir::with(&["relay-fixed", "relay-quiet"]);
     dir.run("simulate relay-fixed.toml relay-quiet.toml -o out").exits(0);

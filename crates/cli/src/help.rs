@@ -151,6 +151,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "margins",
+                [
+                    (
+                        "flexsc margins earth-observer.toml",
+                        "each command of the law with the loops of the others closed",
+                    ),
+                    (
+                        "flexsc margins wheel-fast-mode.toml --loop measurement --json",
+                        "at the measured angle and rate, as JSON",
+                    ),
+                ],
+            ),
+            (
                 "damping",
                 [
                     (

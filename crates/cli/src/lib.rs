@@ -20,6 +20,7 @@ mod layout;
 mod live;
 mod log;
 mod map;
+mod margins;
 mod memory_log;
 mod merge;
 mod modes;
@@ -93,6 +94,10 @@ enum Verb {
     ///
     /// Spectral radius and settling time over the frequency of the dominant mode and the sampling period.
     Map(map::MapArgs),
+    /// Print the stability margins of a loop
+    ///
+    /// Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others closed and of all together.
+    Margins(margins::MarginsArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -163,6 +168,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Plan(args) => plan::run(&args),
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
+        Verb::Margins(args) => margins::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

@@ -11,6 +11,7 @@ pub mod custom;
 pub mod estimator;
 pub mod interval;
 pub mod law;
+pub mod linear_block;
 pub mod offers;
 pub mod one_or_many;
 pub mod orientation;

@@ -24,6 +24,7 @@ pub mod polynomial_lanes;
 pub mod quadrature;
 pub mod quantity;
 pub mod random;
+pub mod scalar_search;
 pub mod simplex;
 pub mod stumpff;
 pub mod swing_damped;

@@ -3,6 +3,8 @@
 use flexsc_core::ScenarioError;
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
+use flexsc_core::analysis::margins::StabilityMargins;
+use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
 use flexsc_core::numerics::exponential::exponential as of_matrix;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
@@ -31,6 +33,23 @@ pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;
     Ok(json!(parts).to_string())
+}
+
+/// The stability margins of a scenario's loop, cut open at a point.
+#[pyfunction]
+pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResult<String> {
+    let Some(point) = LoopBreak::from_name(opened) else {
+        let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
+        return Err(PyValueError::new_err(format!("loop must be one of {accepted}, got '{opened}'")));
+    };
+    let opened = OpenLoop::from_scenario(&scenario.inner, point).map_err(|fault| {
+        let origin = scenario.inner.name.clone();
+        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
+    })?;
+    let margins = py.detach(|| StabilityMargins::new(&opened));
+    let name = &scenario.inner.name;
+    let margins = margins.map_err(|fault| PyValueError::new_err(format!("{name}: {fault}")))?;
+    Ok(json!(margins).to_string())
 }
 
 /// The exponential of a square matrix.

@@ -64,7 +64,7 @@ pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEff
 pub use jets_state::{JetsState, Pulse};
 pub use magnetorquers::{Magnetorquers, MagnetorquersState};
 pub use per_wheel::PerWheel;
-pub use placement::{ActuatorAuthority, ActuatorPlacement, LinearDrive};
+pub use placement::{ActuatorAuthority, ActuatorPlacement, CommandResponse, LinearDrive};
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use saturation::{EndState, Saturation};

@@ -55,6 +55,15 @@ pub struct LinearDrive<'a> {
     pub wheel: Option<&'a Wheel>,
 }
 
+/// Linear response of an actuator to commands, up to its limits, without the motion of the body.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct CommandResponse {
+    /// Torque per unit of the command (N m).
+    pub gain: f64,
+    /// Time from a command to its execution (s).
+    pub delay: f64,
+}
+
 impl ActuatorKind {
     /// Returns the authority of the actuator about an axis of this inertia (kg m²), acting alone.
     pub fn authority(&self, axis: usize, inertia: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
@@ -127,6 +136,14 @@ impl ActuatorKind {
             }),
             _ => None,
         }
+    }
+
+    /// Returns the linear response to commands; `None` for an actuator that is not linear.
+    pub fn command_response(&self) -> Option<CommandResponse> {
+        if let Self::Wheels(_) = self {
+            return Some(CommandResponse { gain: 1.0, delay: 0.0 });
+        }
+        self.linear_drive().map(|drive| CommandResponse { gain: drive.gain, delay: drive.delay })
     }
 
     /// Returns the torque per unit of a command (N m), of an actuator whose commands are not torques.

@@ -104,12 +104,12 @@ impl StateSpace {
     }
 
     /// Returns true if the law acts about three axes together.
-    fn is_three_axis(&self) -> bool {
+    pub(super) fn is_three_axis(&self) -> bool {
         !(self.inputs.is_empty() && self.outputs.is_empty())
     }
 
     /// Returns the inputs of a law about three axes together.
-    fn named_inputs(&self) -> Result<Vec<CompensatorInput>, ConfigError> {
+    pub(super) fn named_inputs(&self) -> Result<Vec<CompensatorInput>, ConfigError> {
         if self.inputs.is_empty() {
             let why = format!("must name the columns of B and D, each {}", CompensatorInput::ACCEPTED);
             return Err(ConfigError::new("inputs", why));
@@ -128,7 +128,7 @@ impl StateSpace {
     }
 
     /// Returns the axes of the outputs of a law about three axes together.
-    fn named_outputs(&self) -> Result<Vec<usize>, ConfigError> {
+    pub(super) fn named_outputs(&self) -> Result<Vec<usize>, ConfigError> {
         if self.outputs.is_empty() {
             return Ok(vec![0, 1, 2]);
         }
@@ -185,7 +185,7 @@ impl StateSpace {
     }
 
     /// Returns the matrices in discrete time.
-    fn sampled(&self) -> Result<DiscreteMatrices, ConfigError> {
+    pub(super) fn sampled(&self) -> Result<DiscreteMatrices, ConfigError> {
         let wrong = |key: &str, why: String| Err(ConfigError::new(key, why));
         let order = self.a.len();
         if order > MOST {

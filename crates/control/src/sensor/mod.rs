@@ -7,6 +7,7 @@ mod gauss_markov_bias;
 mod gyro;
 mod ideal;
 mod latency_queue;
+mod linear_measurement;
 mod magnetometer;
 mod rate_integrator;
 mod reference;
@@ -35,6 +36,7 @@ pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration}
 pub use custom_sensor::SensorSpec;
 pub use exposure::ExposureMean;
 pub use gyro::{Gyro, GyroState};
+pub use linear_measurement::LinearMeasurement;
 pub use magnetometer::Magnetometer;
 pub use reference::ReferenceNoise;
 pub use sampled::{Sampled, SampledState, SensorFailure};

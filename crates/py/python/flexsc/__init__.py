@@ -63,6 +63,7 @@ from flexsc.parts import (
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
     from flexsc._linear import Linear
+    from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
     from flexsc._optimisation import optimise
     from flexsc._result import Detail
@@ -91,6 +92,7 @@ __all__ = [
     "Linear",
     "Log",
     "LogError",
+    "LoopMargins",
     "Margins",
     "Metrics",
     "Plan",
@@ -108,6 +110,7 @@ __all__ = [
     "Simulator",
     "Simulators",
     "Snapshot",
+    "StabilityMargins",
     "StateSpace",
     "Structure",
     "Table",
@@ -155,9 +158,11 @@ _MODULES = ("parts", "plot", "scenario", "structure")
 _EXTRAS = ("dask", "gym")
 _LATER = {
     "Linear": "_linear",
+    "LoopMargins": "_loop_margins",
     "Margins": "_margins",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
+    "StabilityMargins": "_loop_margins",
     "StateSpace": "structure",
     "Structure": "structure",
     "appendage_from_matrices": "structure",

@@ -16,6 +16,7 @@ from flexsc._values import arrays, run_number, toml
 
 if TYPE_CHECKING:
     from flexsc._linear import Linear
+    from flexsc._loop_margins import StabilityMargins
     from flexsc._open_loop import Break
     from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
@@ -211,6 +212,28 @@ class Scenario(ScenarioFile):
         from flexsc._open_loop import linearise
 
         return linearise(self, at, period, delay, loop)
+
+    def margins(self, loop: Break = "command") -> StabilityMargins:
+        """Return the stability margins of the scenario's loop, opened at a point: `flexsc margins`.
+
+        Each signal at the break has gain, phase and delay margins at every crossing, a modulus and a disk
+        margin, with the loops of the others closed; all signals together have a modulus and a disk margin.
+
+        Args:
+            loop: The point: the `command` of the law, the `torque` of the actuator, or the `measurement` of
+                angles and rates.
+
+        >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins()
+        >>> margins.loops["command"].gain_crossings["frequency"].round(3)[:3]
+        array([0.062, 0.175, 0.242])
+
+        Raises:
+            ScenarioError: The loop is not linear: the key, and the reason.
+            ValueError: The closed loop is not stable: its worst pole; or there is no such point.
+        """
+        from flexsc._loop_margins import stability_margins
+
+        return stability_margins(self, loop)
 
     def with_law(
         self,

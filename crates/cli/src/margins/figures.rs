@@ -1,0 +1,144 @@
+//! Figures of a loop that is cut open: Bode, Nichols and Nyquist.
+
+use std::f64::consts::{PI, TAU};
+
+use flexsc_core::analysis::margins::SignalMargins;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour};
+
+/// Colours of the loops.
+const COLOURS: [RGBColor; 6] =
+    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
+/// Magnitudes (dB) beyond which a loop is not drawn.
+const SHOWN_DB: f64 = 80.0;
+/// Largest magnitude in a Nyquist figure.
+const SHOWN: f64 = 3.0;
+/// Width of a Nyquist figure relative to its height.
+const ASPECT: f64 = 1.37;
+
+/// Locus of a loop over frequency: a line of a figure.
+struct LocusLine {
+    name: String,
+    colour: RGBColor,
+    /// Frequency (rad/s), magnitude (dB) and phase (deg, without jumps) at each point.
+    points: Vec<[f64; 3]>,
+}
+
+/// Returns the figures of loops whose period is `period` (s).
+pub fn figures(name: &str, loops: &[SignalMargins], period: f64) -> Vec<Named> {
+    let several = loops.iter().any(|one| one.loci.first().is_some_and(|first| first.values.len() > 1));
+    let title = &if several { format!("{name}, loci of all samples") } else { name.to_owned() };
+    let lines: Vec<LocusLine> = loops
+        .iter()
+        .zip(COLOURS.iter().cycle())
+        .flat_map(|(one, colour)| {
+            let count = one.loci.first().map_or(0, |first| first.values.len());
+            (0..count).map(move |locus| LocusLine::new(one, locus, period, *colour))
+        })
+        .collect();
+    vec![
+        ("bode".to_owned(), bode(title, &lines)),
+        ("nichols".to_owned(), nichols(title, &lines)),
+        ("nyquist".to_owned(), nyquist(title, loops)),
+    ]
+}
+
+impl LocusLine {
+    fn new(one: &SignalMargins, locus: usize, period: f64, colour: RGBColor) -> Self {
+        let mut last: Option<f64> = None;
+        let points = one.loci.iter().map(|point| {
+            let value = point.values[locus];
+            let phase = value.im.atan2(value.re);
+            let phase = match last {
+                // The phase at the start is between -360 and 0 degrees.
+                None if phase > 0.0 => phase - TAU,
+                None => phase,
+                Some(before) => phase + TAU * ((before - phase) / TAU).round(),
+            };
+            last = Some(phase);
+            [point.angle / period, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
+        });
+        let points = points.collect();
+        // Several loci of one loop have one name.
+        Self { name: if locus == 0 { one.signal.clone() } else { String::new() }, colour, points }
+    }
+
+    /// Returns the line over two of its quantities, with gaps where it is out of the shown magnitudes.
+    fn layer(&self, x: usize, y: usize) -> Layer {
+        let point = |values: &[f64; 3]| {
+            if values[1].abs() <= SHOWN_DB { (values[x], values[y]) } else { (f64::NAN, f64::NAN) }
+        };
+        Layer::new(&self.name, self.colour, LayerShape::Line(1.5), self.points.iter().map(point).collect())
+    }
+}
+
+/// Returns the values of a quantity of all lines within the shown magnitudes.
+fn values(lines: &[LocusLine], quantity: usize) -> impl Iterator<Item = f64> + '_ {
+    let shown = lines.iter().flat_map(|line| &line.points).filter(|values| values[1].abs() <= SHOWN_DB);
+    shown.map(move |values| values[quantity])
+}
+
+/// Returns a horizontal line over a range.
+fn level(range: &std::ops::Range<f64>, height: f64) -> Layer {
+    let points = vec![(range.start, height), (range.end, height)];
+    Layer::new("", colour::GREY, LayerShape::Dashes, points)
+}
+
+fn bode(title: &str, lines: &[LocusLine]) -> Figure {
+    let x = FigureAxis::decades("frequency", "rad/s", values(lines, 0));
+    let panel = |quantity: usize, name: &str, unit: &'static str, marked: f64| {
+        let y = FigureAxis::around(name, unit, values(lines, quantity).chain([marked]));
+        let mut layers = vec![level(&x.range, marked)];
+        layers.extend(lines.iter().map(|line| line.layer(0, quantity)));
+        Panel::new(x.clone(), y, layers)
+    };
+    let panels = vec![panel(1, "magnitude", "dB", 0.0), panel(2, "phase", "deg", -180.0)];
+    Figure { title: format!("{title}: loop transfer"), panels, panel_height: 220 }
+}
+
+fn nichols(title: &str, lines: &[LocusLine]) -> Figure {
+    let x = FigureAxis::around("phase", "deg", values(lines, 2).chain([-180.0]));
+    let y = FigureAxis::around("magnitude", "dB", values(lines, 1).chain([0.0]));
+    let mut layers: Vec<Layer> = lines.iter().map(|line| line.layer(2, 1)).collect();
+    // The points that the loop must not pass: -1 and its repetitions.
+    let turns = (-40..40).map(|turn| f64::from(turn) * 360.0 - 180.0);
+    let critical = turns.filter(|phase| x.range.contains(phase)).map(|phase| (phase, 0.0)).collect();
+    layers.push(Layer::new("-1", colour::BLACK, LayerShape::Ring, critical));
+    Figure {
+        title: format!("{title}: Nichols chart"),
+        panels: vec![Panel::new(x, y, layers)],
+        panel_height: 420,
+    }
+}
+
+/// Returns a circle.
+fn circle(centre: f64, radius: f64) -> Vec<Point> {
+    let point = |k: u32| {
+        let angle = TAU * f64::from(k) / 180.0;
+        (centre + radius * angle.cos(), radius * angle.sin())
+    };
+    (0..=180).map(point).collect()
+}
+
+fn nyquist(title: &str, loops: &[SignalMargins]) -> Figure {
+    let mut layers = vec![Layer::new("unit circle", colour::GREY, LayerShape::Dashes, circle(0.0, 1.0))];
+    for (one, colour) in loops.iter().zip(COLOURS.iter().cycle()) {
+        for locus in 0..one.loci.first().map_or(0, |first| first.values.len()) {
+            let point = |sign: f64| {
+                move |point: &flexsc_core::analysis::margins::LociValues| {
+                    let value = point.values[locus];
+                    let is_shown = value.re.hypot(value.im) <= 2.0 * SHOWN;
+                    if is_shown { (value.re, sign * value.im) } else { (f64::NAN, f64::NAN) }
+                }
+            };
+            let mut points: Vec<Point> = one.loci.iter().map(point(1.0)).collect();
+            points.push((f64::NAN, f64::NAN));
+            points.extend(one.loci.iter().map(point(-1.0)));
+            let name = if locus == 0 { one.signal.as_str() } else { "" };
+            layers.push(Layer::new(name, *colour, LayerShape::Line(1.5), points));
+        }
+    }
+    layers.push(Layer::new("-1", colour::BLACK, LayerShape::Ring, vec![(-1.0, 0.0)]));
+    let x = FigureAxis::exact("real part", "", -ASPECT * SHOWN..ASPECT * SHOWN);
+    let y = FigureAxis::exact("imaginary part", "", -SHOWN..SHOWN);
+    Figure { title: format!("{title}: Nyquist"), panels: vec![Panel::new(x, y, layers)], panel_height: 520 }
+}

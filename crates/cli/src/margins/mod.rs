@@ -1,0 +1,229 @@
+//! `flexsc margins`: stability margins of the loop of a scenario.
+
+mod figures;
+
+use std::f64::consts::{PI, TAU};
+use std::io::Write;
+
+use clap::ValueEnum;
+use flexsc_core::analysis::margins::{DiskMargin, PeakMargin, SignalMargins, StabilityMargins};
+use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
+use flexsc_core::formats::count::counted;
+use flexsc_core::{Scenario, ScenarioError};
+use flexsc_figure::Named;
+use serde_json::{Value as Json, json};
+
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
+use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::number::number_or_none;
+use crate::results::{Results, show, with_scenario_name};
+use crate::{say, scenario};
+
+#[derive(clap::Args)]
+pub struct MarginsArgs {
+    #[command(flatten)]
+    pub scenario: scenario::ScenarioArgs,
+    /// Point at which each loop is cut open
+    #[arg(long = "loop", value_name = "POINT", default_value = "command")]
+    opened: BreakPoint,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    pub drawing: FigureOutput,
+}
+
+/// Point at which a loop is cut open.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum BreakPoint {
+    /// Commands of the law
+    #[default]
+    Command,
+    /// Torques of the actuator
+    Torque,
+    /// Measured angles and rates
+    Measurement,
+}
+
+impl BreakPoint {
+    fn loop_break(self) -> LoopBreak {
+        match self {
+            Self::Command => LoopBreak::Command,
+            Self::Torque => LoopBreak::Torque,
+            Self::Measurement => LoopBreak::Measurement,
+        }
+    }
+}
+
+/// Margins of the loop of a scenario.
+pub struct LoopMargins {
+    /// Name of the scenario.
+    name: String,
+    margins: StabilityMargins,
+    units: Units,
+}
+
+/// Computes the margins of the loop of a scenario.
+pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, CliError> {
+    let name = scenario.name.clone();
+    let opened = OpenLoop::from_scenario(scenario, args.opened.loop_break())
+        .map_err(|fault| ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })?;
+    let margins =
+        StabilityMargins::new(&opened).map_err(|fault| CliError::Arguments(format!("{name}: {fault}")))?;
+    Ok(LoopMargins { name, margins, units: args.units.units })
+}
+
+pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
+    args.drawing.check(&args.scenario.scenario)?;
+    show(&results(&args.scenario.load()?, args)?, Some(&args.drawing), args.scenario.json)
+}
+
+/// Prints rows of text in columns.
+fn print_table(rows: &[Vec<String>]) {
+    for line in columns(rows, 0) {
+        say!("  {line}");
+    }
+}
+
+fn texts(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+impl LoopMargins {
+    /// Returns the unit of factors on a gain, and a factor in that unit.
+    fn gain(&self, factor: Option<f64>) -> String {
+        let text = |factor: f64| match self.units {
+            Units::Engineering => digits(20.0 * factor.log10()),
+            Units::Si => digits(factor),
+        };
+        number_or_none(factor.filter(|factor| *factor > 0.0), text)
+    }
+
+    fn gain_unit(&self) -> &'static str {
+        match self.units {
+            Units::Engineering => "dB",
+            Units::Si => "",
+        }
+    }
+
+    /// Returns the factor from rad, and the unit, of phases.
+    fn phase(&self) -> (f64, &'static str) {
+        match self.units {
+            Units::Engineering => (360.0 / TAU, "deg"),
+            Units::Si => (1.0, "rad"),
+        }
+    }
+
+    /// Returns a phase; none if it is half a turn, which is no limit.
+    fn phase_text(&self, phase: f64) -> String {
+        number_or_none((phase.abs() < PI).then_some(phase), |phase| digits(phase * self.phase().0))
+    }
+
+    /// Returns a delay; nothing for several samples in a period, where a delay is more than a phase.
+    fn delay(&self, delay: Option<f64>) -> String {
+        if self.margins.samples > 1 { String::new() } else { number_or_none(delay, digits) }
+    }
+
+    /// Returns the cells of the modulus margin and the disk margin, with their frequencies.
+    fn peaks(&self, modulus: &PeakMargin, disk: &DiskMargin) -> Vec<String> {
+        let (factor, _) = self.units.frequency();
+        vec![
+            digits(modulus.margin),
+            digits(modulus.frequency_rad_s * factor),
+            digits(disk.alpha),
+            digits(disk.frequency_rad_s * factor),
+            format!("{} to {}", self.gain(Some(disk.gains[0])), self.gain(Some(disk.gains[1]))),
+            digits(disk.phase_rad * self.phase().0),
+        ]
+    }
+
+    /// Prints the smallest margins of each loop, and of all together.
+    fn print_margins(&self) {
+        let (frequency, gain, phase) = (self.units.frequency().1, self.gain_unit(), self.phase().1);
+        let mut rows = vec![
+            texts(&[
+                "loop", "gain", "gain", "phase", "delay", "modulus", "at", "disk", "at", "gain", "phase",
+            ]),
+            texts(&["", "down", "up", "", "", "", "", "", "", "in the disk", "in the disk"]),
+            texts(&["", gain, gain, phase, "s", "", frequency, "", frequency, gain, phase]),
+        ];
+        for one in &self.margins.loops {
+            let mut row = vec![
+                one.signal.clone(),
+                self.gain(Some(one.gain_below)),
+                self.gain(one.gain_above),
+                self.phase_text(one.phase_rad),
+                self.delay(one.delay_s),
+            ];
+            row.extend(self.peaks(&one.modulus, &one.disk));
+            rows.push(row);
+        }
+        if self.margins.loops.len() > 1 {
+            let mut row = texts(&["all together", "", "", "", ""]);
+            row.extend(self.peaks(&self.margins.modulus, &self.margins.disk));
+            rows.push(row);
+        }
+        print_table(&rows);
+    }
+
+    /// Prints the crossings of all loops, by frequency.
+    fn print_crossings(&self) {
+        let (factor, unit) = self.units.frequency();
+        let mut rows = vec![
+            texts(&["loop", "crossing", "frequency", "phase", "delay", "gain"]),
+            texts(&["", "", unit, self.phase().1, "s", self.gain_unit()]),
+        ];
+        for one in &self.margins.loops {
+            let mut crossings = self.crossings(one);
+            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (frequency, mut cells) in crossings {
+                cells.insert(1, digits(frequency * factor));
+                cells.insert(0, one.signal.clone());
+                rows.push(cells);
+            }
+        }
+        say!("  crossings, with the phase and the delay, or the gain, that the loop tolerates there");
+        print_table(&rows);
+    }
+
+    /// Returns the crossings of a loop with their frequencies (rad/s): kind, phase, delay and gain.
+    fn crossings(&self, one: &SignalMargins) -> Vec<(f64, Vec<String>)> {
+        let gain = one.crossings.gain.iter().map(|crossing| {
+            let phase = digits(crossing.phase_rad * self.phase().0);
+            let delay = self.delay(crossing.delay_s);
+            (crossing.frequency_rad_s, vec!["gain".to_owned(), phase, delay, String::new()])
+        });
+        let phase = one.crossings.phase.iter().map(|crossing| {
+            let factor = self.gain(Some(crossing.factor));
+            (crossing.frequency_rad_s, vec!["phase".to_owned(), String::new(), String::new(), factor])
+        });
+        gain.chain(phase).collect()
+    }
+}
+
+impl Results for LoopMargins {
+    fn json(&self) -> Vec<Json> {
+        vec![with_scenario_name(&self.name, json!(self.margins))]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        figures::figures(&self.name, &self.margins.loops, self.margins.period_s)
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } = &self.margins;
+        let name = opened.name();
+        let samples = match *samples {
+            1 => String::new(),
+            count => format!(", {}", counted(count, "sample") + " of the law"),
+        };
+        say!(
+            "{}   {} cut open at the {name}, stable: spectral radius {spectral_radius:.6} in {period_s} s{samples}",
+            self.name,
+            counted(loops.len(), "loop"),
+        );
+        self.print_margins();
+        self.print_crossings();
+        Ok(())
+    }
+}

@@ -1,0 +1,129 @@
+"""Stability margins of the loop of a scenario, at every crossing."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._open_loop import Break
+    from flexsc._scenario import Scenario
+
+
+@dataclass(frozen=True)
+class LoopMargins:
+    """Margins of one signal of a loop, with the loops of the other signals closed, or of all together.
+
+    >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins().loops["command"]
+    >>> round(margins.gain_above, 2), round(margins.delay, 3), round(margins.modulus, 4)
+    (43.75, 0.817, 0.5764)
+    """
+
+    gain_crossings: dict[str, npt.NDArray[np.float64]]
+    """Where the loop gain is 1, columns of shape (crossings,): `frequency` (rad/s), `phase` (rad), the phase
+    margin from -pi to pi, negative for a lead; `delay` (s), NaN for several samples in a period."""
+    phase_crossings: dict[str, npt.NDArray[np.float64]]
+    """Where the loop transfer is real and negative, columns of shape (crossings,): `frequency` (rad/s) and
+    `factor`, the gain margin."""
+    gain_below: float
+    """Largest factor below 1 on the loop gain at which the loop is at the limit of stability; 0 if there is
+    none."""
+    gain_above: float
+    """Smallest factor above 1 at which the loop is at the limit of stability; infinite if there is none."""
+    phase: float
+    """Smallest phase (rad), of either sign, that makes the loop unstable; pi if there is none."""
+    delay: float
+    """Smallest delay (s) that makes the loop unstable; infinite if there is none, NaN for several samples of
+    the law in a period."""
+    modulus: float
+    """Modulus margin: smallest distance of the loop transfer from -1."""
+    modulus_frequency: float
+    """Frequency (rad/s) at which the modulus margin is attained."""
+    disk: float
+    """Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2),
+    at once."""
+    disk_frequency: float
+    """Frequency (rad/s) at which the disk margin is attained."""
+
+
+@dataclass(frozen=True)
+class StabilityMargins:
+    """Margins of a stable loop: of each signal at the break, and of all together.
+
+    >>> margins = flexsc.Scenario.example("attitude-hold").margins("torque")
+    >>> list(margins.loops), margins.disk <= min(each.disk for each in margins.loops.values())
+    (['torque_roll', 'torque_pitch', 'torque_yaw'], True)
+    """
+
+    loop: Break
+    """The point at which the loop is opened."""
+    period: float
+    """Period (s) after which the loop repeats."""
+    samples: int
+    """Samples of the law in a period."""
+    spectral_radius: float
+    """Largest magnitude of a pole of the closed loop."""
+    loops: dict[str, LoopMargins]
+    """Margins of each signal at the break, with the loops of the others closed."""
+    modulus: float
+    """Modulus margin of all signals together: the inverse of the largest gain of the sensitivity."""
+    modulus_frequency: float
+    """Frequency (rad/s) at which the modulus margin is attained."""
+    disk: float
+    """Disk margin alpha of all signals together, for errors of the loops that are coupled in any way."""
+    disk_frequency: float
+    """Frequency (rad/s) at which the disk margin is attained."""
+
+
+StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
+
+
+def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
+    """Return the margins of the loop of a scenario, opened at a point."""
+    found = json.loads(engine.margins_json(scenario._native, loop))
+    several = found["samples"] > 1
+    return StabilityMargins(
+        loop=loop,
+        period=found["period_s"],
+        samples=found["samples"],
+        spectral_radius=found["spectral_radius"],
+        loops={each["signal"]: _loop(each, several) for each in found["loops"]},
+        **_peaks(found),
+    )
+
+
+def _loop(found: dict[str, Any], several: bool) -> LoopMargins:
+    """The margins of one signal; infinite or NaN where a number does not exist."""
+    nan, inf = float("nan"), float("inf")
+    gain = {"frequency": "frequency_rad_s", "phase": "phase_rad", "delay": "delay_s"}
+    phase = {"frequency": "frequency_rad_s", "factor": "factor"}
+    return LoopMargins(
+        gain_crossings=_columns(found["gain"], gain),
+        phase_crossings=_columns(found["phase"], phase),
+        gain_below=found["gain_below"],
+        gain_above=inf if found["gain_above"] is None else found["gain_above"],
+        phase=found["phase_rad"],
+        delay=(nan if several else inf) if found["delay_s"] is None else found["delay_s"],
+        **_peaks(found),
+    )
+
+
+def _peaks(found: dict[str, Any]) -> dict[str, float]:
+    return {
+        "modulus": found["modulus"]["margin"],
+        "modulus_frequency": found["modulus"]["frequency_rad_s"],
+        "disk": found["disk"]["alpha"],
+        "disk_frequency": found["disk"]["frequency_rad_s"],
+    }
+
+
+def _columns(rows: list[dict[str, Any]], keys: dict[str, str]) -> dict[str, npt.NDArray[np.float64]]:
+    import numpy as np
+
+    return {name: np.array([row[key] for row in rows], dtype=np.float64) for name, key in keys.items()}
