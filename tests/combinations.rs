@@ -1,6 +1,6 @@
 //! Combinations of parts: every combination of law, sensor, estimator and actuator is tried, on one axis and on three.
 //!
-//! What is accepted runs for 11 s, a second longer than a window of the envelope and the first of several
+//! What is accepted runs for 4 s, a second longer than a window of the envelope and the first of several
 //! laws, in one and in pieces, and keeps the invariants of `tests/invariants.rs`; what is refused names a key
 //! and a reason. The tables in docs/combinations.md are made here.
 
@@ -41,7 +41,7 @@ fn combined(
     };
     let around = if body == ONE_ANGLE { "" } else { AROUND };
     let text = format!(
-        "duration = 11.0\nseed = 3\nlog.period = 0.1\nlaw = {{ {} }}\n{}\nactuator = {}\n{estimator}{body}{around}",
+        "duration = 4.0\nseed = 3\nlog.period = 0.1\nlaw = {{ {} }}\n{}\nactuator = {}\n{estimator}{body}{around}",
         law.2, sensor.2, actuator.2
     );
     Scenario::parse("combination.toml", &text)

@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 /// Times at which a run in pieces is stopped (s): between all events, at a sample, and at one of a law's
 /// stages.
-const STOPS: [f64; 5] = [0.0, 3.71, 10.0, 10.2, 33.333];
+const STOPS: [f64; 5] = [0.0, 1.71, 3.0, 3.2, 33.333];
 
 /// External torque in the rows of a three-axis body, from one row to the next.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -41,7 +41,7 @@ pub const LAWS: [Kind; 11] = [
     (
         "stages",
         "`stages`",
-        "stages = [{ law = { open = {} } }, { from = 10.0, law = { attitude = { period = 0.2, bandwidth = 0.06 } } }]",
+        "stages = [{ law = { open = {} } }, { from = 3.0, law = { attitude = { period = 0.2, bandwidth = 0.06 } } }]",
     ),
 ];
 
@@ -68,7 +68,7 @@ pub const SENSORS: [Kind; 6] = [
 
 pub const ESTIMATORS: [Kind; 10] = [
     ("none", "no estimator", ""),
-    ("envelope", "`envelope`", "envelope = { window = 10.0 }"),
+    ("envelope", "`envelope`", "envelope = { window = 3.0 }"),
     ("truth", "`truth`", "truth = {}"),
     ("kalman", "`kalman`", "kalman = { angle_noise = 1e-6 }"),
     ("extended_kalman", "`extended_kalman`", "extended_kalman = { angle_noise = 1e-6 }"),

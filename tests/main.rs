@@ -71,6 +71,7 @@ mod shaped;
 mod stage_actuators;
 mod state_space;
 mod station;
+mod structured_tuning;
 mod swinging;
 mod tuning;
 mod unloading;

@@ -130,8 +130,8 @@ fn a_delay_of_a_part_of_a_period() {
 }
 
 /// Returns a loop of a body x' = a x + b u whose angles and rates, rows of `c`, pass lags of 8 rad/s, u = (.0025 angle +
-/// .07 rate), at samples 0.2 s apart and `delay` (s) late.
-fn lagged_loop(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, delay: f64) -> LinearBlock {
+/// `k_d` rate), at samples 0.2 s apart and `delay` (s) late.
+fn lagged_loop(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, k_d: f64, delay: f64) -> LinearBlock {
     let (order, axes) = b.shape();
     let lags = 2 * axes;
     let mut whole = DMatrix::zeros(order + lags, order + lags);
@@ -142,7 +142,7 @@ fn lagged_loop(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, delay: f64)
     let plant = SampledSystem::new(&whole, &forced, 0.2, delay);
     let mut read = DMatrix::zeros(axes, plant.a.nrows());
     for axis in 0..axes {
-        (read[(axis, order + 2 * axis)], read[(axis, order + 2 * axis + 1)]) = (0.0025, 0.07);
+        (read[(axis, order + 2 * axis)], read[(axis, order + 2 * axis + 1)]) = (0.0025, k_d);
     }
     LinearBlock { a: plant.a, b: plant.b, c: read, d: DMatrix::zeros(axes, axes), states: Vec::new() }
 }
@@ -159,21 +159,23 @@ fn opened(block: LinearBlock) -> OpenLoop {
     }
 }
 
-#[test]
-fn a_yaw_axis_with_lags_and_a_notch() {
+/// Returns the loop of a yaw axis with four modes, whose frequencies are off by these factors, a notch at a frequency
+/// (rad/s) with poles of radius `r`, and the gain `k_d` of the rate.
+pub fn yaw_axis(factors: [f64; 4], [k_d, notch_frequency, r]: [f64; 3]) -> OpenLoop {
     let frequencies = [1.5557, 3.8007, 3.8302, 4.8588];
     let influences = [2.88, 1.355, 1.613, 0.556];
     let (mut a, mut b) = (DMatrix::zeros(10, 10), DMatrix::zeros(10, 1));
     (a[(0, 1)], b[(1, 0)]) = (1.0, 1.0);
     let mut c = DMatrix::zeros(2, 10);
     (c[(0, 0)], c[(1, 1)]) = (1.0, 1.0);
-    for (mode, (w, influence)) in frequencies.iter().zip(influences).enumerate() {
+    for (mode, (nominal, influence)) in frequencies.iter().zip(influences).enumerate() {
+        let w = nominal * factors[mode];
         let place = 2 + 2 * mode;
         (a[(place, place + 1)], a[(place + 1, place)], a[(place + 1, place + 1)]) = (1.0, -w * w, -0.01 * w);
         b[(place + 1, 0)] = influence;
         (c[(0, place)], c[(1, place + 1)]) = (1.0, 1.0);
     }
-    let (cosine, r) = ((1.5557_f64 * 0.2).cos(), 0.9);
+    let cosine = (notch_frequency * 0.2_f64).cos();
     let gain = (1.0 - 2.0 * r * cosine + r * r) / (2.0 - 2.0 * cosine);
     let (b1, b2, a1, a2) = (-2.0 * cosine, 1.0, -2.0 * r * cosine, r * r);
     let notch = LinearBlock {
@@ -183,7 +185,12 @@ fn a_yaw_axis_with_lags_and_a_notch() {
         d: dmatrix![gain],
         states: Vec::new(),
     };
-    let found = margins(&opened(lagged_loop(&a, &b, &c, 0.14).then(notch)));
+    opened(lagged_loop(&a, &b, &c, k_d, 0.14).then(notch))
+}
+
+#[test]
+fn a_yaw_axis_with_lags_and_a_notch() {
+    let found = margins(&yaw_axis([1.0; 4], [0.07, 1.5557, 0.9]));
     agree("radius", found.spectral_radius, 0.998_700_993_708_6, 1e-12);
     let only = &found.loops[0];
     agree("gain", only.gain_above.expect("exists"), 5.197_085_333_49, 1e-11);
@@ -225,7 +232,7 @@ pub fn station(delay: f64) -> OpenLoop {
             (c[(2 * axis, 6 + 2 * mode)], c[(2 * axis + 1, 7 + 2 * mode)]) = (rotation[axis], rotation[axis]);
         }
     }
-    opened(lagged_loop(&a, &(b * torque), &c, delay))
+    opened(lagged_loop(&a, &(b * torque), &c, 0.07, delay))
 }
 
 #[test]

@@ -292,7 +292,7 @@ fn every_target_is_reached_and_held() {
         draw = draw.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         low + (high - low) * (draw >> 11) as f64 / (1_u64 << 53) as f64
     };
-    for case in 0..400 {
+    for case in 0..160 {
         // Thrust sets the accelerations, 2.6e-7 to 4.8e-3 rad/s²; the weakest axis has 8.4e-6 rad/s² at 130 N. The
         // smallest pulse changes up to 2.4e-4 rad/s, more than many a `switch_on`.
         let scale = 10_f64.powf(uniform(-1.5, 2.0));

@@ -52,6 +52,28 @@ def test_samples_are_the_rows_of_the_log(name: str) -> None:
     assert compared > 4
 
 
+@pytest.mark.parametrize("name", ALL)
+def test_samples_do_not_depend_on_those_before(name: str) -> None:
+    scenario = shipped(name)
+    with suppress(flexsc.ScenarioError):
+        scenario = scenario.with_("duration", min(scenario.duration, LONGEST))
+    run = scenario.simulate(log="none")
+    # Between the snapshots, on them, and on the same time again.
+    end = scenario.duration
+    times = np.append(np.random.default_rng(3).uniform(0.0, end, 12), end * np.array([0.25, 0.5, 0.0, 1.0, 0.5]))
+    at_once = run.sample(times)
+    for start in range(0, len(times), 2):
+        seen = run.sample(times[start : start + 2])
+        for topic in at_once:
+            for column, values in at_once[topic].items():
+                assert same(seen[topic][column], values[start : start + 2]), (topic, column)
+    # Nor on the samples of a new run.
+    fresh = scenario.simulate(log="none").at(times[0])
+    for topic, row in run.at(times[0]).items():
+        for column, value in row.items():
+            assert np.array_equal(value, fresh[topic][column], equal_nan=not isinstance(value, str)), column
+
+
 def test_switchings_are_met_to_the_femtosecond(fixed: Scenario) -> None:
     run = fixed.simulate()
     command = run["command"]

@@ -89,6 +89,43 @@ def own(text: str = PLANAR, **parts: Any) -> flexsc.Scenario:
     return flexsc.Scenario.parse(text, "own").with_parts(**given)
 
 
+class Sliding(flexsc.Law):
+    period = 0.25
+    signals = {"mode": str, "s": "rad/s"}  # noqa: RUF012
+
+    def start(self, authority: flexsc.parts.Authority) -> None:
+        self.mode: Any = "REACH"
+        self.s = 0.0
+
+    def decide(self, event: Event) -> flexsc.Hold:
+        self.s = event.rate + 0.2 * event.angle
+        self.mode = "SLIDE" if abs(self.s) < 1e-4 else "REACH"
+        return flexsc.Hold(-30.0 * self.s)
+
+
+@pytest.mark.parametrize("text", [PLANAR, SPATIAL])
+def test_words_are_columns_of_a_log(tmp_path: Path, text: str) -> None:
+    run = own(text, law=Sliding()).simulate(log="full")
+    rows = run["own_law"]
+    expected = np.where(np.abs(rows["s"]) < 1e-4, "SLIDE", "REACH")
+    assert set(expected) == {"REACH", "SLIDE"}
+    assert rows["mode"].tolist() == expected.tolist()
+    path = tmp_path / "run.mcap"
+    run.to_mcap(path)
+    log = flexsc.read_log(path)
+    assert log["own_law"]["mode"].tolist() == expected.tolist()
+    for mode, error in ((3, "the signal mode must be a str, got"), ("a\nb", "a word of at most 64 bytes")):
+        class Wrong(Sliding):
+            word: Any = mode
+
+            def decide(self, event: Event) -> flexsc.Hold:
+                self.mode = self.word
+                return flexsc.Hold(0.0)
+
+        with pytest.raises((TypeError, ValueError), match=error):
+            own(text, law=Wrong()).simulate(log="full")
+
+
 def test_signals_are_columns_of_a_log(tmp_path: Path) -> None:
     scenario = own()
     run = scenario.simulate(log="full")

@@ -97,6 +97,11 @@ def test_a_commanded_run_is_sampled_at_any_instant() -> None:
     samples = sim.result("none").sample([time for time, _, _ in seen])
     np.testing.assert_array_equal(samples["attitude"]["angle_rad"], [angle for _, angle, _ in seen])
     np.testing.assert_array_equal(samples["rate"]["rate_rad_s"], [rate for _, _, rate in seen])
+    # One at a time, from the last: commands are given again after a snapshot.
+    run = sim.result("none")
+    for time, angle, rate in [*seen[::-1], *seen]:
+        assert run.at(time)["attitude"]["angle_rad"] == angle
+        assert run.at(time)["rate"]["rate_rad_s"] == rate
     assert scenario.simulate(log="none").at(4.62)["rate"]["rate_rad_s"] != seen[-1][2]
 
 

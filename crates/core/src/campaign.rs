@@ -12,6 +12,7 @@ mod draws;
 mod error;
 mod manifest;
 mod merge;
+mod motion_sampler;
 #[cfg_attr(not(feature = "parquet"), path = "campaign/unavailable.rs")]
 mod parquet;
 mod part;
@@ -39,6 +40,7 @@ pub use directory::{Directory, MANIFEST, STATISTICS};
 pub use error::DirectoryError;
 pub use manifest::Manifest;
 pub use merge::Merge;
+pub use motion_sampler::MotionSampler;
 pub use parquet::parquet_is_built_in;
 pub use row_maker::RowMaker;
 pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED, list_element};

@@ -147,6 +147,9 @@ pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let place = q * last as f64;
     let (below, part) = (place as usize, place - libm::floor(place));
     let above = (below + 1).min(last);
+    if sorted[below] == sorted[above] {
+        return sorted[below];
+    }
     sorted[below] * (1.0 - part) + sorted[above] * part
 }
 

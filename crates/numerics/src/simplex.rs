@@ -43,6 +43,13 @@ impl LinearProgramme {
     /// Returns the cheapest x with A x = s b, 0 <= x <= u, where s is the largest attainable fraction of b, up to 1;
     /// and s.
     pub fn cheapest(&self, b: &[f64], costs: &[f64]) -> (Vec<f64>, f64) {
+        let (values, part, _) = self.cheapest_with_prices(b, costs);
+        (values, part)
+    }
+
+    /// Returns what [`Self::cheapest`] returns, and the price of each row: the derivative of the cost in the row's right
+    /// side. The prices are the solution of the dual programme.
+    pub fn cheapest_with_prices(&self, b: &[f64], costs: &[f64]) -> (Vec<f64>, f64, Vec<f64>) {
         let (rows, count) = (self.rows, self.columns.len());
         // Each row is scaled to the size of 1.
         let size = |row: usize| self.columns.iter().map(|column| column[row].abs()).fold(0.0, f64::max);
@@ -52,7 +59,7 @@ impl LinearProgramme {
         let demand = b.iter().zip(&scales).map(|(b, scale)| (b * scale).abs()).fold(0.0, f64::max);
         let unit = largest.min(demand);
         if demand == 0.0 || largest == 0.0 {
-            return (vec![0.0; count], if demand == 0.0 { 1.0 } else { 0.0 });
+            return (vec![0.0; count], if demand == 0.0 { 1.0 } else { 0.0 }, vec![0.0; rows]);
         }
         // Solutions are scaled to the size of 1, however small the request. Columns: x in its unit and that of the
         // request, then s, then an initial slack for each row.
@@ -89,7 +96,11 @@ impl LinearProgramme {
         let mut scaled: Vec<f64> = costs.iter().map(|cost| cost / dearest).collect();
         scaled.resize(columns.len(), 0.0);
         tableau.minimise(&scaled);
-        (tableau.values[..count].iter().map(|value| value * unit).collect(), part)
+        let basis_costs: Vec<f64> = tableau.basis.iter().map(|index| scaled[*index]).collect();
+        let prices = tableau.solve(&basis_costs, true);
+        let prices =
+            prices.iter().zip(&scales).map(|(price, scale)| price * scale * (unit / demand) * dearest);
+        (tableau.values[..count].iter().map(|value| value * unit).collect(), part, prices.collect())
     }
 }
 
@@ -251,6 +262,29 @@ mod tests {
             let (x, part) = solution(size);
             let off = x.iter().zip(&whole).map(|(x, whole)| (x / size - whole).abs()).fold(0.0, f64::max);
             assert!(part == 1.0 && off < 1e-12, "{size:e}: {part} {off:e}");
+        }
+    }
+
+    /// Maximise t below three planes in two variables within a box: min over the weights of the planes in the dual.
+    #[test]
+    fn prices_solve_the_dual() {
+        let planes = [([1.0, 0.5], 0.2), ([-1.0, 0.3], 0.4), ([0.1, -1.0], 0.3)];
+        let mut columns: Vec<Vec<f64>> = planes.iter().map(|(g, _)| vec![-g[0], -g[1], 1.0]).collect();
+        let mut costs: Vec<f64> = planes.iter().map(|(_, value)| *value).collect();
+        for row in 0..2 {
+            for sense in [1.0, -1.0] {
+                columns.push((0..3).map(|other| if other == row { sense } else { 0.0 }).collect());
+                costs.push(0.5);
+            }
+        }
+        let programme = LinearProgramme::new(3, columns, vec![10.0; 7]);
+        let (_, part, prices) = programme.cheapest_with_prices(&[0.0, 0.0, 1.0], &costs);
+        assert!((part - 1.0).abs() < 1e-12, "{part}");
+        let level =
+            |d: &[f64]| planes.iter().map(|(g, m)| m + g[0] * d[0] + g[1] * d[1]).fold(f64::MAX, f64::min);
+        assert!((level(&prices[..2]) - prices[2]).abs() < 1e-12, "{prices:?}");
+        for (dx, dy) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3), (7e-4, 7e-4), (-7e-4, 7e-4)] {
+            assert!(level(&[prices[0] + dx, prices[1] + dy]) < prices[2]);
         }
     }
 

@@ -1,8 +1,9 @@
 //! Work on threads without the interpreter's lock, stopped by Python's signals.
 
-use std::sync::Arc;
+use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
@@ -47,7 +48,38 @@ impl Record for Stop {
     }
 }
 
-/// Does work on a thread of its own. Python answers signals on the calling thread alone, so this one waits, and
+/// Work of a thread.
+type Work = Box<dyn FnOnce() + Send>;
+
+/// Threads that wait for work, each with the process in which it was started: a forked process has none of them.
+static IDLE: Mutex<Vec<(u32, Sender<Work>)>> = Mutex::new(Vec::new());
+
+/// Does work on an idle thread, or on a new one. Starting a thread takes longer than many a run.
+fn on_a_thread(mut work: Work) -> PyResult<()> {
+    let process = process::id();
+    loop {
+        let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let Some((started_in, thread)) = idle else { break };
+        if started_in == process {
+            match thread.send(work) {
+                Ok(()) => return Ok(()),
+                Err(unsent) => work = unsent.0,
+            }
+        }
+    }
+    let (give, take) = channel::<Work>();
+    thread::Builder::new().stack_size(STACK).spawn(move || {
+        work();
+        loop {
+            IDLE.lock().unwrap_or_else(PoisonError::into_inner).push((process, give.clone()));
+            let Ok(next) = take.recv() else { return };
+            next();
+        }
+    })?;
+    Ok(())
+}
+
+/// Does work on another thread. Python answers signals on the calling thread alone, so this one waits, and
 /// raises what they raise, such as `KeyboardInterrupt`.
 pub fn aside<T: Send + 'static>(
     py: Python<'_>,
@@ -57,10 +89,10 @@ pub fn aside<T: Send + 'static>(
     let for_work = stop.clone();
     py.detach(|| {
         let (done, wait) = channel();
-        thread::Builder::new().stack_size(STACK).spawn(move || {
+        on_a_thread(Box::new(move || {
             // The receiver is gone if the work was left behind.
             let _ = done.send(work(for_work));
-        })?;
+        }))?;
         let mut raised: Option<(PyErr, WallInstant)> = None;
         loop {
             match (wait.recv_timeout(SIGNAL_PERIOD), &raised) {

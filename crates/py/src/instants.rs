@@ -1,5 +1,7 @@
 //! The motion of a run at instants of one's own choice.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use flexsc_core::SimulationError;
 use flexsc_core::record::{Detail, Trace};
 use pyo3::prelude::*;
@@ -11,25 +13,37 @@ use super::columns;
 use super::commands::Commands;
 use super::error::simulation_error;
 
-/// The rows of the motion at times (s) that grow, of a run that is simulated again.
-#[pyfunction]
-pub fn sample<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    run: u64,
-    times: Vec<f64>,
-    stepped: Option<&Commands>,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (run, Commands { commands, .. }) = (scenario.run(run), Commands::from_stepped(stepped));
-    let trace = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
-        let mut trace = Trace::new(Detail::Full);
-        commands.sample_motion(&run, &times, &mut stop, &mut trace)?;
-        Ok(trace)
-    })?;
-    let trace = trace.map_err(|error| simulation_error(&scenario.inner.name, error))?;
-    let topics = PyDict::new(py);
-    for (name, rows) in trace.into_columns() {
-        topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
+/// The motion of a run, simulated again as far as it is asked for, with snapshots from which later calls go on.
+#[pyclass(frozen, module = "flexsc._native")]
+pub struct MotionSampler {
+    sampler: Arc<Mutex<flexsc_core::campaign::MotionSampler>>,
+    name: String,
+}
+
+#[pymethods]
+impl MotionSampler {
+    #[new]
+    fn new(scenario: &Scenario, run: u64, stepped: Option<&Commands>) -> Self {
+        let Commands { commands, .. } = Commands::from_stepped(stepped);
+        let sampler = flexsc_core::campaign::MotionSampler::new(scenario.run(run), commands);
+        Self { sampler: Arc::new(Mutex::new(sampler)), name: scenario.inner.name.clone() }
     }
-    Ok(topics)
+
+    /// The rows of the motion at times (s) that grow.
+    fn sample<'py>(&self, py: Python<'py>, times: Vec<f64>) -> PyResult<Bound<'py, PyDict>> {
+        let sampler = Arc::clone(&self.sampler);
+        let trace = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
+            let mut trace = Trace::new(Detail::Full);
+            // Samples do not depend on those before: what a panic left is as good.
+            let mut sampler = sampler.lock().unwrap_or_else(PoisonError::into_inner);
+            sampler.sample(&times, &mut stop, &mut trace)?;
+            Ok(trace)
+        })?;
+        let trace = trace.map_err(|error| simulation_error(&self.name, error))?;
+        let topics = PyDict::new(py);
+        for (name, rows) in trace.into_columns() {
+            topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
+        }
+        Ok(topics)
+    }
 }

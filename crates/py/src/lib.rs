@@ -74,9 +74,9 @@ mod _native {
         Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
     };
     #[pymodule_export]
-    use super::instants::sample;
+    use super::instants::MotionSampler;
     #[pymodule_export]
-    use super::linear::{exponential, linear_json, loop_json, margins_json};
+    use super::linear::{exponential, linear_json, loop_json, margins_json, tuned_json};
     #[pymodule_export]
     use super::log::Log;
     #[pymodule_export]

@@ -5,6 +5,7 @@ use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
 use flexsc_core::analysis::margins::StabilityMargins;
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
+use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault};
 use flexsc_core::numerics::exponential::exponential as of_matrix;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
@@ -13,6 +14,7 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use super::Scenario;
+use super::aside::aside;
 use super::error::scenario_error;
 
 /// The body of a scenario as a linear system, with natural frequencies as they are at a time (s).
@@ -35,14 +37,18 @@ pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
     Ok(json!(parts).to_string())
 }
 
+/// The point of this name at which a loop is cut open.
+fn loop_break(name: &str) -> PyResult<LoopBreak> {
+    LoopBreak::from_name(name).ok_or_else(|| {
+        let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
+        PyValueError::new_err(format!("loop must be one of {accepted}, got '{name}'"))
+    })
+}
+
 /// The stability margins of a scenario's loop, cut open at a point.
 #[pyfunction]
 pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResult<String> {
-    let Some(point) = LoopBreak::from_name(opened) else {
-        let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
-        return Err(PyValueError::new_err(format!("loop must be one of {accepted}, got '{opened}'")));
-    };
-    let opened = OpenLoop::from_scenario(&scenario.inner, point).map_err(|fault| {
+    let opened = OpenLoop::from_scenario(&scenario.inner, loop_break(opened)?).map_err(|fault| {
         let origin = scenario.inner.name.clone();
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;
@@ -50,6 +56,33 @@ pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResu
     let name = &scenario.inner.name;
     let margins = margins.map_err(|fault| PyValueError::new_err(format!("{name}: {fault}")))?;
     Ok(json!(margins).to_string())
+}
+
+/// Keys of a scenario tuned for the largest least modulus margin, as JSON, and the text of the tuned scenario.
+#[pyfunction]
+pub fn tuned_json(
+    py: Python<'_>,
+    scenario: &Scenario,
+    keys: Vec<(String, [f64; 2])>,
+    opened: &str,
+    bandwidth: Option<f64>,
+    is_nominal: bool,
+) -> PyResult<(String, String)> {
+    let tuning = ScenarioTuning { keys, opened: loop_break(opened)?, bandwidth, is_nominal };
+    let inner = scenario.inner.clone();
+    let tuned = aside(py, move |_| {
+        let tuned = tuning.run(&inner)?;
+        let text = tuned.scenario().map(|scenario| scenario.to_toml());
+        Ok((tuned.to_json().to_string(), text))
+    })?;
+    let name = &scenario.inner.name;
+    let (table, text) = tuned.map_err(|fault: TuningFault| match fault {
+        TuningFault::Key(fault) => {
+            scenario_error(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
+        }
+        fault => PyValueError::new_err(format!("{name}: {fault}")),
+    })?;
+    Ok((table, text.map_err(scenario_error)?))
 }
 
 /// The exponential of a square matrix.

@@ -13,10 +13,12 @@ pub const MOST_FIELDS: usize = 64;
 pub const MOST_TOPICS: usize = 64;
 /// Largest length of a name or a unit, and of a description, in bytes.
 const MOST_BYTES: [usize; 2] = [64, 1000];
+/// Form of words in rows.
+pub(crate) const WORD: &str = "a word of at most 64 bytes without control characters";
 /// Names of columns that every table has besides its fields.
 const RESERVED: [&str; 1] = ["time_s"];
 
-/// Field of a custom topic: a floating-point number.
+/// Field of a custom topic: a floating-point number, or a word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CustomField {
     /// Name in snake case: `integral`.
@@ -25,12 +27,19 @@ pub struct CustomField {
     pub unit: String,
     /// Description of the field.
     pub doc: String,
+    /// True if values are words, such as states.
+    pub is_word: bool,
 }
 
 impl CustomField {
-    /// Creates a field with its name, unit and description.
+    /// Creates a field of numbers with its name, unit and description.
     pub fn new(name: impl Into<String>, unit: impl Into<String>, doc: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into(), doc: doc.into() }
+        Self { name: name.into(), unit: unit.into(), doc: doc.into(), is_word: false }
+    }
+
+    /// Creates a field of words with its name and description.
+    pub fn word(name: impl Into<String>, doc: impl Into<String>) -> Self {
+        Self { name: name.into(), unit: String::new(), doc: doc.into(), is_word: true }
     }
 }
 
@@ -92,6 +101,16 @@ pub enum TopicError {
         /// Number of values.
         count: usize,
     },
+    /// Row with a word for a number, a number for a word, or a word that is too long or contains control characters.
+    #[error("topic `{topic}`, field `{field}`: must be {expected}")]
+    Value {
+        /// Name of the topic.
+        topic: String,
+        /// Name of the field.
+        field: String,
+        /// Form of the field's values.
+        expected: &'static str,
+    },
     /// Two parts of a run that declare different topics of one name.
     #[error("topic `{0}`: is declared by two parts with different fields")]
     Conflict(String),
@@ -106,6 +125,16 @@ fn is_name(name: &str) -> bool {
     name.len() <= MOST_BYTES[0]
         && name.as_bytes().first().is_some_and(u8::is_ascii_lowercase)
         && name.bytes().all(allowed)
+}
+
+/// Returns true if a text has at most `most` bytes and no control characters.
+fn fits(text: &str, most: usize) -> bool {
+    text.len() <= most && !text.chars().any(char::is_control)
+}
+
+/// Returns true if a word can be the value of a field.
+pub(crate) fn is_word(text: &str) -> bool {
+    fits(text, MOST_BYTES[0])
 }
 
 /// Converts a name in snake case to camel case.
@@ -140,7 +169,6 @@ impl CustomTopic {
         if fields.is_empty() || fields.len() > MOST_FIELDS {
             return Err(TopicError::Count { topic: name, count: fields.len() });
         }
-        let fits = |text: &str, most: usize| text.len() <= most && !text.chars().any(char::is_control);
         let [most, most_of_doc] = MOST_BYTES;
         for (index, field) in fields.iter().enumerate() {
             if !is_name(&field.name) || RESERVED.contains(&field.name.as_str()) {
@@ -182,7 +210,10 @@ impl CustomTopic {
 
     /// Returns empty columns for the rows.
     pub(crate) fn columns(&self) -> Columns {
-        let column = |field: &CustomField| (field.name.clone(), Column::Numbers(Vec::new()));
+        let column = |field: &CustomField| {
+            let empty = if field.is_word { Column::Texts(Vec::new()) } else { Column::Numbers(Vec::new()) };
+            (field.name.clone(), empty)
+        };
         Columns { columns: self.fields.iter().map(column).collect() }
     }
 }

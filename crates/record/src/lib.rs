@@ -41,7 +41,7 @@ use flexsc_numerics::time::Instant;
 use thiserror::Error;
 
 pub use columns::{Column, Columns};
-pub use custom_row::CustomRow;
+pub use custom_row::{CustomRow, CustomValue};
 pub use custom_topic::{CustomField, CustomTopic, TopicError};
 pub use log_file::{Log, LogError};
 pub use log_topic::LogTopic;

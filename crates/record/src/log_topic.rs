@@ -58,7 +58,8 @@ impl LogTopic<'_> {
                 topic.fields().iter().map(|field| {
                     let unit =
                         if field.unit.is_empty() { String::new() } else { format!(" ({})", field.unit) };
-                    (field.name.as_str(), Type::Double, format!("{}{unit}", field.doc))
+                    let kind = if field.is_word { Type::String } else { Type::Double };
+                    (field.name.as_str(), kind, format!("{}{unit}", field.doc))
                 }),
             ),
         }

@@ -151,7 +151,8 @@ fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> 
     }
     let tables = files.iter().filter(|(name, _)| name.ends_with("statistics.csv"));
     let infinite = |bytes: &[u8]| {
-        String::from_utf8_lossy(bytes).split([',', '\n']).any(|cell| cell.contains("inf") || cell == "NaN")
+        let is_infinite = |cell: &str| cell.parse().is_ok_and(|number: f64| !number.is_finite());
+        String::from_utf8_lossy(bytes).split([',', '\n']).any(is_infinite)
     };
     if tables.into_iter().any(|(_, bytes)| infinite(bytes)) {
         return Ok(Some("inf or NaN in statistics.csv".to_owned()));

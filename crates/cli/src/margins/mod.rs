@@ -35,7 +35,7 @@ pub struct MarginsArgs {
 
 /// Point at which a loop is cut open.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum BreakPoint {
+pub enum BreakPoint {
     /// Commands of the law
     #[default]
     Command,
@@ -46,7 +46,7 @@ enum BreakPoint {
 }
 
 impl BreakPoint {
-    fn loop_break(self) -> LoopBreak {
+    pub fn loop_break(self) -> LoopBreak {
         match self {
             Self::Command => LoopBreak::Command,
             Self::Torque => LoopBreak::Torque,
@@ -79,13 +79,13 @@ pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
 }
 
 /// Prints rows of text in columns.
-fn print_table(rows: &[Vec<String>]) {
+pub fn print_table(rows: &[Vec<String>]) {
     for line in columns(rows, 0) {
         say!("  {line}");
     }
 }
 
-fn texts(words: &[&str]) -> Vec<String> {
+pub fn texts(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 

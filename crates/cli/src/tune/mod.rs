@@ -1,6 +1,8 @@
-//! `flexsc tune`: admissible gains of the extra loop, and a schedule of the best ones.
+//! `flexsc tune`: keys of any linear law for the largest least modulus margin; or admissible gains of the extra loop of
+//! a `pd` law, and a schedule of the best ones.
 
 mod figures;
+mod structured;
 mod table;
 mod tuned;
 mod tuning;
@@ -22,6 +24,8 @@ use tuning::TuneSetup;
 pub struct TuneArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
+    #[command(flatten)]
+    structured: structured::StructuredArgs,
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
@@ -138,6 +142,12 @@ impl TuneArgs {
 
 pub fn run(args: &TuneArgs) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
+    if args.structured.is_asked_for() {
+        let scenario = args.scenario.load()?;
+        let tuned = args.structured.results(&scenario, args.units.units)?;
+        args.structured.save(&tuned)?;
+        return show(&tuned, Some(&args.drawing), args.scenario.json);
+    }
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
         // An error here precedes the figures, so that none is drawn without a schedule.

@@ -117,7 +117,7 @@ impl ThreeAxisStateSpace {
 impl Part for ThreeAxisStateSpace {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         let row = self.topic.as_ref().filter(|_| at.occasion == Occasion::Period);
-        let row = row.and_then(|topic| topic.row(self.state.as_slice()).ok());
+        let row = row.and_then(|topic| topic.row(self.state.iter().copied()).ok());
         if let Some(row) = row {
             report.add(row);
         }

@@ -13,3 +13,4 @@ pub mod open_loop;
 pub mod rigid_cycle;
 pub mod sampled_loop;
 pub mod spacecraft_modes;
+pub mod structured_tuning;

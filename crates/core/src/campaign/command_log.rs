@@ -14,7 +14,7 @@ const HEADER: &str = "time_whole_s,time_fs,x,y,z";
 
 /// Log of the commands about each axis ([`Command::Torque`]) and of the instants at which they were given, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CommandLog(Vec<(Instant, [f64; 3])>);
+pub struct CommandLog(pub(super) Vec<(Instant, [f64; 3])>);
 
 impl CommandLog {
     /// Appends a command given at `now`; it replaces one of the same instant, which was never executed.
@@ -71,32 +71,6 @@ impl CommandLog {
         self.run_until(&mut simulation, until, &mut both)?;
         simulation.record_interruption(&mut both)?;
         Ok(both.0.finish(judged))
-    }
-
-    /// Repeats a run, and returns its motion at increasing times (s).
-    ///
-    /// # Errors
-    /// The errors of a run.
-    pub fn sample_motion(
-        &self,
-        run: &CampaignRun,
-        times: &[f64],
-        stop: &mut impl Record,
-        record: &mut impl Record,
-    ) -> Result<(), SimulationError> {
-        let mut simulation = Simulation::new(&run.scenario, run.number);
-        let mut commands = self.0.iter().peekable();
-        for time in times {
-            while let Some((changed_at, values)) =
-                commands.next_if(|(changed_at, _)| changed_at.seconds() <= *time)
-            {
-                simulation.run_up_to(*changed_at, stop)?;
-                simulation.set_external_command(values.map(Command::Torque));
-            }
-            simulation.run_to(*time, stop)?;
-            simulation.record_now(record)?;
-        }
-        Ok(())
     }
 
     /// Returns the provenance in the log of the run, including its commands.

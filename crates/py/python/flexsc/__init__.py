@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
+    from flexsc._structured_tuning import TunedPlant, TunedScenario
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -117,6 +118,8 @@ __all__ = [
     "ThreeAxisHold",
     "ThreeAxisLaw",
     "Topic",
+    "TunedPlant",
+    "TunedScenario",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -163,6 +166,8 @@ _LATER = {
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
+    "TunedPlant": "_structured_tuning",
+    "TunedScenario": "_structured_tuning",
     "StateSpace": "structure",
     "Structure": "structure",
     "appendage_from_matrices": "structure",

@@ -14,8 +14,9 @@ Self_ = TypeVar("Self_", bound="OwnPart")
 class OwnPart(ABC):  # noqa: B024
     """The common base of all parts; each role adds its methods."""
 
-    signals: Mapping[str, str | tuple[str, int]] = MappingProxyType({})
-    """Attributes that a full log has as columns, each with its unit, or with (unit, size) for a sequence.
+    signals: Mapping[str, str | tuple[str, int] | type[str]] = MappingProxyType({})
+    """Attributes that a full log has as columns, each with its unit, with (unit, size) for a sequence, or with
+    `str` for words, such as the states of a law.
 
     >>> class Sliding(Law):
     ...     period = 0.25

@@ -200,6 +200,7 @@ class Result(Topics):
         self._stepped = stepped
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
+        self._motion: engine.MotionSampler | None = None
 
     def _named(self, topics: dict[str, dict[str, npt.NDArray[Any]]]) -> dict[str, Topic]:
         about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed), "run": str(self.run)}
@@ -222,7 +223,8 @@ class Result(Topics):
 
         The run is simulated again, up to the last time, and its exact motion is read at each time: nothing is
         interpolated. At the time of a row of a full log, such as a switching, the values are bit-identical to
-        those of the row.
+        those of the row. Later calls go on from the last sample, or from one of 64 snapshots of the run; a run
+        with parts of one's own has none, and is simulated from its start.
 
         Args:
             times: Of shape (times,), in any order, from 0 to the duration.
@@ -253,7 +255,9 @@ class Result(Topics):
         order = np.argsort(asked, kind="stable")
         back = np.empty_like(order)
         back[order] = np.arange(len(order))
-        topics = engine.sample(self.scenario._native, self.run, asked[order].tolist(), self._stepped)
+        if self._motion is None:
+            self._motion = engine.MotionSampler(self.scenario._native, self.run, self._stepped)
+        topics = self._motion.sample(asked[order].tolist())
         seen = {
             name: {column: values[back] for column, values in arrays(columns).items()}
             for name, columns in topics.items()
@@ -321,7 +325,7 @@ class Result(Topics):
         return self._drawn
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_drawn": None}
+        return {**self.__dict__, "_drawn": None, "_motion": None}
 
     def to_mcap(self, path: str | os.PathLike[str], log: Logged | None = None) -> int:
         """Write the run's log, with the same bytes as the command writes, and return the number of bytes.

@@ -17,6 +17,7 @@ from flexsc._values import arrays, run_number, toml
 if TYPE_CHECKING:
     from flexsc._linear import Linear
     from flexsc._loop_margins import StabilityMargins
+    from flexsc._structured_tuning import TunedScenario
     from flexsc._open_loop import Break
     from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
@@ -234,6 +235,38 @@ class Scenario(ScenarioFile):
         from flexsc._loop_margins import stability_margins
 
         return stability_margins(self, loop)
+
+    def tune(
+        self,
+        ranges: Mapping[str, tuple[float, float]],
+        *,
+        loop: Break = "command",
+        bandwidth: float | None = None,
+        corners: bool = True,
+    ) -> TunedScenario:
+        """Return the scenario with the keys that maximise the least modulus margin: `flexsc tune --vary`.
+
+        The margin is that of all signals together, and the least one is taken over the nominal plant and the
+        corners of `[uncertain]`.
+
+        Args:
+            ranges: The least and the largest value of each key, such as `{"law.pd.k_d": (10.0, 400.0)}`.
+            loop: The point at which the loops are opened.
+            bandwidth: A frequency (rad/s) at which the loop gain of the nominal plant stays 1 or more.
+            corners: Whether there is a plant for each corner of the uncertain keys.
+
+        >>> scenario = flexsc.Scenario.example("earth-observer")
+        >>> tuned = scenario.tune({"law.attitude.damping": (0.4, 1.5)}, bandwidth=0.1)
+        >>> tuned.least_margin > tuned.least_margin_before
+        True
+
+        Raises:
+            ScenarioError: A key cannot be tuned, or the loop is not linear: the key, and the reason.
+            ValueError: The loop of a plant is not stable with the keys of the scenario.
+        """
+        from flexsc._structured_tuning import tune
+
+        return tune(self, ranges, loop, bandwidth, corners)
 
     def with_law(
         self,

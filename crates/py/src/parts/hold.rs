@@ -59,7 +59,9 @@ pub fn never() -> PyErr {
 pub fn phase(label: &str) -> PyResult<Phase> {
     PHASES.into_iter().find(|phase| phase.label() == label).ok_or_else(|| {
         let all = PHASES.map(|phase| format!("'{}'", phase.label())).join(", ");
-        PyValueError::new_err(format!("state must be one of {all}, got {label:?}"))
+        PyValueError::new_err(format!(
+            "state must be one of {all}, got {label:?}; any other word is a signal of the law: signals = {{\"mode\": str}}"
+        ))
     })
 }
 

@@ -3,19 +3,28 @@
 use std::sync::Arc;
 
 use flexsc_core::control::part::{Occasion, ReportContext};
-use flexsc_core::record::{CustomField, CustomTopic, Report};
+use flexsc_core::record::{CustomField, CustomTopic, CustomValue, Report};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use super::object::{Method, shape};
 
-/// Signals of a part: the topic of their rows, and the attribute of each with its size.
+/// What an attribute holds.
+#[derive(Copy, Clone, Debug)]
+enum Held {
+    Number,
+    /// So many numbers.
+    Numbers(usize),
+    Word,
+}
+
+/// Signals of a part: the topic of their rows, and each attribute with what it holds.
 #[derive(Clone, Debug)]
 pub struct Signals {
     role: String,
     topic: Arc<CustomTopic>,
-    /// Name, and the count of numbers of a sequence.
-    attributes: Arc<[(String, Option<usize>)]>,
+    attributes: Arc<[(String, Held)]>,
     /// True if the first column is the axis of the part.
     has_axis: bool,
 }
@@ -26,7 +35,7 @@ impl Signals {
         let declared = part.getattr("signals")?;
         let wrong = |found: String| {
             PyTypeError::new_err(format!(
-                "{role}: signals must map each attribute to its unit, or to (unit, size), got {found}"
+                "{role}: signals must map each attribute to its unit, to (unit, size), or to str for words, got {found}"
             ))
         };
         let items = declared.call_method0("items").map_err(|_| wrong(shape(&declared)))?;
@@ -35,22 +44,21 @@ impl Signals {
         let mut attributes = Vec::new();
         for item in items.try_iter()? {
             let (name, value): (String, Bound<'_, PyAny>) = item?.extract()?;
-            let (unit, size) = match value.extract::<String>() {
-                Ok(unit) => (unit, None),
-                Err(_) => match value.extract::<(String, usize)>() {
-                    Ok((unit, size)) => (unit, Some(size)),
-                    Err(_) => return Err(wrong(format!("{name}: {}", value.repr()?))),
-                },
-            };
             let doc = format!("Attribute `{name}` of the {role}.");
-            match size {
-                None => fields.push(CustomField::new(&name, unit, doc)),
-                Some(size) => {
-                    let each = |index| CustomField::new(format!("{name}{index}"), &unit, &doc);
-                    fields.extend((0..size).map(each));
-                }
-            }
-            attributes.push((name, size));
+            let held = if value.is(part.py().get_type::<PyString>()) {
+                fields.push(CustomField::word(&name, doc));
+                Held::Word
+            } else if let Ok(unit) = value.extract::<String>() {
+                fields.push(CustomField::new(&name, unit, doc));
+                Held::Number
+            } else if let Ok((unit, size)) = value.extract::<(String, usize)>() {
+                let each = |index| CustomField::new(format!("{name}{index}"), &unit, &doc);
+                fields.extend((0..size).map(each));
+                Held::Numbers(size)
+            } else {
+                return Err(wrong(format!("{name}: {}", value.repr()?)));
+            };
+            attributes.push((name, held));
         }
         if attributes.is_empty() {
             return Ok(None);
@@ -75,35 +83,42 @@ impl Signals {
         report: &mut Report,
     ) {
         let Some(signals) = signals.filter(|_| at.occasion == Occasion::Period) else { return };
-        let values = Python::attach(|py| method.other(py, |part| signals.values(part, axis)));
-        let row = values.and_then(|values| signals.topic.row(values).ok());
+        let row = Python::attach(|py| {
+            method.other(py, |part| {
+                let row = signals.topic.row(signals.values(part, axis)?);
+                row.map_err(|error| PyValueError::new_err(format!("{}: signals: {error}", signals.role)))
+            })
+        });
         if let Some(row) = row {
             report.add(row);
         }
     }
 
     /// Returns the values of the signals.
-    fn values(&self, part: &Bound<'_, PyAny>, axis: usize) -> PyResult<Vec<f64>> {
-        let mut values: Vec<f64> = self.has_axis.then_some(axis as f64).into_iter().collect();
-        for (name, size) in &*self.attributes {
+    fn values(&self, part: &Bound<'_, PyAny>, axis: usize) -> PyResult<Vec<CustomValue>> {
+        let mut values: Vec<CustomValue> =
+            self.has_axis.then_some(CustomValue::Number(axis as f64)).into_iter().collect();
+        for (name, held) in &*self.attributes {
             let value = part.getattr(name.as_str())?;
             let wrong = || {
-                let expected = match size {
-                    None => "a number".to_owned(),
-                    Some(size) => format!("of shape ({size},)"),
+                let expected = match held {
+                    Held::Number => "a number".to_owned(),
+                    Held::Numbers(size) => format!("of shape ({size},)"),
+                    Held::Word => "a str".to_owned(),
                 };
                 let (role, found) = (&self.role, shape(&value));
                 PyTypeError::new_err(format!("{role}: the signal {name} must be {expected}, got {found}"))
             };
-            match size {
-                None => values.push(value.extract().map_err(|_| wrong())?),
-                Some(size) => {
+            match held {
+                Held::Number => values.push(CustomValue::Number(value.extract().map_err(|_| wrong())?)),
+                Held::Numbers(size) => {
                     let each = super::object::numbers(&value).map_err(|_| wrong())?;
                     if each.len() != *size {
                         return Err(wrong());
                     }
-                    values.extend(each);
+                    values.extend(each.into_iter().map(CustomValue::Number));
                 }
+                Held::Word => values.push(CustomValue::Word(value.extract().map_err(|_| wrong())?)),
             }
         }
         Ok(values)

@@ -13,7 +13,7 @@ use flexsc_core::dynamics::three_axis::RotorObservation;
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::row::{FieldKind, RowField, Topic, TopicPanel};
-use flexsc_core::record::{CustomTopic, Detail, Report, TOPICS};
+use flexsc_core::record::{CustomField, CustomTopic, Detail, Report, TOPICS};
 use nalgebra::Quaternion;
 
 use super::Tab;
@@ -67,25 +67,29 @@ fn add_lines(path: &str, fields: &[RowField], panel: &TopicPanel, count: usize, 
     }
 }
 
-/// Returns the panels of a custom topic: one for the fields of each unit.
+/// Returns the panels of a custom topic: one for the fields of each unit, and one for the words.
 fn custom_panels(topic: &CustomTopic) -> Vec<LayoutPanel> {
     let name = topic.name().trim_start_matches('/');
+    let (words, numbers): (Vec<&CustomField>, Vec<_>) =
+        topic.fields().iter().partition(|field| field.is_word);
+    let line_of = |field: &CustomField| line(format!("/{name}.{}", field.name), field.name.replace('_', " "));
+    let title = name.replace('_', " ");
     let mut units: Vec<&str> = Vec::new();
-    for field in topic.fields() {
+    for field in &numbers {
         if !units.contains(&field.unit.as_str()) {
             units.push(&field.unit);
         }
     }
     let panel = |(index, unit): (usize, &&str)| {
-        let fields = topic.fields().iter().filter(|field| field.unit == **unit);
-        let lines: Vec<PlotLine> = fields
-            .take(MOST_LINES)
-            .map(|field| line(format!("/{name}.{}", field.name), field.name.replace('_', " ")))
-            .collect();
+        let fields = numbers.iter().filter(|field| field.unit == **unit);
+        let lines: Vec<PlotLine> = fields.take(MOST_LINES).map(|field| line_of(field)).collect();
         let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
-        LayoutPanel::plot(format!("{name}_{index}"), format!("{}{unit}", name.replace('_', " ")), lines)
+        LayoutPanel::plot(format!("{name}_{index}"), format!("{title}{unit}"), lines)
     };
-    units.iter().enumerate().map(panel).collect()
+    let states: Vec<PlotLine> = words.iter().take(MOST_LINES).map(|field| line_of(field)).collect();
+    let states =
+        (!states.is_empty()).then(|| LayoutPanel::states(format!("{name}_states"), title.clone(), states));
+    units.iter().enumerate().map(panel).chain(states).collect()
 }
 
 /// Returns the topics with declared panels without a place elsewhere that the logs of a scenario have.

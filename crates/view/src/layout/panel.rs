@@ -98,7 +98,7 @@ impl LayoutPanel {
     }
 
     /// Creates a panel of states over time.
-    pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
+    pub fn states(name: impl Into<String>, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, PanelContent::States(lines))
     }
 

@@ -9,10 +9,18 @@ use nalgebra::Complex;
 
 use super::frequency_response::modulus;
 
-/// Angles in a decade.
-const DECADE: f64 = 200.0;
-/// Angles on either side of a pole with much damping, and with little.
-const SIDES: [u32; 2] = [20, 90];
+/// Density of a grid.
+struct Density {
+    /// Angles in a decade.
+    decade: f64,
+    /// Angles on either side of a pole with much damping, and with little.
+    sides: [u32; 2],
+}
+
+/// Grid on which a curve is drawn, and every crossing is seen.
+const FINE: Density = Density { decade: 200.0, sides: [20, 90] };
+/// Grid on which every local minimum is seen.
+const COARSE: Density = Density { decade: 40.0, sides: [6, 16] };
 /// Damping ratio below which a pole has little damping.
 const LIGHT: f64 = 0.1;
 /// Smallest half width of a resonance.
@@ -28,30 +36,41 @@ const LOWEST: f64 = 0.01;
 
 /// Returns the angles for a loop with these poles of the closed loop and others, in increasing order.
 pub fn frequency_grid(closed: &[Complex<f64>], others: &[Complex<f64>]) -> Vec<f64> {
-    let sizes = resonances(closed).into_iter().map(|(angle, width)| libm::hypot(angle, width));
-    // Several poles of rigid motion, which only an open loop has, are far from 1 by rounding.
-    let smallest = sizes.filter(|size| *size > STILL).fold(PI, f64::min);
-    let lasting = resonances(&[closed, others].concat());
-    let low = LOWEST * smallest;
-    let count = libm::ceil(DECADE * libm::log10(PI / low)) as u32;
-    let step = libm::log(PI / low) / f64::from(count);
-    let mut angles: Vec<f64> = (0..count).map(|k| low * libm::exp(f64::from(k) * step)).collect();
-    for (angle, width) in lasting {
-        let width = width.max(NARROWEST);
-        let sides = SIDES[usize::from(width < LIGHT * angle)];
-        for k in 1..=sides {
-            let offset = width * libm::tan(FRAC_PI_2 * f64::from(k) / f64::from(sides + 1));
-            angles.extend([angle - offset, angle + offset]);
+    FINE.grid(closed, others)
+}
+
+/// Returns fewer angles, which separate the local minima and maxima of a smooth function of the closed loop.
+pub fn coarse_frequency_grid(closed: &[Complex<f64>], others: &[Complex<f64>]) -> Vec<f64> {
+    COARSE.grid(closed, others)
+}
+
+impl Density {
+    fn grid(&self, closed: &[Complex<f64>], others: &[Complex<f64>]) -> Vec<f64> {
+        let sizes = resonances(closed).into_iter().map(|(angle, width)| libm::hypot(angle, width));
+        // Several poles of rigid motion, which only an open loop has, are far from 1 by rounding.
+        let smallest = sizes.filter(|size| *size > STILL).fold(PI, f64::min);
+        let lasting = resonances(&[closed, others].concat());
+        let low = LOWEST * smallest;
+        let count = libm::ceil(self.decade * libm::log10(PI / low)) as u32;
+        let step = libm::log(PI / low) / f64::from(count);
+        let mut angles: Vec<f64> = (0..count).map(|k| low * libm::exp(f64::from(k) * step)).collect();
+        for (angle, width) in lasting {
+            let width = width.max(NARROWEST);
+            let sides = self.sides[usize::from(width < LIGHT * angle)];
+            for k in 1..=sides {
+                let offset = width * libm::tan(FRAC_PI_2 * f64::from(k) / f64::from(sides + 1));
+                angles.extend([angle - offset, angle + offset]);
+            }
+            if angle > 0.0 && width > NARROWEST {
+                angles.push(angle);
+            }
         }
-        if angle > 0.0 && width > NARROWEST {
-            angles.push(angle);
-        }
+        angles.retain(|angle| (low..PI).contains(angle));
+        angles.push(PI);
+        angles.sort_by(f64::total_cmp);
+        angles.dedup();
+        angles
     }
-    angles.retain(|angle| (low..PI).contains(angle));
-    angles.push(PI);
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
-    angles
 }
 
 /// Returns the angles and half widths of the resonances of these poles, each once.

@@ -23,8 +23,11 @@ pub use loci::LociValues;
 pub use poles::{UnstableLoop, eigenvalues};
 
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
+pub(super) use frequency_grid::coarse_frequency_grid;
+pub(super) use frequency_response::{largest_gain, modulus, unit_circle};
+pub(super) use poles::ROUNDING;
+
 use crossings::SampledTransfer;
-use frequency_response::{largest_gain, unit_circle};
 use loci::loci;
 
 /// Number of largest values on the grid that are refined.

@@ -1,0 +1,240 @@
+//! `flexsc tune --vary`: keys of a law that maximise the least modulus margin over the plants of a scenario.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use flexsc_core::analysis::structured_tuning::{
+    LoopSensitivity, PlantMargin, ScenarioTuning, TunedScenario, TuningFault, TuningPoint,
+};
+use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
+use flexsc_core::{Scenario, ScenarioError};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
+use serde_json::Value as Json;
+
+use crate::error::CliError;
+use crate::human::{Units, digits};
+use crate::margins::{BreakPoint, print_table, texts};
+use crate::results::{Results, with_scenario_name};
+use crate::{files, out, say};
+
+/// Number of plants of which the text prints the margins.
+const PRINTED: usize = 6;
+
+/// Arguments of a search over keys.
+#[derive(clap::Args)]
+#[group(skip)]
+pub struct StructuredArgs {
+    /// Maximise the least modulus margin over the values of a key, such as law.pd.k_d=10:400; repeat it for several keys
+    #[arg(
+        long,
+        value_name = "KEY=LO:HI",
+        conflicts_with_all = ["frequency", "gain", "limit", "robust", "schedule", "band", "horizon", "dominant_alone"]
+    )]
+    vary: Vec<VariedKey>,
+    /// Point at which the loops are cut open
+    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "vary")]
+    opened: BreakPoint,
+    /// Frequency (rad/s) at which the loop gain stays 1 or more with the nominal plant
+    #[arg(long, value_name = "FREQUENCY", requires = "vary")]
+    bandwidth: Option<f64>,
+    /// Leave out the corners of `[uncertain]`: the nominal plant alone
+    #[arg(long, requires = "vary")]
+    nominal: bool,
+    /// Write the tuned scenario to a new file
+    #[arg(long, value_name = "FILE", requires = "vary")]
+    save: Option<PathBuf>,
+}
+
+/// Key with its range.
+#[derive(Clone, Debug)]
+pub struct VariedKey {
+    key: String,
+    range: [f64; 2],
+}
+
+impl FromStr for VariedKey {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once('=').and_then(|(key, range)| {
+            let (low, high) = range.split_once(':')?;
+            Some((key.trim(), low.trim().parse::<f64>().ok()?, high.trim().parse::<f64>().ok()?))
+        });
+        match parsed {
+            Some((key, low, high))
+                if !key.is_empty() && low < high && low.is_finite() && high.is_finite() =>
+            {
+                Ok(Self { key: key.to_owned(), range: [low, high] })
+            }
+            _ => Err(format!("must be KEY=LO:HI with LO < HI, got {text}")),
+        }
+    }
+}
+
+/// Result of a search over keys.
+pub struct StructuredResults {
+    name: String,
+    found: TunedScenario,
+    units: Units,
+}
+
+impl StructuredArgs {
+    /// Returns true if keys are to be varied.
+    pub fn is_asked_for(&self) -> bool {
+        !self.vary.is_empty()
+    }
+
+    /// Searches for the values of the keys.
+    pub fn results(&self, scenario: &Scenario, units: Units) -> Result<StructuredResults, CliError> {
+        if let Some(path) = &self.save
+            && out::ending(path) != Some("toml")
+        {
+            return Err(CliError::Arguments(format!("--save {}: must end in .toml", path.display())));
+        }
+        let tuning = ScenarioTuning {
+            keys: self.vary.iter().map(|varied| (varied.key.clone(), varied.range)).collect(),
+            opened: self.opened.loop_break(),
+            bandwidth: self.bandwidth,
+            is_nominal: self.nominal,
+        };
+        let name = scenario.name.clone();
+        let found = tuning.run(scenario).map_err(|fault| match fault {
+            TuningFault::Key(ConfigError { key, why }) => {
+                CliError::from(ScenarioError::Key { origin: name.clone(), key, why })
+            }
+            fault => CliError::Arguments(format!("{name}: {fault}")),
+        })?;
+        Ok(StructuredResults { name, found, units })
+    }
+
+    /// Writes the tuned scenario, if it is to be.
+    pub fn save(&self, results: &StructuredResults) -> Result<(), CliError> {
+        let Some(path) = &self.save else { return Ok(()) };
+        let text = results.found.scenario()?.to_toml();
+        if std::fs::read(path).is_ok_and(|content| content != text.as_bytes()) {
+            let why =
+                format!("--save {}: already exists, with other content; give another name", path.display());
+            return Err(CliError::Arguments(why));
+        }
+        files::write(path, text.as_bytes(), true)?;
+        say!("{}", path.display());
+        Ok(())
+    }
+}
+
+impl StructuredResults {
+    /// Returns a name for a plant: the values of its uncertain keys.
+    fn plant(&self, index: usize) -> String {
+        let each = self.found.loops.plant(index).into_iter();
+        let values: Vec<String> = each.map(|(key, value)| format!("{key} = {}", digits(value))).collect();
+        if values.is_empty() { "nominal".to_owned() } else { values.join(", ") }
+    }
+
+    /// Returns the plants with the least margins, before or after, and the nominal one.
+    fn printed(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.found.tuned.after.plants.len()).collect();
+        let least = |plant: &usize| {
+            let at = |point: &TuningPoint| point.plants[*plant].margin;
+            at(&self.found.tuned.before).min(at(&self.found.tuned.after))
+        };
+        order.sort_by(|a, b| least(a).total_cmp(&least(b)));
+        order.truncate(PRINTED);
+        if !order.contains(&0) {
+            order.push(0);
+        }
+        order
+    }
+
+    /// Returns the margin over frequency of a plant, with the values of a point.
+    fn curve(&self, point: &TuningPoint, plant: usize) -> Vec<Point> {
+        let opened = self.found.loops.loop_at(&point.values, plant).ok();
+        let sensitivity = opened.as_ref().and_then(LoopSensitivity::new);
+        sensitivity.and_then(|sensitivity| sensitivity.margins()).unwrap_or_default()
+    }
+
+    fn print_keys(&self) {
+        let mut rows = vec![texts(&["key", "before", "after", "lowest", "highest"])];
+        let points = self.found.tuned.before.values.iter().zip(&self.found.tuned.after.values);
+        for (parameter, (before, after)) in self.found.parameters.iter().zip(points) {
+            let [low, high] = parameter.range;
+            let numbers = [*before, *after, low, high].map(digits);
+            rows.push([vec![parameter.key.clone()], numbers.to_vec()].concat());
+        }
+        print_table(&rows);
+    }
+
+    fn print_plants(&self) {
+        let (factor, unit) = self.units.frequency();
+        let mut rows = vec![
+            texts(&["margin", "at", "margin", "at", ""]),
+            texts(&["before", unit, "after", unit, "plant"]),
+        ];
+        let cells = |margin: &PlantMargin| [digits(margin.margin), digits(margin.frequency_rad_s * factor)];
+        for plant in self.printed() {
+            let (before, after) =
+                (&self.found.tuned.before.plants[plant], &self.found.tuned.after.plants[plant]);
+            rows.push([cells(before).as_slice(), &cells(after), &[self.plant(plant)]].concat());
+        }
+        print_table(&rows);
+    }
+}
+
+impl Results for StructuredResults {
+    fn json(&self) -> Vec<Json> {
+        vec![with_scenario_name(&self.name, self.found.to_json())]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        let worst = |point: &TuningPoint| point.worst().map_or(0, |worst| worst.plant);
+        let (before, after) = (&self.found.tuned.before, &self.found.tuned.after);
+        let mut lines = vec![
+            ("nominal, before", colour::GREY, LayerShape::Line(1.4), self.curve(before, 0)),
+            ("nominal, tuned", colour::BLUE, LayerShape::Line(1.6), self.curve(after, 0)),
+        ];
+        if self.found.loops.plants() > 1 {
+            lines.push((
+                "worst plant, before",
+                colour::GREY,
+                LayerShape::Dashes,
+                self.curve(before, worst(before)),
+            ));
+            lines.push((
+                "worst plant, tuned",
+                colour::BLUE,
+                LayerShape::Dashes,
+                self.curve(after, worst(after)),
+            ));
+        }
+        let shown = |value: f64| value.min(2.0);
+        let all = || lines.iter().flat_map(|line| &line.3);
+        let x = FigureAxis::decades("frequency", "rad/s", all().map(|point| point.0));
+        let y = FigureAxis::from_zero("modulus margin, 1/s1(S)", "", all().map(|point| shown(point.1)));
+        let layers = lines.into_iter().map(|(name, colour, shape, points)| {
+            let points = points.into_iter().map(|(x, y)| (x, if y > 2.0 { f64::NAN } else { y })).collect();
+            Layer::new(name, colour, shape, points)
+        });
+        let layers = layers.collect();
+        let title = format!("{}: modulus margin before and after tuning", self.name);
+        vec![(
+            "margin".to_owned(),
+            Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 },
+        )]
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        say!(
+            "{}   least modulus margin of {}, cut open at the {}: {} before, {} tuned, {}",
+            self.name,
+            counted(self.found.loops.plants(), "plant"),
+            self.found.opened().name(),
+            digits(self.found.tuned.before.least()),
+            digits(self.found.tuned.after.least()),
+            counted(self.found.tuned.steps, "step"),
+        );
+        self.print_keys();
+        self.print_plants();
+        Ok(())
+    }
+}

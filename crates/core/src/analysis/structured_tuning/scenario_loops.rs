@@ -1,0 +1,141 @@
+//! Loops of a scenario: with values of its keys, for the nominal plant and the corners of its uncertain keys.
+
+use flexsc_formats::document::{ConfigError, Document, key};
+use toml::{Table, Value};
+
+use crate::analysis::open_loop::{LoopBreak, OpenLoop};
+use crate::scenario::Scenario;
+use crate::uncertain::{Distribution, Normal};
+
+/// Largest number of uncertain keys: a set has a plant for each corner.
+pub const MOST_UNCERTAIN: usize = 10;
+
+/// Number of standard deviations to a corner of a normal distribution.
+const DEVIATIONS: f64 = 3.0;
+
+/// Uncertain key, and its values at the corners.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UncertainKey {
+    /// Key of the scenario.
+    pub key: String,
+    /// Least and largest value.
+    pub limits: [f64; 2],
+}
+
+/// Loops of a scenario at one point at which they are cut open.
+#[derive(Clone, Debug)]
+pub struct ScenarioLoops {
+    origin: String,
+    table: Table,
+    keys: Vec<String>,
+    opened: LoopBreak,
+    uncertain: Vec<UncertainKey>,
+}
+
+impl ScenarioLoops {
+    /// Prepares the loops of a scenario with values of `keys`, for its nominal plant and, if `corners` is set, for the
+    /// corners of `[uncertain]`: the limits of uniform distributions, three standard deviations of normal ones, and the
+    /// least and the largest of several values.
+    ///
+    /// # Errors
+    /// A key that is no number of the scenario, and more than [`MOST_UNCERTAIN`] uncertain keys.
+    pub fn new(
+        scenario: &Scenario,
+        opened: LoopBreak,
+        keys: Vec<String>,
+        corners: bool,
+    ) -> Result<Self, ConfigError> {
+        let whole = scenario.self_contained();
+        let mut table = whole.to_table();
+        table.remove("uncertain");
+        table.remove("correlated");
+        for name in &keys {
+            number(&table, name).ok_or_else(|| ConfigError::new(name, "is no number of this scenario"))?;
+        }
+        let mut uncertain = Vec::new();
+        for (name, distribution) in scenario.uncertain.iter().filter(|_| corners) {
+            if keys.contains(name) {
+                return Err(ConfigError::new(name, "is uncertain: a tuned key has one value"));
+            }
+            // Keys that are not numbers of the loop, such as the seed of a noise, have no effect on it.
+            let own = number(&table, name).unwrap_or(f64::NAN);
+            uncertain.push(UncertainKey { key: name.clone(), limits: limits(distribution, own) });
+        }
+        if uncertain.len() > MOST_UNCERTAIN {
+            let why = format!("has {} keys: at most {MOST_UNCERTAIN} have corners", uncertain.len());
+            return Err(ConfigError::new("uncertain", why));
+        }
+        Ok(Self { origin: scenario.name.clone(), table, keys, opened, uncertain })
+    }
+
+    /// Returns the number of plants: the nominal one, and the corners.
+    pub fn plants(&self) -> usize {
+        if self.uncertain.is_empty() { 1 } else { 1 + (1 << self.uncertain.len()) }
+    }
+
+    /// Returns the uncertain keys with the limits of their values.
+    pub fn uncertain(&self) -> &[UncertainKey] {
+        &self.uncertain
+    }
+
+    /// Returns the values of the uncertain keys of a plant; none for the nominal one.
+    pub fn plant(&self, index: usize) -> Vec<(&str, f64)> {
+        let Some(corner) = index.checked_sub(1) else { return Vec::new() };
+        let each = self.uncertain.iter().enumerate();
+        each.map(|(place, uncertain)| (uncertain.key.as_str(), uncertain.limits[(corner >> place) & 1]))
+            .collect()
+    }
+
+    /// Returns the value of a key in the scenario.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        number(&self.table, name)
+    }
+
+    /// Returns the scenario with values of the keys, for a plant.
+    ///
+    /// # Errors
+    /// A value that the scenario does not accept.
+    pub fn scenario(&self, values: &[f64], plant: usize) -> Result<Scenario, String> {
+        let mut table = self.table.clone();
+        let tuned = self.keys.iter().map(String::as_str).zip(values.iter().copied());
+        for (name, value) in tuned.chain(self.plant(plant)) {
+            key::set(&mut table, name, Value::Float(value))?;
+        }
+        Scenario::from_document(&Document::from_table(&self.origin, table)).map_err(|error| error.to_string())
+    }
+
+    /// Returns the loop with values of the keys, for a plant.
+    ///
+    /// # Errors
+    /// A value that the scenario does not accept, and a scenario without a linear loop.
+    pub fn loop_at(&self, values: &[f64], plant: usize) -> Result<OpenLoop, String> {
+        let scenario = self.scenario(values, plant)?;
+        OpenLoop::from_scenario(&scenario, self.opened)
+            .map_err(|fault| format!("{}: `{}` {}", self.origin, fault.key, fault.why))
+    }
+}
+
+/// Returns the number at a key.
+fn number(table: &Table, name: &str) -> Option<f64> {
+    match key::get(table, name)? {
+        Value::Float(value) => Some(*value),
+        Value::Integer(value) => Some(*value as f64),
+        _ => None,
+    }
+}
+
+/// Returns the limits of a distribution for a key whose value in the scenario is `own`.
+fn limits(distribution: &Distribution, own: f64) -> [f64; 2] {
+    let around = |middle: f64, half: f64| [middle - half.abs(), middle + half.abs()];
+    match distribution {
+        Distribution::Uniform([low, high]) => [low.get(), high.get()],
+        Distribution::LogUniform([low, high]) => [low.get(), high.get()],
+        Distribution::Normal(Normal { mean, sd }) => around(mean.get(), DEVIATIONS * sd.get()),
+        Distribution::RelativeUniform(part) => around(own, part.get() * own),
+        Distribution::RelativeNormal(sd) => around(own, DEVIATIONS * sd.get() * own),
+        Distribution::Choice(values) => {
+            let all = || values.iter().map(|value| value.get());
+            [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Tuning of keys of a scenario over its plants.
+
+use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use serde_json::{Map, Value as Json, json};
+use toml::Value;
+
+use super::loop_set::{LoopSet, PlantMargin};
+use super::scenario_loops::ScenarioLoops;
+use super::{TunedLoop, TunedParameter, TuningFault, TuningPoint, tune};
+use crate::analysis::open_loop::LoopBreak;
+use crate::scenario::Scenario;
+
+/// Largest number of keys that are tuned together.
+pub const MOST_TUNED: usize = 20;
+
+/// Tuning of keys of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScenarioTuning {
+    /// Keys, each with its least and largest value.
+    pub keys: Vec<(String, [f64; 2])>,
+    /// Point at which the loops are cut open.
+    pub opened: LoopBreak,
+    /// Frequency (rad/s) at which the loop gain of the nominal plant stays 1 or more.
+    pub bandwidth: Option<f64>,
+    /// True for the nominal plant alone, without the corners of the uncertain keys.
+    pub is_nominal: bool,
+}
+
+/// Tuned scenario.
+#[derive(Clone, Debug)]
+pub struct TunedScenario {
+    /// Loops of its plants.
+    pub loops: ScenarioLoops,
+    /// Tuned keys.
+    pub parameters: Vec<TunedParameter>,
+    /// Values and margins before and after.
+    pub tuned: TunedLoop,
+    scenario: Scenario,
+    opened: LoopBreak,
+}
+
+impl ScenarioTuning {
+    /// Tunes a scenario.
+    ///
+    /// # Errors
+    /// Keys that cannot be tuned, a scenario without a linear loop, and a loop that is not stable at the start.
+    pub fn run(&self, scenario: &Scenario) -> Result<TunedScenario, TuningFault> {
+        let wrong = |key: &str, why: String| TuningFault::Key(ConfigError::new(key, why));
+        if self.keys.is_empty() || self.keys.len() > MOST_TUNED {
+            return Err(wrong(
+                "law",
+                format!("1 to {MOST_TUNED} keys are tuned together, got {}", self.keys.len()),
+            ));
+        }
+        for (place, (key, [low, high])) in self.keys.iter().enumerate() {
+            if !(low.is_finite() && high.is_finite() && low < high) {
+                return Err(wrong(
+                    key,
+                    format!("needs a range from a lower to a higher number, got {low} to {high}"),
+                ));
+            }
+            if self.keys[..place].iter().any(|(other, _)| other == key) {
+                return Err(wrong(key, "is given twice".to_owned()));
+            }
+        }
+        if let Some(frequency) =
+            self.bandwidth.filter(|frequency| !(*frequency > 0.0 && frequency.is_finite()))
+        {
+            return Err(wrong("bandwidth", format!("must be a positive number, got {frequency}")));
+        }
+        let names: Vec<String> = self.keys.iter().map(|(key, _)| key.clone()).collect();
+        let loops =
+            ScenarioLoops::new(scenario, self.opened, names, !self.is_nominal).map_err(TuningFault::Key)?;
+        let mut parameters = Vec::with_capacity(self.keys.len());
+        for (key, [low, high]) in &self.keys {
+            let start = loops.value(key).unwrap_or(f64::NAN);
+            if !(*low..=*high).contains(&start) {
+                let why =
+                    format!("the range {low} to {high} does not contain the value of the scenario, {start}");
+                return Err(wrong(key, why));
+            }
+            parameters.push(TunedParameter { key: key.clone(), start, range: [*low, *high] });
+        }
+        let loop_at = |values: &[f64], plant: usize| loops.loop_at(values, plant);
+        let set = LoopSet { loop_at: &loop_at, plants: loops.plants(), bandwidth: self.bandwidth };
+        let tuned = tune(&set, &parameters)?;
+        Ok(TunedScenario { loops, parameters, tuned, scenario: scenario.clone(), opened: self.opened })
+    }
+}
+
+impl TunedScenario {
+    /// Returns the scenario with the tuned keys.
+    ///
+    /// # Errors
+    /// A value that the scenario does not accept.
+    pub fn scenario(&self) -> Result<Scenario, ScenarioError> {
+        let table = self.scenario.self_contained().to_table();
+        let mut document = Document::from_table(&self.scenario.name, table);
+        for (parameter, value) in self.parameters.iter().zip(&self.tuned.after.values) {
+            document.set(&parameter.key, Value::Float(*value))?;
+        }
+        Scenario::from_document(&document)
+    }
+
+    /// Returns the point at which the loops are cut open.
+    pub fn opened(&self) -> LoopBreak {
+        self.opened
+    }
+
+    /// Returns the keys with their values, and the plants with their margins, before and after.
+    pub fn to_json(&self) -> Json {
+        let points = self.tuned.before.values.iter().zip(&self.tuned.after.values);
+        let key = |(parameter, (before, after)): (&TunedParameter, (&f64, &f64))| json!({"key": parameter.key, "before": before, "after": after, "range": parameter.range});
+        let keys: Vec<Json> = self.parameters.iter().zip(points).map(key).collect();
+        let plants: Vec<Json> = (0..self.loops.plants())
+            .map(|plant| {
+                let values =
+                    self.loops.plant(plant).into_iter().map(|(key, value)| (key.to_owned(), json!(value)));
+                let margin = |point: &TuningPoint| margin_json(&point.plants[plant]);
+                json!({
+                    "values": values.collect::<Map<String, Json>>(),
+                    "before": margin(&self.tuned.before),
+                    "after": margin(&self.tuned.after),
+                })
+            })
+            .collect();
+        json!({
+            "loop": self.opened.name(),
+            "least_margin_before": self.tuned.before.least(),
+            "least_margin": self.tuned.after.least(),
+            "steps": self.tuned.steps,
+            "keys": keys,
+            "plants": plants,
+        })
+    }
+}
+
+fn margin_json(margin: &PlantMargin) -> Json {
+    json!({
+        "margin": margin.margin,
+        "frequency_rad_s": margin.frequency_rad_s,
+        "spectral_radius": margin.spectral_radius,
+    })
+}

@@ -1,0 +1,86 @@
+//! Local minima of the modulus margin over frequency: of 1/s1(S), with the largest singular value of the sensitivity.
+
+use flexsc_numerics::scalar_search::maximum;
+use nalgebra::{Complex, DMatrix};
+
+use crate::analysis::margins::{
+    FrequencyResponse, coarse_frequency_grid, eigenvalues, frequency_grid, largest_gain, modulus, unit_circle,
+};
+use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
+
+/// Sensitivity of a loop.
+pub struct LoopSensitivity {
+    response: FrequencyResponse,
+    transfer: TransferMatrices,
+    /// Poles of the loop when it is cut open.
+    open_poles: Vec<Complex<f64>>,
+    /// Period of the loop (s).
+    pub period: f64,
+}
+
+impl LoopSensitivity {
+    /// Computes the sensitivity; `None` for a loop without one.
+    pub fn new(opened: &OpenLoop) -> Option<Self> {
+        let transfer = opened.transfer.sensitivity()?;
+        let open_poles = eigenvalues(&opened.transfer.a)?;
+        Some(Self {
+            response: FrequencyResponse::new(&transfer),
+            transfer,
+            open_poles,
+            period: opened.period,
+        })
+    }
+
+    /// Returns the poles of the closed loop.
+    pub fn closed_poles(&self) -> Option<Vec<Complex<f64>>> {
+        eigenvalues(&self.transfer.a)
+    }
+
+    /// Returns 1/s1(S) over frequency (rad/s), on a grid that follows the resonances; `None` if the poles cannot be
+    /// computed.
+    pub fn margins(&self) -> Option<Vec<(f64, f64)>> {
+        let angles = frequency_grid(&self.closed_poles()?, &self.open_poles);
+        Some(angles.into_iter().map(|angle| (angle / self.period, self.margin_at(angle))).collect())
+    }
+
+    /// Returns 1/s1(S) at an angle (rad) of the unit circle.
+    pub fn margin_at(&self, angle: f64) -> f64 {
+        self.response.at(unit_circle(angle)).as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
+    }
+
+    /// Returns the least gain of the loop transfer S^-1 - 1 at an angle (rad) of the unit circle.
+    pub fn loop_gain_at(&self, angle: f64) -> f64 {
+        let transfer = self.response.at(unit_circle(angle)).and_then(|value| {
+            let one = DMatrix::<Complex<f64>>::identity(value.nrows(), value.ncols());
+            Some(value.try_inverse()? - one)
+        });
+        match transfer {
+            Some(value) if value.len() == 1 => modulus(value[(0, 0)]),
+            Some(value) => value.try_inverse().map_or(0.0, |inverse| 1.0 / largest_gain(&inverse)),
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Returns the angles (rad) and values of the local minima of 1/s1(S) that exceed the least by at most `within`.
+    pub fn minima(&self, closed: &[Complex<f64>], within: f64) -> Vec<(f64, f64)> {
+        let angles = coarse_frequency_grid(closed, &self.open_poles);
+        let value = |angle: &f64| {
+            let scanned = self.response.scan(unit_circle(*angle));
+            scanned.as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
+        };
+        let values: Vec<f64> = angles.iter().map(value).collect();
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let last = values.len() - 1;
+        let is_minimum = |k: &usize| {
+            values[*k] <= least + within
+                && (*k == 0 || values[k - 1] > values[*k])
+                && (*k == last || values[k + 1] >= values[*k])
+        };
+        let refined = (0..=last).filter(is_minimum).map(|k| {
+            let (low, high) = (angles[k.saturating_sub(1)], angles[(k + 1).min(last)]);
+            let (angle, negative) = maximum(|angle| -self.margin_at(angle), low, high);
+            if -negative < values[k] { (angle, -negative) } else { (angles[k], values[k]) }
+        });
+        refined.collect()
+    }
+}
