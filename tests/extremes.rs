@@ -12,7 +12,7 @@ use crate::util::{Dir, FLEXSC, SCENARIOS, has_extension};
 const VALUES: &[&str] = &["0", "-1", "nan", "1e-300", "1e9", "1e20", "1e300", "18446744073709551615"];
 const GRIDS: &[&str] = &["0.5:1e12:5", "1e-300:1e300:5", "1:2:4294967295", "1:1e9:100"];
 /// Verbs that need minutes, or take no numbers.
-const WITHOUT: &[&str] = &["reproduce", "completions", "help"];
+const WITHOUT: &[&str] = &["reproduce", "report", "completions", "help"];
 /// Options that wait for others, that ask for long work, or whose values are keys of scenarios.
 const SKIPPED: &[&str] = &["live", "scheduler", "yes", "set", "vary", "help", "log"];
 /// Time of the processor for each (s), and of the clock where it waits.

@@ -135,6 +135,8 @@ mod places;
 mod plan;
 mod plan_figures;
 mod plot;
+#[cfg(feature = "full")]
+mod report;
 mod reproduce;
 mod sheets;
 mod stops;

@@ -48,10 +48,10 @@ fn the_nominal_loop_has_three_equal_minima() {
         agree("value", *value, expected, 1e-6);
     }
     agree("radius", found.after.plants[0].spectral_radius, 0.998_416_0, 1e-6);
-    assert!(found.steps < 60, "{}", found.steps);
+    assert!(found.steps < 300, "{}", found.steps);
 }
 
-/// The same over 17 plants: four minima of four corners are equal.
+/// The same over 17 plants: four minima of four corners are equal. Another local optimum has .68545.
 #[test]
 fn the_corners_have_four_equal_minima() {
     let found = tuned(true, None);

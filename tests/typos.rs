@@ -197,4 +197,13 @@ fn what_is_probably_a_mistake_is_remarked() {
     let known = "[uncertain]\n\"spacecraft.inertia[0][0]\" = { relative_normal = 0.1 }\n";
     dir.write("i.toml", format!("{text}\n{known}"));
     dir.run("check i.toml").exits(0).says(&["remark: `uncertain", "the law knows that of each run"]);
+    // An inertia that one entry makes unsymmetric.
+    let alone = "[uncertain]\n\"spacecraft.inertia[0][1]\" = { uniform = [-1.0, 1.0] }\n";
+    dir.write("u.toml", format!("{text}\n{alone}"));
+    let told = [
+        "remark: `uncertain`",
+        "16 of the first 16 runs of a campaign are not accepted; run 0: ",
+        "symmetric",
+    ];
+    dir.run("check u.toml").exits(0).says(&told);
 }

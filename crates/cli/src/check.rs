@@ -3,7 +3,9 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::campaign::Campaign;
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
@@ -40,15 +42,40 @@ pub fn run(args: &CheckArgs) -> Result<(), CliError> {
     if all { Ok(()) } else { Err(CliError::Told) }
 }
 
+/// Number of runs of a campaign whose draws are checked.
+const DRAWS: u64 = 16;
+
+/// Returns the remark that the draws of `[uncertain]` give scenarios that are not accepted.
+fn refused_draws(path: &Path, scenario: &Scenario) -> Option<ConfigError> {
+    if scenario.uncertain.is_empty() && scenario.correlated.is_empty() {
+        return None;
+    }
+    let why = match Campaign::new(scenario.clone(), &path.display().to_string(), []) {
+        Ok(campaign) => {
+            let failed = |run: u64| campaign.run(run).err().map(|error| (run, error));
+            let refused: Vec<(u64, ScenarioError)> = (0..DRAWS).filter_map(failed).collect();
+            let (run, error) = refused.first()?;
+            format!(
+                "{} of the first {DRAWS} runs of a campaign are not accepted; run {run}: {error}",
+                refused.len()
+            )
+        }
+        Err(error) => format!("has no campaign: {error}"),
+    };
+    Some(ConfigError::new("uncertain", why))
+}
+
 fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError> {
     let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
     let cost = scenario.cost(None, false);
     let costly = cost.limit_exceeded();
+    let remarks: Vec<ConfigError> =
+        scenario.remarks().into_iter().chain(refused_draws(path, scenario)).collect();
     if json {
         let object = json!({
             "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
             "accepted": true, "estimate_s": cost.seconds, "needs_yes": costly.is_some(),
-            "remarks": scenario.remarks().iter().map(|of| json!({"key": of.key, "message": of.to_string()})).collect::<Vec<_>>(),
+            "remarks": remarks.iter().map(|of| json!({"key": of.key, "message": of.to_string()})).collect::<Vec<_>>(),
         });
         return print(format!("{object}\n").as_bytes());
     }
@@ -61,7 +88,7 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError
     if let Some(why) = costly {
         say!("  {why}");
     }
-    for remark in scenario.remarks() {
+    for remark in remarks {
         say!("  remark: {remark}");
     }
     Ok(())

@@ -132,8 +132,8 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                         "the gains that settle in time, over frequency",
                     ),
                     (
-                        "flexsc tune wheel-scheduled-gain.toml --schedule",
-                        "the best of them as a gain schedule",
+                        "flexsc tune earth-observer.toml --vary law.attitude.damping=0.4:1.5 --bandwidth 0.1",
+                        "the damping with the largest modulus margin",
                     ),
                 ],
             ),
@@ -160,6 +160,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc margins wheel-fast-mode.toml --loop measurement --json",
                         "at the measured angle and rate, as JSON",
+                    ),
+                ],
+            ),
+            (
+                "report",
+                [
+                    (
+                        "flexsc report attitude-hold.toml -o study.html --runs 20",
+                        "a page with a campaign of 20 runs",
+                    ),
+                    (
+                        "flexsc report attitude-hold.toml -o short.html --runs 0 --set duration=60",
+                        "a page without a campaign, of a shorter run",
                     ),
                 ],
             ),

@@ -31,6 +31,7 @@ mod out;
 mod plan;
 mod plot;
 mod progress;
+mod report;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
 mod result_files;
@@ -98,6 +99,10 @@ enum Verb {
     ///
     /// Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others closed and of all together.
     Margins(margins::MarginsArgs),
+    /// Write a page for a design review
+    ///
+    /// Spacecraft, margins, a run and a campaign with their figures on one HTML page, with the command that repeats each.
+    Report(report::ReportArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -169,6 +174,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
         Verb::Margins(args) => margins::run(&args),
+        Verb::Report(args) => report::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

@@ -19,6 +19,9 @@ use crate::margins::{BreakPoint, print_table, texts};
 use crate::results::{Results, with_scenario_name};
 use crate::{files, out, say};
 
+/// Shortfall of the loop gain at the bandwidth that is rounding of the search.
+const LEAST_SHORTFALL: f64 = 1e-6;
+
 /// Number of plants of which the text prints the margins.
 const PRINTED: usize = 6;
 
@@ -235,6 +238,10 @@ impl Results for StructuredResults {
         );
         self.print_keys();
         self.print_plants();
+        if let Some(gain) = self.found.tuned.after.bandwidth_gain {
+            let reached = if gain < 1.0 - LEAST_SHORTFALL { ": the bandwidth is not reached" } else { "" };
+            say!("  loop gain at the bandwidth {}{reached}", digits(gain));
+        }
         Ok(())
     }
 }

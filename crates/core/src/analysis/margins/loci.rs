@@ -24,7 +24,7 @@ pub struct LociValues {
 }
 
 /// Returns the eigenvalues of a square matrix; `None` if the search does not converge.
-fn values(matrix: DMatrix<Complex<f64>>) -> Option<Vec<Complex<f64>>> {
+pub fn eigenvalues_of(matrix: DMatrix<Complex<f64>>) -> Option<Vec<Complex<f64>>> {
     if matrix.len() == 1 {
         return Some(vec![matrix[(0, 0)]]);
     }
@@ -39,7 +39,7 @@ fn values(matrix: DMatrix<Complex<f64>>) -> Option<Vec<Complex<f64>>> {
 pub fn loci(transfers: impl Iterator<Item = (f64, DMatrix<Complex<f64>>)>) -> Vec<LociValues> {
     let mut found: Vec<LociValues> = Vec::new();
     for (angle, transfer) in transfers {
-        let Some(mut here) = values(transfer) else { continue };
+        let Some(mut here) = eigenvalues_of(transfer) else { continue };
         let largest = here.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
         for value in here.iter_mut().filter(|value| value.norm_sqr() < largest / (WIDEST * WIDEST)) {
             *value = Complex::ZERO;
@@ -73,7 +73,7 @@ impl LocusSegment<'_> {
         let [(low, first), (high, last)] = self.ends;
         let part = (angle - low) / (high - low);
         let expected = first * (1.0 - part) + last * part;
-        match self.response.at(unit_circle(angle)).and_then(values) {
+        match self.response.at(unit_circle(angle)).and_then(eigenvalues_of) {
             Some(mut here) => take_nearest(&mut here, expected),
             None if part < 0.5 => first,
             None => last,

@@ -25,6 +25,7 @@ pub use poles::{UnstableLoop, eigenvalues};
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use frequency_grid::coarse_frequency_grid;
 pub(super) use frequency_response::{largest_gain, modulus, unit_circle};
+pub(super) use loci::eigenvalues_of;
 pub(super) use poles::ROUNDING;
 
 use crossings::SampledTransfer;

@@ -155,6 +155,11 @@ impl Evaluation {
         self.least() + PENALTY * missing.sum::<f64>()
     }
 
+    /// Returns the loop gain of the nominal plant at the bandwidth.
+    pub fn bandwidth_gain(&self) -> Option<f64> {
+        self.0.first().and_then(|nominal| nominal.gain)
+    }
+
     /// Returns the margin of each plant.
     pub fn margins(&self) -> Vec<PlantMargin> {
         let of = |(plant, own): (usize, &PlantLoop)| {

@@ -3,7 +3,7 @@
 //! Each local minimum of 1/s1(S) over frequency, with the largest singular value s1 of the sensitivity S, is linearised in
 //! the parameters at its frequency: at a minimum, the change of the frequency has no effect to first order. A linear
 //! programme within a trust region maximises the least of them; a step is taken if it raises the least margin and leaves
-//! every loop stable.
+//! every loop stable. Such a search ends at a local optimum, so several are made.
 
 mod linear_step;
 mod loop_set;
@@ -22,8 +22,10 @@ pub use sensitivity_minima::LoopSensitivity;
 
 use loop_set::Evaluation;
 
-/// Trust region at the start, relative to the ranges.
-const TRUST: f64 = 0.1;
+/// Narrow and wide trust region at the start, relative to the ranges.
+const TRUSTS: [f64; 2] = [0.1, 0.4];
+/// Number of points of the ranges from which searches start.
+const STARTS: usize = 6;
 /// Largest trust region, relative to the ranges.
 const LARGEST_TRUST: f64 = 0.5;
 /// Trust region below which the search ends, relative to the ranges.
@@ -53,6 +55,8 @@ pub struct TuningPoint {
     pub values: Vec<f64>,
     /// Margin of each plant.
     pub plants: Vec<PlantMargin>,
+    /// Least loop gain of the nominal plant at the bandwidth; none without one.
+    pub bandwidth_gain: Option<f64>,
 }
 
 /// Result of a tuning.
@@ -95,7 +99,11 @@ impl std::error::Error for TuningFault {}
 
 impl TuningPoint {
     fn new(values: &[f64], evaluation: &Evaluation) -> Self {
-        Self { values: values.to_vec(), plants: evaluation.margins() }
+        Self {
+            values: values.to_vec(),
+            plants: evaluation.margins(),
+            bandwidth_gain: evaluation.bandwidth_gain(),
+        }
     }
 
     /// Returns the least margin.
@@ -109,46 +117,78 @@ impl TuningPoint {
     }
 }
 
-/// Maximises the least modulus margin of a set of loops over parameters within their ranges.
+/// Maximises the least modulus margin of a set of loops over parameters within their ranges: the best of searches from the
+/// start, with a narrow and a wide trust region, and from points of the ranges at which all loops are stable.
 ///
 /// # Errors
 /// A loop that cannot be formed, or that is not stable at the start.
 pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedLoop, TuningFault> {
-    let inside = |value: f64, parameter: &TunedParameter| value.clamp(parameter.range[0], parameter.range[1]);
-    let mut values: Vec<f64> =
-        parameters.iter().map(|parameter| inside(parameter.start, parameter)).collect();
-    let mut here = loops.evaluate(&values)?;
-    if let Some((plant, radius)) = here.unstable() {
+    let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
+    let first = loops.evaluate(&start)?;
+    if let Some((plant, radius)) = first.unstable() {
         return Err(TuningFault::Unstable(plant, radius));
     }
-    let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
-    let before = TuningPoint::new(&start, &here);
-    let widths: Vec<f64> =
-        parameters.iter().map(|parameter| parameter.range[1] - parameter.range[0]).collect();
-    let (mut trust, mut steps) = (TRUST, 0);
+    let before = TuningPoint::new(&start, &first);
+    let mut best = search(loops, parameters, (start.clone(), first), TRUSTS[0])?;
+    let mut steps = best.steps;
+    let elsewhere = (0..STARTS).map(|index| (point(parameters, index), TRUSTS[0]));
+    for (values, trust) in std::iter::once((start, TRUSTS[1])).chain(elsewhere) {
+        // A point that the scenario does not accept is no start.
+        let Ok(here) = loops.evaluate(&values) else { continue };
+        if here.unstable().is_some() {
+            continue;
+        }
+        let found = search(loops, parameters, (values, here), trust)?;
+        steps += found.steps;
+        if found.here.merit() > best.here.merit() + LEAST_GAIN {
+            best = found;
+        }
+    }
+    Ok(TunedLoop { before, after: TuningPoint::new(&best.values, &best.here), steps })
+}
+
+/// Returns a point of the ranges: of a sequence that fills them evenly, with the golden ratio of that many dimensions.
+fn point(parameters: &[TunedParameter], index: usize) -> Vec<f64> {
+    let dimensions = parameters.len() as f64;
+    // The root of x^(d + 1) = x + 1, by its contraction.
+    let ratio = (0..60).fold(2.0, |x: f64, _| libm::pow(1.0 + x, 1.0 / (dimensions + 1.0)));
+    let each = parameters.iter().enumerate().map(|(place, TunedParameter { range: [low, high], .. })| {
+        let turns = 0.5 + (index + 1) as f64 * libm::pow(ratio, -(place as f64 + 1.0));
+        low + (high - low) * (turns - libm::floor(turns))
+    });
+    each.collect()
+}
+
+/// End of a search.
+struct SearchEnd {
+    values: Vec<f64>,
+    here: Evaluation,
+    steps: usize,
+}
+
+/// Searches from a point at which all loops are stable.
+fn search(
+    loops: &LoopSet<'_>,
+    parameters: &[TunedParameter],
+    (mut values, mut here): (Vec<f64>, Evaluation),
+    mut trust: f64,
+) -> Result<SearchEnd, TuningFault> {
+    let width = |parameter: &TunedParameter| parameter.range[1] - parameter.range[0];
+    let mut steps = 0;
     let mut slopes = loops.slopes(&here, &values, parameters)?;
     while trust > SMALLEST_TRUST && steps < MOST_STEPS {
         steps += 1;
-        let room: Vec<[f64; 2]> = values
-            .iter()
-            .zip(parameters)
-            .zip(&widths)
-            .map(|((value, parameter), width)| {
-                [
-                    (parameter.range[0] - value).max(-trust * width),
-                    (parameter.range[1] - value).min(trust * width),
-                ]
-            })
-            .collect();
-        let (step, expected) = linear_step::largest_least(&slopes, &room);
+        let room = values.iter().zip(parameters).map(|(value, parameter)| {
+            let ([low, high], most) = (parameter.range, trust * width(parameter));
+            [(low - value).max(-most), (high - value).min(most)]
+        });
+        let (step, expected) = linear_step::largest_least(&slopes, &room.collect::<Vec<_>>());
         if expected < here.merit() + LEAST_GAIN {
             break;
         }
-        let tried: Vec<f64> = values
-            .iter()
-            .zip(&step)
-            .zip(parameters)
-            .map(|((value, step), parameter)| inside(value + step, parameter))
+        let moved = values.iter().zip(&step).zip(parameters);
+        let tried: Vec<f64> = moved
+            .map(|((value, step), parameter)| (value + step).clamp(parameter.range[0], parameter.range[1]))
             .collect();
         let there = loops.evaluate(&tried)?;
         if there.unstable().is_none() && there.merit() > here.merit() {
@@ -159,5 +199,5 @@ pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedL
             trust *= FACTORS[1];
         }
     }
-    Ok(TunedLoop { before, after: TuningPoint::new(&values, &here), steps })
+    Ok(SearchEnd { values, here, steps })
 }

@@ -128,6 +128,8 @@ impl TunedScenario {
             "loop": self.opened.name(),
             "least_margin_before": self.tuned.before.least(),
             "least_margin": self.tuned.after.least(),
+            "bandwidth_gain_before": self.tuned.before.bandwidth_gain,
+            "bandwidth_gain": self.tuned.after.bandwidth_gain,
             "steps": self.tuned.steps,
             "keys": keys,
             "plants": plants,

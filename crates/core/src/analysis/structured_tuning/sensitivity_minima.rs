@@ -4,7 +4,8 @@ use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 
 use crate::analysis::margins::{
-    FrequencyResponse, coarse_frequency_grid, eigenvalues, frequency_grid, largest_gain, modulus, unit_circle,
+    FrequencyResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of, frequency_grid, largest_gain,
+    modulus, unit_circle,
 };
 use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
 
@@ -14,6 +15,8 @@ pub struct LoopSensitivity {
     transfer: TransferMatrices,
     /// Poles of the loop when it is cut open.
     open_poles: Vec<Complex<f64>>,
+    /// Number of signals at the break.
+    signals: usize,
     /// Period of the loop (s).
     pub period: f64,
 }
@@ -27,6 +30,7 @@ impl LoopSensitivity {
             response: FrequencyResponse::new(&transfer),
             transfer,
             open_poles,
+            signals: opened.signals.len(),
             period: opened.period,
         })
     }
@@ -48,17 +52,19 @@ impl LoopSensitivity {
         self.response.at(unit_circle(angle)).as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
     }
 
-    /// Returns the least gain of the loop transfer S^-1 - 1 at an angle (rad) of the unit circle.
+    /// Returns the least loop gain of all signals at an angle (rad) of the unit circle, of each signal with the loops of
+    /// the others closed: the largest eigenvalue of S^-1 - 1 of its samples.
     pub fn loop_gain_at(&self, angle: f64) -> f64 {
-        let transfer = self.response.at(unit_circle(angle)).and_then(|value| {
-            let one = DMatrix::<Complex<f64>>::identity(value.nrows(), value.ncols());
-            Some(value.try_inverse()? - one)
-        });
-        match transfer {
-            Some(value) if value.len() == 1 => modulus(value[(0, 0)]),
-            Some(value) => value.try_inverse().map_or(0.0, |inverse| 1.0 / largest_gain(&inverse)),
-            None => f64::INFINITY,
-        }
+        let Some(value) = self.response.at(unit_circle(angle)) else { return f64::INFINITY };
+        let gain = |signal: usize| {
+            let own: Vec<usize> = (signal..value.nrows()).step_by(self.signals).collect();
+            let block = DMatrix::from_fn(own.len(), own.len(), |row, column| value[(own[row], own[column])]);
+            let one = DMatrix::<Complex<f64>>::identity(own.len(), own.len());
+            let transfer = block.try_inverse().map(|inverse| inverse - one);
+            let values = transfer.and_then(eigenvalues_of).unwrap_or_default();
+            values.iter().map(|value| modulus(*value)).fold(0.0, f64::max)
+        };
+        (0..self.signals).map(gain).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the angles (rad) and values of the local minima of 1/s1(S) that exceed the least by at most `within`.

@@ -1,0 +1,220 @@
+//! Sections of a report: each is the output of commands of this program, which are run as a user runs them.
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::{env, fs};
+
+use crate::error::CliError;
+use crate::say;
+
+/// Section of a report.
+pub struct Section {
+    /// Title of the section.
+    pub title: &'static str,
+    /// Paragraph under the title.
+    pub intro: String,
+    /// Output of a command and the figures that it drew.
+    pub parts: Vec<SectionPart>,
+}
+
+/// Output of a command.
+pub struct SectionPart {
+    /// The command as a user types it.
+    pub command: String,
+    /// The text that it printed.
+    pub text: String,
+    /// Figures, as SVG.
+    pub figures: Vec<String>,
+    /// True if the command ended with an error: the text is the reason.
+    pub is_refused: bool,
+}
+
+/// Runner of the commands of a report.
+pub struct SectionRunner<'a> {
+    program: Vec<OsString>,
+    scenario: &'a Path,
+    set: &'a [String],
+    scratch: &'a Path,
+}
+
+impl Section {
+    /// Returns true if a command of the section ended with an error.
+    pub fn is_refused(&self) -> bool {
+        self.parts.iter().any(|part| part.is_refused)
+    }
+}
+
+impl<'a> SectionRunner<'a> {
+    /// Creates the runner for a scenario with keys set; commands write into a scratch directory.
+    pub fn new(scenario: &'a Path, set: &'a [String], scratch: &'a Path) -> Self {
+        // In a wheel, the program is a module of Python.
+        let program = match env::var_os("FLEXSC_PYTHON") {
+            Some(python) => vec![python, "-m".into(), "flexsc".into()],
+            None => vec![env::current_exe().unwrap_or_else(|_| PathBuf::from("flexsc")).into()],
+        };
+        Self { program, scenario, set, scratch }
+    }
+
+    /// Returns the section of a command that prints, and draws into a directory of this name.
+    pub fn printed(
+        &self,
+        title: &'static str,
+        intro: &str,
+        verb: &[&str],
+        figures: Option<&str>,
+    ) -> Result<Section, CliError> {
+        let part = self.analysis(verb, figures)?;
+        Ok(Section { title, intro: intro.to_owned(), parts: vec![part] })
+    }
+
+    /// Returns the section of one run, with its figures.
+    pub fn simulated(&self, title: &'static str, intro: &str) -> Result<Section, CliError> {
+        let log = self.scratch.join("run.mcap");
+        let mut part = self.part(&["simulate"], &[], &[("-o", &log)], "-o run.mcap")?;
+        part.text = without_times(&part.text, "run.mcap");
+        let mut parts = vec![part];
+        if log.exists() {
+            parts.push(self.figures_of(&log, "run.mcap", "run")?);
+        }
+        Ok(Section { title, intro: intro.to_owned(), parts })
+    }
+
+    /// Returns the section of a campaign, with its figures.
+    pub fn campaign(&self, title: &'static str, intro: &str, runs: u64) -> Result<Section, CliError> {
+        let directory = self.scratch.join("campaign");
+        let count = runs.to_string();
+        let shown = format!("--runs {runs} -o campaign");
+        let hidden = ["--runs", &count];
+        let mut part = self.part(&["simulate"], &hidden, &[("-o", &directory)], &shown)?;
+        part.text = without_times(&part.text, "campaign");
+        let mut parts = vec![part];
+        if directory.exists() {
+            let mut figures = self.figures_of(&directory, "campaign", "spread")?;
+            // The worst runs are listed with commands on files that the page does not have.
+            figures.text = String::new();
+            parts.push(figures);
+        }
+        Ok(Section { title, intro: intro.to_owned(), parts })
+    }
+
+    fn analysis(&self, verb: &[&str], figures: Option<&str>) -> Result<SectionPart, CliError> {
+        let Some(name) = figures else { return self.part(verb, &[], &[], "") };
+        let directory = self.scratch.join(name);
+        let shown = format!("-o {name}");
+        let mut part = self.part(verb, &["--format", "svg"], &[("-o", &directory)], &shown)?;
+        part.figures = drawn(&directory);
+        let is_file_line = |line: &&str| !line.contains(&directory.display().to_string());
+        part.text = part.text.lines().filter(is_file_line).collect::<Vec<_>>().join("\n");
+        Ok(part)
+    }
+
+    /// Returns the figures of a log or a campaign.
+    fn figures_of(&self, source: &Path, shown: &str, name: &str) -> Result<SectionPart, CliError> {
+        let directory = self.scratch.join(name);
+        let mut command = self.command();
+        command.arg("plot").arg(source).arg("-o").arg(&directory).args(["--format", "svg"]);
+        let output = self.output(command)?;
+        let is_refused = !output.status.success();
+        let text = if is_refused { text_of(&output) } else { String::new() };
+        Ok(SectionPart {
+            command: format!("flexsc plot {shown} -o {name}"),
+            text: text.replace(&source.display().to_string(), shown),
+            figures: drawn(&directory),
+            is_refused,
+        })
+    }
+
+    /// Runs a verb on the scenario with further arguments, of which the page shows `shown`.
+    fn part(
+        &self,
+        verb: &[&str],
+        hidden: &[&str],
+        paths: &[(&str, &Path)],
+        shown: &str,
+    ) -> Result<SectionPart, CliError> {
+        let mut command = self.command();
+        command.arg(verb[0]).arg(self.scenario).args(&verb[1..]).args(hidden);
+        for (option, path) in paths {
+            command.arg(option).arg(path);
+        }
+        for pair in self.set {
+            command.arg("--set").arg(pair);
+        }
+        let name =
+            self.scenario.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let rest = verb[1..].iter().map(|word| (*word).to_owned());
+        let set = self.set.iter().map(|pair| format!("--set '{pair}'"));
+        let words = ["flexsc".to_owned(), verb[0].to_owned(), name].into_iter().chain(rest).chain(set);
+        let words: Vec<String> = words.chain((!shown.is_empty()).then(|| shown.to_owned())).collect();
+        say!("  {}", words.join(" "));
+        let output = self.output(command)?;
+        // A requirement that is missed has an exit code of its own.
+        let is_refused = !matches!(output.status.code(), Some(0 | 3));
+        Ok(SectionPart { command: words.join(" "), text: text_of(&output), figures: Vec::new(), is_refused })
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.program[0]);
+        command.args(&self.program[1..]).env("NO_COLOR", "1").env_remove("CLICOLOR_FORCE");
+        command.stdin(Stdio::null());
+        command
+    }
+
+    fn output(&self, mut command: Command) -> Result<Output, CliError> {
+        let program = Path::new(&self.program[0]);
+        command
+            .output()
+            .map_err(|error| CliError::Arguments(format!("cannot run {}: {error}", program.display())))
+    }
+}
+
+/// Returns what a command printed for people.
+fn text_of(output: &Output) -> String {
+    let text =
+        [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned()).concat();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("progress:")).collect();
+    lines.join("\n").trim_end().to_owned()
+}
+
+/// Returns the SVG figures in a directory, in the order of their names.
+fn drawn(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut paths: Vec<PathBuf> =
+        entries.filter(|path| path.extension().is_some_and(|ending| ending == "svg")).collect();
+    paths.sort();
+    paths.iter().filter_map(|path| fs::read_to_string(path).ok()).collect()
+}
+
+/// Returns the text of a run without what differs from one computer to the next: the time that it took, and the line of
+/// its file.
+fn without_times(text: &str, file: &str) -> String {
+    let is_time = |part: &str| {
+        let number = part.trim().split(' ').next().unwrap_or_default();
+        let unit = part.trim().rsplit(' ').next().unwrap_or_default();
+        number.parse::<f64>().is_ok() && ["ms", "s", "min", "h", "µs", "us"].contains(&unit)
+    };
+    let mut lines: Vec<String> =
+        text.lines().filter(|line| !line.contains(file)).map(ToOwned::to_owned).collect();
+    if let Some(first) = lines.first_mut()
+        && let Some((before, last)) = first.rsplit_once(',')
+        && is_time(last)
+    {
+        *first = before.to_owned();
+    }
+    lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_left_out() {
+        let text = "a   300 s, 8 modes, 74.4 ms\n  pointing  7 arcsec\n  log  /tmp/x/run.mcap (13 kB)";
+        assert_eq!(without_times(text, "run.mcap"), "a   300 s, 8 modes\n  pointing  7 arcsec");
+        assert_eq!(without_times("b   8 runs, 0.51 s", "x"), "b   8 runs");
+        assert_eq!(without_times("c, met", "x"), "c, met");
+    }
+}
