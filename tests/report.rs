@@ -28,7 +28,7 @@ fn a_page_for_a_review() {
         assert!(page.contains(&format!("<code>{command}</code>")), "{command}");
     }
     assert!(page.matches("<svg").count() >= 8, "{}", page.matches("<svg").count());
-    // It refers to nothing outside, and tells nothing of the computer.
+    // The page refers to no other file, and names nothing of the computer.
     for outside in ["http://", "https://", "<script", "<link", "<img", "/tmp", " ms"] {
         let found = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!found.contains(outside), "{outside}");

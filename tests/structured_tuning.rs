@@ -51,7 +51,7 @@ fn the_nominal_loop_has_three_equal_minima() {
     assert!(found.steps < 300, "{}", found.steps);
 }
 
-/// The same over 17 plants: four minima of four corners are equal. Another local optimum has .68545.
+/// Over 17 plants, four minima of four corners are equal. Another local optimum has .68545.
 #[test]
 fn the_corners_have_four_equal_minima() {
     let found = tuned(true, None);

@@ -10,11 +10,11 @@ use pyo3::types::PyString;
 
 use super::object::{Method, shape};
 
-/// What an attribute holds.
+/// Kind of the value of an attribute.
 #[derive(Copy, Clone, Debug)]
 enum Held {
     Number,
-    /// So many numbers.
+    /// Sequence of this length.
     Numbers(usize),
     Word,
 }
