@@ -164,6 +164,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "spectrum",
+                [
+                    (
+                        "flexsc spectrum attitude-hold.toml -o figures",
+                        "noise of each axis by source, with its density",
+                    ),
+                    (
+                        "flexsc spectrum wheel-run-up.toml --speeds 30:115:86",
+                        "lines of unbalanced wheels over their speed",
+                    ),
+                ],
+            ),
+            (
                 "damping",
                 [
                     (

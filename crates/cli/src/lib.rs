@@ -40,6 +40,7 @@ mod sampled_loop;
 mod scenario;
 mod schema;
 mod simulate;
+mod spectrum;
 mod stop;
 mod summary;
 mod sweep;
@@ -98,6 +99,10 @@ enum Verb {
     ///
     /// Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others closed and of all together.
     Margins(margins::MarginsArgs),
+    /// Print the noise of a loop: rms, spectral density, pointing indices
+    ///
+    /// Exact from the closed loop, without a simulation: by source, over frequency, over windows, and the lines of unbalanced wheels over their speed.
+    Spectrum(spectrum::SpectrumArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -169,6 +174,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
         Verb::Margins(args) => margins::run(&args),
+        Verb::Spectrum(args) => spectrum::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

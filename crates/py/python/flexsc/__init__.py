@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from flexsc._linear import Linear
     from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
+    from flexsc._noise import NoiseSpectrum, OutputNoise, WheelLines, WheelSpectrum
     from flexsc._optimisation import optimise
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
@@ -95,6 +96,8 @@ __all__ = [
     "LoopMargins",
     "Margins",
     "Metrics",
+    "NoiseSpectrum",
+    "OutputNoise",
     "Plan",
     "Quantities",
     "Reading",
@@ -117,6 +120,8 @@ __all__ = [
     "ThreeAxisHold",
     "ThreeAxisLaw",
     "Topic",
+    "WheelLines",
+    "WheelSpectrum",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -160,11 +165,15 @@ _LATER = {
     "Linear": "_linear",
     "LoopMargins": "_loop_margins",
     "Margins": "_margins",
+    "NoiseSpectrum": "_noise",
+    "OutputNoise": "_noise",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
     "StateSpace": "structure",
     "Structure": "structure",
+    "WheelLines": "_noise",
+    "WheelSpectrum": "_noise",
     "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",
