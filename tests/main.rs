@@ -68,6 +68,7 @@ mod saturation;
 mod several_actuators;
 mod several_sensors;
 mod shaped;
+mod spectra;
 mod stage_actuators;
 mod state_space;
 mod station;

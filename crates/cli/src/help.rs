@@ -173,6 +173,15 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc report attitude-hold.toml -o short.html --runs 0 --set duration=60",
                         "a page without a campaign, of a shorter run",
+                "spectrum",
+                [
+                    (
+                        "flexsc spectrum attitude-hold.toml -o figures",
+                        "noise of each axis by source, with its density",
+                    ),
+                    (
+                        "flexsc spectrum wheel-run-up.toml --speeds 30:115:86",
+                        "lines of unbalanced wheels over their speed",
                     ),
                 ],
             ),

@@ -41,6 +41,7 @@ mod sampled_loop;
 mod scenario;
 mod schema;
 mod simulate;
+mod spectrum;
 mod stop;
 mod summary;
 mod sweep;
@@ -103,6 +104,10 @@ enum Verb {
     ///
     /// Spacecraft, margins, a run and a campaign with their figures on one HTML page, with the command that repeats each.
     Report(report::ReportArgs),
+    /// Print the noise of a loop: rms, spectral density, pointing indices
+    ///
+    /// Exact from the closed loop, without a simulation: by source, over frequency, over windows, and the lines of unbalanced wheels over their speed.
+    Spectrum(spectrum::SpectrumArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -175,6 +180,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Map(args) => map::run(&args),
         Verb::Margins(args) => margins::run(&args),
         Verb::Report(args) => report::run(&args),
+        Verb::Spectrum(args) => spectrum::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

@@ -77,6 +77,7 @@ mod _native {
     use super::instants::MotionSampler;
     #[pymodule_export]
     use super::linear::{exponential, linear_json, loop_json, margins_json, tuned_json};
+    use super::linear::{exponential, linear_json, loop_json, margins_json, spectrum_json};
     #[pymodule_export]
     use super::log::Log;
     #[pymodule_export]

@@ -4,6 +4,7 @@ use flexsc_core::ScenarioError;
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
 use flexsc_core::analysis::margins::StabilityMargins;
+use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
 use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault};
 use flexsc_core::numerics::exponential::exponential as of_matrix;
@@ -83,6 +84,28 @@ pub fn tuned_json(
         fault => PyValueError::new_err(format!("{name}: {fault}")),
     })?;
     Ok((table, text.map_err(scenario_error)?))
+/// The noise of a scenario's loop: of some outputs, over windows, and at speeds of its wheels.
+#[pyfunction]
+pub fn spectrum_json(
+    py: Python<'_>,
+    scenario: &Scenario,
+    signals: Vec<String>,
+    window: Option<f64>,
+    separation: Option<f64>,
+    speeds: Option<Vec<f64>>,
+) -> PyResult<String> {
+    let window = window.map(|length| Window { length, separation });
+    let request = NoiseRequest { signals, window, speeds };
+    let name = &scenario.inner.name;
+    let report = py.detach(|| NoiseReport::from_scenario(&scenario.inner, &request));
+    let report = report.map_err(|fault| match fault {
+        NoiseError::Key(fault) => {
+            scenario_error(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
+        }
+        NoiseError::Request(why) => PyValueError::new_err(why),
+        fault => PyValueError::new_err(format!("{name}: {fault}")),
+    })?;
+    Ok(json!(report).to_string())
 }
 
 /// The exponential of a square matrix.

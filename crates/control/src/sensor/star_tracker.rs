@@ -109,6 +109,11 @@ impl StarTracker {
         })
     }
 
+    /// Returns the direction of one of the tracker's axes in the body's axes, as a unit vector.
+    pub fn body_direction(&self, axis: usize) -> Vector {
+        self.to_body_axes(&Vector::ith(axis, 1.0))
+    }
+
     /// Rotates a vector from the tracker's axes to the body's.
     fn to_body_axes(&self, vector: &Vector) -> Vector {
         let turn = self.axes.get();

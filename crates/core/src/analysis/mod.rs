@@ -8,6 +8,7 @@ pub mod linear_loop;
 pub mod linear_model;
 pub mod margins;
 pub mod mode_influence;
+pub mod noise;
 pub mod one_axis_modes;
 pub mod open_loop;
 pub mod rigid_cycle;

@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from flexsc._linear import Linear
     from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
+    from flexsc._noise import NoiseSpectrum, OutputNoise, WheelLines, WheelSpectrum
     from flexsc._optimisation import optimise
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
@@ -96,6 +97,8 @@ __all__ = [
     "LoopMargins",
     "Margins",
     "Metrics",
+    "NoiseSpectrum",
+    "OutputNoise",
     "Plan",
     "Quantities",
     "Reading",
@@ -120,6 +123,8 @@ __all__ = [
     "Topic",
     "TunedPlant",
     "TunedScenario",
+    "WheelLines",
+    "WheelSpectrum",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -163,6 +168,8 @@ _LATER = {
     "Linear": "_linear",
     "LoopMargins": "_loop_margins",
     "Margins": "_margins",
+    "NoiseSpectrum": "_noise",
+    "OutputNoise": "_noise",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
@@ -170,6 +177,8 @@ _LATER = {
     "TunedScenario": "_structured_tuning",
     "StateSpace": "structure",
     "Structure": "structure",
+    "WheelLines": "_noise",
+    "WheelSpectrum": "_noise",
     "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",

@@ -71,6 +71,7 @@ __all__ = [
     "sample",
     "schema_json",
     "simulate",
+    "spectrum_json",
     "stability_map_json",
     "text_beside_parts",
     "to_mcap",
@@ -1394,6 +1395,13 @@ def tuned_json(
     bandwidth: float | None,
     is_nominal: bool,
 ) -> tuple[str, str]: ...
+def spectrum_json(
+    scenario: Scenario,
+    signals: list[str],
+    window: float | None,
+    separation: float | None,
+    speeds: list[float] | None,
+) -> str: ...
 def exponential(matrix: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
 def examples() -> list[tuple[str, str]]: ...
 def schema_json() -> str: ...

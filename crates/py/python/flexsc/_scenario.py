@@ -15,9 +15,12 @@ from flexsc._scenario_file import ScenarioFile
 from flexsc._values import arrays, run_number, toml
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
+
     from flexsc._linear import Linear
     from flexsc._loop_margins import StabilityMargins
     from flexsc._structured_tuning import TunedScenario
+    from flexsc._noise import NoiseSpectrum
     from flexsc._open_loop import Break
     from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
@@ -267,6 +270,39 @@ class Scenario(ScenarioFile):
         from flexsc._structured_tuning import tune
 
         return tune(self, ranges, loop, bandwidth, corners)
+    def spectrum(
+        self,
+        signals: Sequence[str] | None = None,
+        window: float | None = None,
+        separation: float | None = None,
+        speeds: npt.ArrayLike | None = None,
+    ) -> NoiseSpectrum:
+        """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
+
+        The noise is that of the sensors, of their rounding, and of random torques. Limits and steady
+        disturbances are left out; the body is about its target at rest.
+
+        Args:
+            signals: Names of outputs, such as `roll`, `roll_rate`, `command_roll`, `mode0_displacement` and
+                `line_of_sight0_x`; `["all"]` for all of them, None for measured angles and lines of sight.
+            window: Length (s) of windows for pointing indices.
+            separation: Time (s) from the start of a window to that of the next, for differences of means.
+            speeds: Speeds (rad/s) of the wheels for the lines of their imbalance; None for 48 up to their
+                largest.
+
+        >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["roll", "command_roll"])
+        >>> spectrum.sources
+        ('sensor.sampled.noise', 'sensor.sampled.rate_noise')
+        >>> spectrum.outputs["command_roll"].unit
+        'N m'
+
+        Raises:
+            ScenarioError: A part has no linear model: the key, and the reason.
+            ValueError: The closed loop is not stable, noise grows without limit, or there is no such output.
+        """
+        from flexsc._noise import noise_spectrum
+
+        return noise_spectrum(self, signals, window, separation, speeds)
 
     def with_law(
         self,

@@ -52,13 +52,20 @@ impl FrequencyResponse {
 
     /// Returns c (z - a)^-1 b + d; `None` at a pole.
     pub fn at(&self, z: Complex<f64>) -> Option<DMatrix<Complex<f64>>> {
-        let TransferMatrices { a, b, c, d } = &self.transfer;
-        let mut x = real_product(&self.basis, &self.solve(z, self.input.clone())?);
-        // One step of refinement with the matrix itself removes the rounding of its Hessenberg form.
-        let residual = complex(b) - (&x * z - real_product(a, &x));
-        let correction = self.solve(z, real_product(&self.basis.transpose(), &residual))?;
-        x += real_product(&self.basis, &correction);
+        let TransferMatrices { b, c, d, .. } = &self.transfer;
+        let x = self.states(z, &complex(b))?;
         finite(real_product(c, &x) + complex(d))
+    }
+
+    /// Returns (z - a)^-1 forced; `None` at a pole.
+    pub fn states(&self, z: Complex<f64>, forced: &DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
+        let back = self.basis.transpose();
+        let mut x = real_product(&self.basis, &self.solve(z, real_product(&back, forced))?);
+        // One step of refinement with the matrix itself removes the rounding of its Hessenberg form.
+        let residual = forced - (&x * z - real_product(&self.transfer.a, &x));
+        let correction = self.solve(z, real_product(&back, &residual))?;
+        x += real_product(&self.basis, &correction);
+        finite(x)
     }
 
     /// Solves (z - H) x = b by elimination with pivots; `None` at a pole.

@@ -6,9 +6,9 @@
 
 mod crossings;
 mod frequency_grid;
-mod frequency_response;
+pub(in crate::analysis) mod frequency_response;
 mod loci;
-mod poles;
+pub(in crate::analysis) mod poles;
 
 use std::f64::consts::PI;
 

@@ -51,7 +51,20 @@ struct Exposure {
     innovation: DMatrix<f64>,
 }
 
+/// Errors of the sensors at an instant, as rows; none for sensors without errors.
+#[derive(Default)]
+pub struct SensorErrors {
+    /// Error of the rate that the gyro reads, less its bias at the reading.
+    pub rate: Option<DMatrix<f64>>,
+    /// Change of the gyro's bias since the last reading.
+    pub walk: Option<DMatrix<f64>>,
+    /// Error of the attitude that the other sensor measures.
+    pub attitude: Option<DMatrix<f64>>,
+}
+
 /// State of the filter as rows.
+///
+/// With errors of the sensors, the bias is the estimate less the true bias, which would grow without limit.
 pub struct AttitudeRows {
     gyro: SensorRows,
     sensor: SensorRows,
@@ -134,13 +147,16 @@ impl AttitudeRows {
     }
 
     /// Does what is due at a time (fs), at which the states of the body are the rows `x`.
-    pub fn act(&mut self, now: i64, x: &DMatrix<f64>) {
+    pub fn act(&mut self, now: i64, x: &DMatrix<f64>, errors: &SensorErrors) {
         let reads = now % self.gyro.period == 0;
         if reads {
-            self.read(now, x);
+            self.read(now, x, errors);
         }
         if now % self.sensor.period == 0 {
-            let shown = &self.sensor.angle * x;
+            let mut shown = &self.sensor.angle * x;
+            if let Some(error) = &errors.attitude {
+                shown += error;
+            }
             let innovation = if reads { shown - &self.angle } else { shown };
             self.exposures.pop();
             self.exposures.insert(0, Exposure { time: now, innovation });
@@ -166,7 +182,7 @@ impl AttitudeRows {
     }
 
     /// Reads the gyro and propagates the angle over its last period.
-    fn read(&mut self, now: i64, x: &DMatrix<f64>) {
+    fn read(&mut self, now: i64, x: &DMatrix<f64>, errors: &SensorErrors) {
         let period = seconds(self.gyro.period);
         if self.gyro.integrates {
             let mount = &self.gyro.angle * x;
@@ -174,6 +190,12 @@ impl AttitudeRows {
             self.mount = mount;
         } else {
             self.rate = &self.gyro.rate * x;
+        }
+        if let Some(error) = &errors.rate {
+            self.rate += error;
+        }
+        if let Some(walk) = &errors.walk {
+            self.bias -= walk;
         }
         let turning = &self.rate - &self.bias;
         for slot in 0..self.exposures.len() {

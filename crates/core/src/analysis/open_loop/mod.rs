@@ -5,13 +5,13 @@
 //! negative feedback: the closed loop has the state matrix a - b (1 + d)^-1 c.
 
 mod actuation;
-mod attitude_rows;
-mod block_matrices;
+pub(in crate::analysis) mod attitude_rows;
+pub(in crate::analysis) mod block_matrices;
 mod measurement;
-mod multi_rate;
+pub(in crate::analysis) mod multi_rate;
 pub mod sampling;
 mod transfer;
-mod uniform_rate;
+pub(in crate::analysis) mod uniform_rate;
 
 use flexsc_control::actuator::CommandResponse;
 use flexsc_control::law::LinearLaw;
@@ -75,33 +75,38 @@ pub struct OpenLoop {
 }
 
 /// Body in continuous time, and the parts that close its loop.
-struct LoopParts<'a> {
-    scenario: &'a Scenario,
-    body: BodyMatrices,
-    actuators: CommandResponse,
-    parts: LinearLoop,
-    law: AxisLaws,
-    opened: LoopBreak,
+#[derive(Clone)]
+pub(in crate::analysis) struct LoopParts<'a> {
+    pub scenario: &'a Scenario,
+    pub body: BodyMatrices,
+    pub actuators: CommandResponse,
+    pub parts: LinearLoop,
+    pub law: AxisLaws,
+    pub opened: LoopBreak,
 }
 
 /// Linear model of the body, as matrices.
-struct BodyMatrices {
-    a: DMatrix<f64>,
-    b: DMatrix<f64>,
+#[derive(Clone)]
+pub(in crate::analysis) struct BodyMatrices {
+    pub a: DMatrix<f64>,
+    pub b: DMatrix<f64>,
     /// Rows of the measured angle and rate about each axis, in this order.
-    c: DMatrix<f64>,
-    states: Vec<Signal>,
-    inputs: Vec<Signal>,
+    pub c: DMatrix<f64>,
+    pub states: Vec<Signal>,
+    pub inputs: Vec<Signal>,
     /// Measured angle and rate about each axis.
-    outputs: Vec<Signal>,
+    pub outputs: Vec<Signal>,
+    /// Model that the matrices are from.
+    pub model: LinearModel,
 }
 
 /// Laws about all axes.
-struct AxisLaws {
+#[derive(Clone)]
+pub(in crate::analysis) struct AxisLaws {
     /// Block from angles and rates, axis by axis, to commands.
-    block: LinearBlock,
+    pub block: LinearBlock,
     /// Period of the samples.
-    period: flexsc_numerics::time::Span,
+    pub period: flexsc_numerics::time::Span,
 }
 
 impl OpenLoop {
@@ -110,15 +115,28 @@ impl OpenLoop {
     /// # Errors
     /// A part that is not linear, or a combination that a linear loop does not have: its key, and the reason.
     pub fn from_scenario(scenario: &Scenario, opened: LoopBreak) -> Result<Self, ConfigError> {
+        let parts = LoopParts::from_scenario(scenario, opened)?;
+        let has_filter = parts.parts.attitude.is_some();
+        if has_filter { multi_rate::lifted_loop(&parts) } else { uniform_rate::sampled_loop(&parts) }
+    }
+}
+
+impl<'a> LoopParts<'a> {
+    /// Returns the parts of a scenario's loop, with natural frequencies as they are at the start.
+    ///
+    /// # Errors
+    /// See [`OpenLoop::from_scenario`].
+    pub(in crate::analysis) fn from_scenario(
+        scenario: &'a Scenario,
+        opened: LoopBreak,
+    ) -> Result<Self, ConfigError> {
         let model = LinearModel::from_scenario(scenario, 0.0)?;
         let axes = model.inputs.len();
         let body = BodyMatrices::new(model)?;
         let actuators = actuation::combined_response(scenario, axes)?;
         let parts = LinearLoop::from_scenario(scenario)?;
         let law = AxisLaws::new(scenario, &body)?;
-        let has_filter = parts.attitude.is_some();
-        let parts = LoopParts { scenario, body, actuators, parts, law, opened };
-        if has_filter { multi_rate::lifted_loop(&parts) } else { uniform_rate::sampled_loop(&parts) }
+        Ok(Self { scenario, body, actuators, parts, law, opened })
     }
 }
 
@@ -142,8 +160,9 @@ impl BodyMatrices {
             b: matrix(&model.b, model.inputs.len()),
             c: DMatrix::from_fn(places.len(), order, |row, column| model.c[places[row]][column]),
             outputs: places.iter().map(|place| model.outputs[*place].clone()).collect(),
-            states: model.states,
-            inputs: model.inputs,
+            states: model.states.clone(),
+            inputs: model.inputs.clone(),
+            model,
         })
     }
 
@@ -216,7 +235,7 @@ fn block_states(block: &LinearBlock) -> impl Iterator<Item = Signal> + '_ {
 
 impl LoopParts<'_> {
     /// Returns the signals at the break.
-    fn signals(&self) -> Vec<Signal> {
+    pub(in crate::analysis) fn signals(&self) -> Vec<Signal> {
         let inputs = &self.body.inputs;
         match self.opened {
             LoopBreak::Measurement => self.body.outputs.clone(),

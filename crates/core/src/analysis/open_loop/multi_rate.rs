@@ -9,7 +9,7 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use nalgebra::DMatrix;
 
-use super::attitude_rows::{AttitudeRows, seconds, ticks};
+use super::attitude_rows::{AttitudeRows, SensorErrors, seconds, ticks};
 use super::block_matrices::stacked;
 use super::sampling::held;
 use super::{LoopBreak, LoopParts, OpenLoop, TransferMatrices, block_states};
@@ -58,7 +58,7 @@ impl Schedule {
 }
 
 /// Returns the least common multiple, if it fits.
-fn common_multiple(a: i64, b: i64) -> Option<i64> {
+pub fn common_multiple(a: i64, b: i64) -> Option<i64> {
     let (mut divisor, mut rest) = (a, b);
     while rest != 0 {
         (divisor, rest) = (rest, divisor % rest);
@@ -169,7 +169,7 @@ impl LoopRows {
         let mut flows = BTreeMap::new();
         for pair in schedule.instants(&self.filter).windows(2) {
             let (now, span) = (pair[0], pair[1] - pair[0]);
-            self.filter.act(now, &self.body);
+            self.filter.act(now, &self.body, &SensorErrors::default());
             if now % schedule.step == 0 {
                 let sample = usize::try_from(now / schedule.step).unwrap_or(0);
                 self.sample(parts, now, size + 3 * sample);
@@ -203,7 +203,7 @@ fn states(parts: &LoopParts<'_>, filter: &AttitudeRows, schedule: &Schedule) -> 
 }
 
 /// Returns the states that something depends on: some are overwritten before they are read.
-fn read_states(end: &DMatrix<f64>, outputs: &DMatrix<f64>, size: usize) -> Vec<usize> {
+pub fn read_states(end: &DMatrix<f64>, outputs: &DMatrix<f64>, size: usize) -> Vec<usize> {
     let mut kept: Vec<usize> = (0..size).collect();
     loop {
         let is_read = |place: &usize| {

@@ -36,14 +36,19 @@ impl ActingTorque {
 }
 
 /// Part of the loop from the measured angles and rates to the commands.
-struct Controller {
-    block: LinearBlock,
+pub struct Controller {
+    /// Block from the measured angles and rates to the commands.
+    pub block: LinearBlock,
     /// Response of its states to the mean torque about each axis over a period.
-    torque: DMatrix<f64>,
+    pub torque: DMatrix<f64>,
 }
 
 impl Controller {
-    fn new(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
+    /// Returns the controller of a loop.
+    ///
+    /// # Errors
+    /// Sensors that a linear loop does not have: the key, and the reason.
+    pub fn new(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
         let axes = parts.body.inputs.len();
         let prefixes: Vec<String> = (0..axes).map(|axis| axis_prefix(axes, axis)).collect();
         let prefixes: Vec<&str> = prefixes.iter().map(String::as_str).collect();

@@ -1,0 +1,252 @@
+//! `flexsc spectrum`: noise of the outputs of a loop, exact from its linear model, and lines of its wheels.
+
+mod figures;
+mod welch;
+mod wheels;
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use flexsc_core::analysis::noise::{
+    NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
+};
+use flexsc_core::formats::count::counted;
+use flexsc_core::{Scenario, ScenarioError};
+use flexsc_figure::Named;
+use serde_json::{Value as Json, json};
+
+use crate::error::CliError;
+use crate::grid::PositiveGrid;
+use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::number_table::NumberTable;
+use crate::result_files::ResultOutput;
+use crate::results::{Results, show, with_scenario_name};
+use crate::{say, scenario};
+use welch::{LogPart, WelchEstimate, estimates};
+
+#[derive(clap::Args)]
+pub struct SpectrumArgs {
+    #[command(flatten)]
+    pub scenario: scenario::ScenarioArgs,
+    /// Outputs of the loop, or `all` [default: measured angles and lines of sight]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    signal: Vec<String>,
+    /// Length of the windows of pointing indices (s), such as an exposure time
+    #[arg(long, value_name = "TIME")]
+    window: Option<f64>,
+    /// Time from the start of a window to that of the next (s), for differences of their means
+    #[arg(long, value_name = "TIME", requires = "window")]
+    separation: Option<f64>,
+    /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: up to their largest, 48 speeds]
+    #[arg(long, value_name = "LO:HI:COUNT")]
+    speeds: Option<PositiveGrid>,
+    /// Full log of a run of the scenario, whose densities by Welch's method are compared
+    #[arg(long, value_name = "LOG")]
+    log: Option<PathBuf>,
+    /// Start of the part of the log that is used (s), after the transient
+    #[arg(long, value_name = "TIME", requires = "log", default_value_t = 0.0)]
+    from: f64,
+    /// Samples of a segment of the log [default: an eighth of the log]
+    #[arg(long, value_name = "COUNT", requires = "log")]
+    segment: Option<usize>,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    pub drawing: ResultOutput,
+}
+
+/// Noise of the outputs of a scenario's loop.
+pub struct SpectrumResults {
+    /// Name of the scenario.
+    name: String,
+    report: NoiseReport,
+    welch: Vec<WelchEstimate>,
+    units: Units,
+}
+
+/// Computes the noise of a scenario's loop.
+pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResults, CliError> {
+    let name = scenario.name.clone();
+    let request = NoiseRequest {
+        signals: args.signal.clone(),
+        window: args.window.map(|length| Window { length, separation: args.separation }),
+        speeds: args.speeds.clone().map(|PositiveGrid(speeds)| speeds),
+    };
+    let refused = |fault: NoiseError| match fault {
+        NoiseError::Key(fault) => {
+            ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why }.into()
+        }
+        NoiseError::Request(why) => CliError::Arguments(format!("--{why}")),
+        fault => CliError::Arguments(format!("{name}: {fault}")),
+    };
+    let report = NoiseReport::from_scenario(scenario, &request).map_err(refused)?;
+    let welch = match &args.log {
+        None => Vec::new(),
+        Some(path) => {
+            let noisy = NoisyLoop::from_scenario(scenario).map_err(refused)?;
+            let outputs: Vec<usize> =
+                report.outputs.iter().filter_map(|output| noisy.output(&output.output)).collect();
+            let part = LogPart { path, from: args.from, segment: args.segment };
+            estimates(&part, &noisy, &outputs)?
+        }
+    };
+    Ok(SpectrumResults { name, report, welch, units: args.units.units })
+}
+
+pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
+    let target = args.drawing.target(&[args.scenario.scenario.as_path()])?;
+    let results = results(&args.scenario.load()?, args)?;
+    if let Some(target) = target {
+        target.save(&results)?;
+    }
+    show(&results, None, args.scenario.json)
+}
+
+/// Prints rows of text in columns.
+fn print_table(rows: &[Vec<String>], left_aligned: usize) {
+    for line in columns(rows, left_aligned) {
+        say!("  {line}");
+    }
+}
+
+impl SpectrumResults {
+    /// Returns the rows of an output: its rms over time and at the samples, and that from each source.
+    fn output_rows(&self, output: &OutputNoise) -> Vec<Vec<String>> {
+        let quantity = |value: f64| self.units.quantity(value, &output.unit);
+        let row = |name: &str, rms: f64, part: String, source: &str| {
+            vec![name.to_owned(), quantity(rms), part, source.to_owned()]
+        };
+        let mut rows = vec![
+            row(&output.output, output.rms, String::new(), "all, over time"),
+            row("", output.sample_rms, String::new(), "all, at the samples of the law"),
+        ];
+        for (source, rms) in self.report.sources.iter().zip(&output.rms_by_source) {
+            let part = if output.rms > 0.0 { 100.0 * (rms / output.rms) * (rms / output.rms) } else { 0.0 };
+            rows.push(row("", *rms, format!("{part:.1} %"), source));
+        }
+        rows
+    }
+
+    /// Prints the indices over windows of all outputs.
+    fn print_windows(&self) {
+        let windows: Vec<(&OutputNoise, WindowRms)> =
+            self.report.outputs.iter().filter_map(|output| Some((output, output.window?))).collect();
+        let Some((_, first)) = windows.first() else { return };
+        let apart = first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
+        say!("  indices over windows of {} s{apart}, rms", first.window_s);
+        let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+        let mut rows = vec![
+            texts(&["output", "MPE", "RPE", "RPE", "RPE", "smear", "jitter", "PDE"]),
+            texts(&["", "", "uniform", "end", "middle", "", "without smear", ""]),
+        ];
+        for (output, window) in windows {
+            let quantity = |value: f64| self.units.quantity(value, &output.unit);
+            rows.push(vec![
+                output.output.clone(),
+                quantity(window.mpe),
+                quantity(window.rpe_uniform),
+                quantity(window.rpe_end),
+                quantity(window.rpe_middle),
+                quantity(window.smear),
+                quantity(window.beyond_smear),
+                window.pde.map_or_else(|| "-".to_owned(), quantity),
+            ]);
+        }
+        print_table(&rows, 0);
+    }
+}
+
+impl SpectrumResults {
+    /// Prints the estimates of a log beside the exact rms, with a warning where its bins are too wide for a peak.
+    fn print_welch(&self) {
+        let Some(first) = self.welch.first() else { return };
+        say!(
+            "  the log by Welch's method: {} of {} samples",
+            counted(first.segments, "segment"),
+            first.segment
+        );
+        let titles = ["output", "rms of the log", "exact", "bins within the 90 % interval", "column"];
+        let mut rows = vec![titles.map(str::to_owned).to_vec()];
+        for estimate in &self.welch {
+            let Some(output) = self.report.outputs.iter().find(|output| output.output == estimate.output) else {
+                continue;
+            };
+            let quantity = |value: f64| self.units.quantity(value, &output.unit);
+            rows.push(vec![
+                estimate.output.clone(),
+                quantity(estimate.rms),
+                quantity(output.sample_rms),
+                format!("{:.0} %", 100.0 * estimate.part_within()),
+                estimate.column.clone(),
+            ]);
+        }
+        print_table(&rows, 1);
+        let (factor, unit) = self.units.frequency();
+        if let Some((segment, frequency)) = first.narrowest.filter(|(segment, _)| *segment > first.segment as f64) {
+            say!(
+                "  warning: a bin is too wide for the narrowest peak of the loop, at {} {unit}, where the estimate is low: \
+                 it takes segments of {} samples (--segment)",
+                digits(frequency * std::f64::consts::TAU * factor),
+                digits(segment.ceil())
+            );
+        }
+    }
+}
+
+impl Results for SpectrumResults {
+    fn json(&self) -> Vec<Json> {
+        let mut object = with_scenario_name(&self.name, json!(self.report));
+        if !self.welch.is_empty() {
+            object["welch"] = json!(self.welch);
+        }
+        vec![object]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        let mut all = figures::densities(&self.name, &self.report, &self.welch);
+        all.extend(figures::waterfalls(&self.name, &self.report));
+        all
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        let mut columns = vec!["frequency_hz".to_owned()];
+        let mut lists: Vec<&Vec<f64>> = vec![&self.report.frequency_hz];
+        for output in &self.report.outputs {
+            let name = &output.output;
+            columns.extend([format!("{name}_density"), format!("{name}_cumulative_rms")]);
+            lists.extend([&output.density, &output.cumulative_rms]);
+            for (source, density) in self.report.sources.iter().zip(&output.density_by_source) {
+                columns.push(format!("{name}_density {source}"));
+                lists.push(density);
+            }
+        }
+        let row = |place: usize| lists.iter().map(|list| Some(list[place])).collect();
+        Some(NumberTable { columns, rows: (0..self.report.frequency_hz.len()).map(row).collect() })
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let NoiseReport { spectral_radius, period_s, samples, nyquist_hz, sources, outputs, .. } = &self.report;
+        let samples = match *samples {
+            1 => String::new(),
+            count => format!(", {}", counted(count, "sample") + " of the law"),
+        };
+        say!(
+            "{}   {} of noise in a stable loop: spectral radius {spectral_radius:.6} in {period_s} s{samples}, \
+             densities to {} Hz",
+            self.name,
+            counted(sources.len(), "source"),
+            digits(*nyquist_hz)
+        );
+        if !sources.is_empty() {
+            let mut rows = vec![["output", "rms", "of variance", "source"].map(str::to_owned).to_vec()];
+            rows.extend(outputs.iter().flat_map(|output| self.output_rows(output)));
+            print_table(&rows, 1);
+            self.print_windows();
+        }
+        self.print_welch();
+        if let Some(wheels) = &self.report.wheels {
+            wheels::print(&self.report, wheels, self.units);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,36 @@
+//! Noise of a closed loop: covariance, spectra and pointing indices, exact from the linear loop.
+//!
+//! [`NoisyLoop`] has the loop of a scenario under its noise: sensors, rounding, random torques. From it come, without a
+//! simulation,
+//!
+//! - the variance of each output at the samples, at any time, and over time, by source: [`NoisyLoop::sample_variances`],
+//!   [`NoisyLoop::variance_at`], [`NoisyLoop::mean_variances`];
+//! - the power spectral density at the samples: [`NoisyLoop::densities`], and [`cumulative_rms`];
+//! - the autocovariance, and the expectation of Welch's estimate of the density: [`NoisyLoop::autocovariance`],
+//!   [`NoisyLoop::welch_expectation`];
+//! - pointing indices over windows: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities.
+//!
+//! [`LineLoop`] has the lines of the loop under loads that turn, [`WheelImbalance`] those of wheels over their speed.
+//! [`NoiseReport`] has all of them for some outputs.
+
+mod covariance;
+mod density;
+mod imbalance;
+mod lines;
+mod motion;
+mod noisy_loop;
+mod output;
+mod period_rows;
+mod report;
+mod schedule;
+mod source;
+mod welch;
+mod windows;
+
+pub use density::{OutputDensity, cumulative_rms};
+pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
+pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine};
+pub use noisy_loop::{NoiseError, NoisyLoop};
+pub use report::{NoiseReport, NoiseRequest, OutputNoise, WindowRms};
+pub use welch::NarrowestPeak;
+pub use windows::{Window, WindowVariances, WindowWeights};

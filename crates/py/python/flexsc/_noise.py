@@ -1,0 +1,257 @@
+"""Noise of the loop of a scenario: rms, spectral density, indices over windows, and lines of its wheels."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    from matplotlib.axes import Axes
+
+    from flexsc._scenario import Scenario
+
+    Values = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class OutputNoise:
+    """Noise of one output of a loop, in the unit of the output.
+
+    >>> noise = flexsc.Scenario.example("attitude-hold").spectrum().outputs["roll"]
+    >>> max(noise.rms_by_source, key=noise.rms_by_source.get), noise.unit
+    ('sensor.sampled.rate_noise', 'rad')
+    """
+
+    unit: str
+    """Unit of the output."""
+    rms: float
+    """Rms over time."""
+    sample_rms: float
+    """Rms at the samples of the law."""
+    rms_by_source: dict[str, float]
+    """Rms over time from each source: a key of the scenario."""
+    density: Values
+    """One-sided power spectral density at the samples (unit² per Hz), of shape (frequencies,)."""
+    density_by_source: dict[str, Values]
+    """Density from each source (unit² per Hz), each of shape (frequencies,)."""
+    cumulative_rms: Values
+    """Rms up to each frequency, of shape (frequencies,)."""
+    window: dict[str, float] | None
+    """Rms over windows that begin at a sample of the law, if a window is given: `mpe`, of the mean over the
+    window, the displacement of an exposure; `rpe_uniform`, `rpe_end` and `rpe_middle`, of the output less
+    the mean at any time, at the end and in the middle; `smear`, of the straight line about its mean;
+    `beyond_smear`, of the rest; `pde`, of the difference of the means of two windows."""
+
+
+@dataclass(frozen=True)
+class WheelLines:
+    """Lines of the outputs under one harmonic of one unbalanced wheel, over its speed.
+
+    >>> found = flexsc.Scenario.example("wheel-run-up").spectrum(speeds=[40.0, 93.0]).wheels.harmonics[0]
+    >>> found.order, found.frequency.tolist() == [40.0, 93.0], found.amplitude["roll"].shape
+    (1.0, True, (2,))
+    """
+
+    wheel: int
+    """Number of the wheel, from 1."""
+    order: float
+    """Order of the harmonic: periods per turn."""
+    frequency: Values
+    """Frequency of the harmonic (rad/s), of shape (speeds,)."""
+    amplitude: dict[str, Values]
+    """Amplitude of each output at that frequency, in its unit, of shape (speeds,)."""
+    alias_frequency: dict[str, Values]
+    """Frequency (rad/s) of the largest line that sampling makes of it, of each output, of shape (speeds,)."""
+    alias_amplitude: dict[str, Values]
+    """Amplitude of that line, in the unit of the output, of shape (speeds,)."""
+
+
+@dataclass(frozen=True)
+class WheelSpectrum:
+    """Lines of the imbalance of wheels over their speed.
+
+    >>> wheels = flexsc.Scenario.example("wheel-run-up").spectrum(speeds=[40.0, 93.0]).wheels
+    >>> wheels.speed.tolist(), bool(wheels.rms["yaw"][1] > wheels.rms["yaw"][0])
+    ([40.0, 93.0], True)
+    """
+
+    speed: Values
+    """Speeds (rad/s), of shape (speeds,)."""
+    rms: dict[str, Values]
+    """Rms of each output, of all lines of all wheels, in its unit, of shape (speeds,)."""
+    harmonics: tuple[WheelLines, ...]
+    """Lines under each harmonic of each wheel."""
+
+
+@dataclass(frozen=True)
+class NoiseSpectrum:
+    """Noise of the loop of a scenario, exact from its linear model.
+
+    >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["pitch"], window=1.0)
+    >>> noise = spectrum.outputs["pitch"]
+    >>> noise.window["mpe"] < noise.rms < 1e-4
+    True
+    """
+
+    frequency: Values
+    """Frequencies of the densities (Hz), up to the Nyquist frequency, of shape (frequencies,)."""
+    sources: tuple[str, ...]
+    """Sources of noise: keys of the scenario."""
+    outputs: dict[str, OutputNoise]
+    """Noise of each output."""
+    wheels: WheelSpectrum | None
+    """Lines of the imbalance of the wheels; None without imbalance."""
+    period: float
+    """Period (s) after which the loop repeats."""
+    samples: int
+    """Samples of the law in a period."""
+    spectral_radius: float
+    """Largest magnitude of a pole of the closed loop over a period."""
+
+    def plot(self, output: str | None = None, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
+        """Draw the density of an output by source, and its cumulative rms.
+
+        Args:
+            output: Name of the output; if omitted, the first.
+            axes: The axes for density and rms; if omitted, those of a new figure.
+
+        Returns:
+            The axes: frequency (Hz) against density (unit² per Hz), and against the rms up to it.
+
+        Raises:
+            KeyError: There is no output of this name.
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> density, rms = flexsc.Scenario.example("attitude-hold").spectrum().plot("yaw")
+        >>> density.get_ylabel(), rms.get_xlabel()
+        ('density ((rad)²/Hz)', 'frequency (Hz)')
+        """
+        from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib
+
+        need_matplotlib()
+        name = next(iter(self.outputs)) if output is None else output
+        noise = self.outputs[name]
+        if axes is None:
+            from matplotlib import pyplot
+
+            figure, (above, below) = pyplot.subplots(
+                2, 1, sharex=True, figsize=(WIDTH * INCH, 560 * INCH), layout="constrained"
+            )
+            figure.suptitle(f"Noise of {name}", fontsize=14 * POINT)
+        else:
+            above, below = axes
+        if len(self.sources) > 1:
+            for source, density in noise.density_by_source.items():
+                if density.any():
+                    above.plot(self.frequency, density, linewidth=POINT, label=source)
+        label = "all" if len(self.sources) > 1 else "".join(self.sources)
+        above.plot(self.frequency, noise.density, color="black", linewidth=1.4 * POINT, label=label)
+        below.plot(self.frequency, noise.cumulative_rms, color="black", linewidth=1.4 * POINT)
+        for ax, title in ((above, f"density (({noise.unit})²/Hz)"), (below, f"rms up to it ({noise.unit})")):
+            frame(ax)
+            ax.set_xscale("log")
+            ax.set_ylabel(title, fontsize=12 * POINT)
+        top = float(noise.density.max(initial=0.0))
+        if top > 0.0:
+            above.set_yscale("log")
+            above.set_ylim(max(float(noise.density[noise.density > 0.0].min()), 1e-8 * top), 2.0 * top)
+        below.set_xlabel("frequency (Hz)", fontsize=12 * POINT)
+        above.legend(frameon=False, fontsize=10 * POINT)
+        return above, below
+
+
+for _class in (NoiseSpectrum, OutputNoise, WheelSpectrum, WheelLines):
+    _class.__module__ = "flexsc"
+
+
+def noise_spectrum(
+    scenario: Scenario,
+    signals: Sequence[str] | None,
+    window: float | None,
+    separation: float | None,
+    speeds: npt.ArrayLike | None,
+) -> NoiseSpectrum:
+    """Return the noise of the loop of a scenario."""
+    import numpy as np
+
+    if separation is not None and window is None:
+        raise ValueError("separation needs a window")
+    if isinstance(signals, str):
+        signals = [signals]
+    given = None if speeds is None else np.asarray(speeds, dtype=np.float64).ravel().tolist()
+    text = engine.spectrum_json(scenario._native, list(signals or ()), window, separation, given)
+    found = json.loads(text)
+    sources = tuple(found["sources"])
+    names = [each["output"] for each in found["outputs"]]
+    wheels = found.get("wheels")
+    return NoiseSpectrum(
+        frequency=_array(found["frequency_hz"]),
+        sources=sources,
+        outputs={each["output"]: _output(each, sources) for each in found["outputs"]},
+        wheels=None if wheels is None else _wheels(wheels, names),
+        period=found["period_s"],
+        samples=found["samples"],
+        spectral_radius=found["spectral_radius"],
+    )
+
+
+def _array(values: Sequence[float]) -> Values:
+    import numpy as np
+
+    return np.array(values, dtype=np.float64)
+
+
+def _output(found: dict[str, Any], sources: tuple[str, ...]) -> OutputNoise:
+    window = found.get("window")
+    if window is not None:
+        times = ("window_s", "separation_s")
+        window = {name: value for name, value in window.items() if name not in times and value is not None}
+    densities = (_array(density) for density in found["density_by_source"])
+    return OutputNoise(
+        unit=found["unit"],
+        rms=found["rms"],
+        sample_rms=found["sample_rms"],
+        rms_by_source=dict(zip(sources, found["rms_by_source"], strict=True)),
+        density=_array(found["density"]),
+        density_by_source=dict(zip(sources, densities, strict=True)),
+        cumulative_rms=_array(found["cumulative_rms"]),
+        window=window,
+    )
+
+
+def _wheels(found: dict[str, Any], names: list[str]) -> WheelSpectrum:
+    """The lines over speed, one entry for each harmonic of each wheel."""
+    groups: dict[tuple[int, float], list[dict[str, Any]]] = {}
+    for line in found["lines"]:
+        groups.setdefault((line["wheel"], line["order"]), []).append(line)
+    none = {"frequency_rad_s": float("nan"), "amplitude": 0.0}
+
+    def column(lines: list[dict[str, Any]], place: int, alias: bool, key: str) -> Values:
+        of = [line["outputs"][place] for line in lines]
+        chosen = [(each["aliases"] or [none])[0] if alias else each["direct"] for each in of]
+        return _array([each[key] for each in chosen])
+
+    def columns(lines: list[dict[str, Any]], alias: bool, key: str) -> dict[str, Values]:
+        return {name: column(lines, place, alias, key) for place, name in enumerate(names)}
+
+    speed = _array(found["speed_rad_s"])
+    harmonics = (
+        WheelLines(
+            wheel=wheel,
+            order=order,
+            frequency=order * speed,
+            amplitude=columns(lines, False, "amplitude"),
+            alias_frequency=columns(lines, True, "frequency_rad_s"),
+            alias_amplitude=columns(lines, True, "amplitude"),
+        )
+        for (wheel, order), lines in groups.items()
+    )
+    rms = {name: _array(values) for name, values in zip(names, found["rms"], strict=True)}
+    return WheelSpectrum(speed, rms, tuple(harmonics))

@@ -1,0 +1,254 @@
+//! Noise of closed loops against numbers of SciPy, of integrals and of closed forms, and against a long run.
+
+use flexsc_core::Scenario;
+use flexsc_core::analysis::noise::{
+    LineLoop, NoiseError, NoiseReport, NoisyLoop, Window, WindowVariances, WindowWeights, cumulative_rms,
+};
+
+use crate::margins::wheel_loop;
+use crate::open_loops::scenario;
+
+/// Returns the loop over four undamped modes with further keys of its sensor, and disturbances.
+fn noisy_wheel(sensor: &str, disturbances: &str) -> NoisyLoop {
+    let text = wheel_loop(0.0).replace("[body.planar]", &format!("{sensor}\n[body.planar]")) + disturbances;
+    noisy(&Scenario::parse("wheel.toml", &text).expect("valid"))
+}
+
+fn noisy(scenario: &Scenario) -> NoisyLoop {
+    NoisyLoop::from_scenario(scenario).expect("settles")
+}
+
+const SENSOR: &str = "sensor.sampled.noise = 1e-5";
+const TORQUE: &str = "[[disturbance]]\nnoise = 1e-12\nperiod = 0.3\n";
+
+/// Asserts that two numbers agree to a fraction of the second.
+fn agree(what: &str, found: f64, expected: f64, part: f64) {
+    assert!((found / expected - 1.0).abs() < part, "{what}: {found:.15e}, expected {expected:.15e}");
+}
+
+fn sum(variances: &[f64]) -> f64 {
+    variances.iter().sum()
+}
+
+/// Returns the standard deviation of an output at the samples of the law.
+fn deviation(noisy: &NoisyLoop, name: &str) -> f64 {
+    let output = noisy.output(name).expect(name);
+    sum(&noisy.sample_variances(&[output])[0]).sqrt()
+}
+
+/// Numbers by `scipy.linalg.solve_discrete_lyapunov` for the loop of the papers' wheel.
+#[test]
+fn covariances_are_those_of_lyapunov_equations() {
+    let sensor = noisy_wheel(SENSOR, "");
+    assert_eq!(sensor.sources, ["sensor.sampled.noise"]);
+    agree("radius", sensor.spectral_radius, 0.998_961_065_569_073, 1e-13);
+    agree("angle", deviation(&sensor, "angle"), 1.949_935_526_168_48e-6, 1e-12);
+    agree("command", deviation(&sensor, "command"), 3.989_439_609_768e-3, 1e-11);
+    agree("mode", deviation(&sensor, "mode0_displacement"), 1.010_277_313_587_15e-6, 1e-11);
+    agree("rate", deviation(&sensor, "rate"), 2.214_313_153_295e-6, 1e-11);
+    let torque = noisy_wheel("", TORQUE);
+    assert_eq!(torque.sources, ["disturbance[0].noise"]);
+    agree("angle", deviation(&torque, "angle"), 5.719_332_749_569_22e-5, 1e-12);
+    agree("command", deviation(&torque, "command"), 7.120_157_822_421e-4, 1e-11);
+    agree("mode", deviation(&torque, "mode0_displacement"), 1.403_395_454_58e-5, 1e-11);
+    let rounded = noisy_wheel("sensor.sampled.resolution = 1e-4", "");
+    agree("angle", deviation(&rounded, "angle"), 5.628_979_004_679e-6, 1e-11);
+    // All together: the variances add.
+    let both = noisy_wheel(&format!("{SENSOR}\nsensor.sampled.resolution = 1e-4"), TORQUE);
+    let parts = [&sensor, &rounded, &torque].map(|one| deviation(one, "angle"));
+    let all = parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+    agree("all", deviation(&both, "angle"), all, 1e-12);
+}
+
+/// Draws that are held for a fiftieth of a sample are white noise: Van Loan's integral of it.
+#[test]
+fn short_draws_of_a_torque_are_white() {
+    let torque = noisy_wheel("", &TORQUE.replace("0.3", "0.006"));
+    agree("angle", deviation(&torque, "angle"), 5.719_646_138_22e-5, 5e-8);
+}
+
+#[test]
+fn the_variance_between_samples_is_that_of_the_motion() {
+    let sensor = noisy_wheel(SENSOR, "");
+    let angle = sensor.output("angle").expect("exists");
+    agree("middle", sum(&sensor.variance_at(angle, 0.15)).sqrt(), 1.951_620_694_515_91e-6, 1e-11);
+    let mean = sum(&sensor.mean_variances(&[angle])[0]).sqrt();
+    agree("mean", mean, 1.950_833_978_776_72e-6, 1e-11);
+}
+
+#[test]
+fn the_density_has_its_values_and_its_integral() {
+    let sensor = noisy_wheel(SENSOR, "");
+    let angle = sensor.output("angle").expect("exists");
+    let at = [0.05, 0.3, 1.0].map(|w: f64| w / std::f64::consts::TAU);
+    let density = &sensor.densities(&[angle], &at)[0];
+    for (found, expected) in
+        density.total.iter().zip([2.001_902_954_400e-10, 5.974_526_009_691e-11, 5.973_431_121_050e-11])
+    {
+        agree("density", *found, expected, 1e-9);
+    }
+    let grid = sensor.frequency_grid();
+    let total = &sensor.densities(&[angle], &grid)[0].total;
+    let rms = cumulative_rms(&grid, total);
+    agree("integral", *rms.last().expect("a grid"), 1.949_935_526e-6, 2e-4);
+    assert!(grid.last().is_some_and(|last| (last * 0.6 - 1.0).abs() < 1e-12));
+}
+
+fn rms(each: &[WindowVariances], value: fn(&WindowVariances) -> f64) -> f64 {
+    each.iter().map(value).sum::<f64>().sqrt()
+}
+
+/// Exposures by projection on polynomials, in Python with NumPy.
+#[test]
+fn exposures_have_displacement_smear_and_jitter() {
+    let (sensor, torque) = (noisy_wheel(SENSOR, ""), noisy_wheel("", TORQUE));
+    let cases = [
+        (
+            &sensor,
+            [
+                1.950_833_978_777e-6,
+                1.691_009_411_275e-6,
+                6.756_899_876e-7,
+                6.997_738_380e-7,
+                9.727_488_801e-7,
+            ],
+        ),
+        (
+            &torque,
+            [
+                5.719_335_413_621e-5,
+                5.696_157_715_875e-5,
+                4.864_028_010_720e-6,
+                1.673_235_323_890e-6,
+                5.143_781_190_737e-6,
+            ],
+        ),
+    ];
+    for (noisy, expected) in cases {
+        let angle = noisy.output("angle").expect("exists");
+        let window = Window { length: 3.0, separation: None };
+        let each = noisy.window_variances(angle, window).expect("short");
+        let found = [
+            rms(&each, |index| index.total),
+            rms(&each, |index| index.mpe),
+            rms(&each, |index| index.smear),
+            rms(&each, WindowVariances::beyond_smear),
+            rms(&each, |index| index.rpe_uniform),
+        ];
+        for (found, expected) in found.into_iter().zip(expected) {
+            agree("exposure", found, expected, 2e-9);
+        }
+    }
+    let angle = sensor.output("angle").expect("exists");
+    let each = sensor.window_variances(angle, Window { length: 0.3, separation: None }).expect("short");
+    agree("displacement", rms(&each, |index| index.mpe), 1.943_542_467_214e-6, 1e-11);
+    agree("smear", rms(&each, |index| index.smear), 1.664_240_862_711e-7, 1e-9);
+    agree("jitter", rms(&each, |index| index.rpe_uniform), 1.685_108_034_654e-7, 1e-9);
+    let long = Window { length: 1e9, separation: None };
+    assert!(sensor.window_variances(angle, long).is_err_and(|why| why.starts_with("window must be")));
+}
+
+#[test]
+fn a_sine_has_weights_of_windows() {
+    let window = Window { length: 10.0, separation: Some(60.0) };
+    let weights = WindowWeights::new(2.0, window);
+    agree("MPE", (0.5 * weights.mpe).sqrt(), 0.038_468_101_661_9, 1e-11);
+    agree("RPE", (0.5 * weights.rpe_uniform).sqrt(), 0.706_059_632_86, 1e-11);
+    agree("PDE", (0.5 * weights.pde).sqrt(), 0.023_450_971_920_3, 1e-11);
+    // A slow sine drifts: its line has a mean square of s² T²/12.
+    let slow = WindowWeights::new(1e-3, window);
+    agree("smear", slow.smear, 1e-6 * 100.0 / 12.0, 1e-4);
+}
+
+/// Closed loop under a torque that turns, by the sum over aliases and by integration.
+#[test]
+fn a_torque_that_turns_has_a_line_and_aliases() {
+    let text = wheel_loop(0.0);
+    let scenario = Scenario::parse("wheel.toml", &text).expect("valid");
+    let lines = LineLoop::from_scenario(&scenario).expect("linear");
+    let angle = noisy_wheel(SENSOR, "").output("angle").expect("exists");
+    let found = &lines.lines(22.0, &[lines.torque(0)], &[angle]).expect("damped")[0][0];
+    agree("direct", found.direct.amplitude, 0.007_317_976_819_283, 1e-11);
+    assert_eq!(found.direct.frequency_rad_s, 22.0);
+    let alias = found.aliases[0];
+    agree("alias", alias.amplitude, 0.001_334_053_428_643, 1e-10);
+    agree("at", alias.frequency_rad_s, 1.056_049, 1e-6);
+}
+
+#[test]
+fn a_loop_without_a_spectrum_is_refused() {
+    let fault = |text: &str| {
+        let scenario = Scenario::parse("s.toml", text).expect("valid");
+        NoisyLoop::from_scenario(&scenario).expect_err("refused").to_string()
+    };
+    let relay = NoisyLoop::from_scenario(&scenario("relay-fixed")).expect_err("a relay");
+    assert!(matches!(&relay, NoiseError::Key(fault) if fault.key == "law.relay"), "{relay}");
+    let unstable = NoisyLoop::from_scenario(&scenario("wheel-unstable-band")).expect_err("unstable");
+    assert!(unstable.to_string().contains("not stable and has no spectrum"), "{unstable}");
+    let gyro = wheel_loop(0.0)
+        .replace("sensor.sampled.period = 0.3", "sensor.gyro = { period = 0.3, angle_random_walk = 1e-6 }");
+    assert!(fault(&gyro).contains("integrates the rate"), "{}", fault(&gyro));
+    let odd = wheel_loop(0.0) + &TORQUE.replace("0.3", "0.1234567");
+    assert!(fault(&odd).contains("disturbance[0].noise"), "{}", fault(&odd));
+}
+
+#[test]
+fn every_shipped_loop_has_a_spectrum_whose_integral_is_its_variance() {
+    let mut count = 0;
+    for name in ["attitude-hold", "earth-observer", "earth-observer-lqg", "slew-wheel-lqg"] {
+        let noisy = noisy(&scenario(name));
+        let outputs = noisy.first_outputs();
+        let report = NoiseReport::new(&noisy, &outputs, None).expect("no window");
+        for output in &report.outputs {
+            let last = output.cumulative_rms.last().copied().unwrap_or(0.0);
+            agree(&format!("{name} {}", output.output), last, output.sample_rms, 2e-3);
+            assert!((output.rms / output.sample_rms - 1.0).abs() < 0.2, "{output:?}");
+            count += 1;
+        }
+    }
+    assert!(count >= 10, "{count}");
+}
+
+/// Expectations of Welch's estimate by sums over the autocovariance, in Python with NumPy.
+#[test]
+fn a_wide_bin_lowers_the_estimate_of_welch() {
+    let sensor = noisy_wheel(SENSOR, "");
+    let angle = sensor.output("angle").expect("exists");
+    for (length, bin, expected, density) in [
+        (2048, 98.0, 3.393_959_374_8e-11, 6.620_669_675_3e-11),
+        (8192, 391.0, 5.159_327_095_7e-11, 5.479_778_681_3e-11),
+        (512, 49.0, 4.134_100_945_0e-11, 8.150_863_023_3e-11),
+    ] {
+        let frequency = bin / (f64::from(length) * 0.3);
+        let found = sensor.welch_expectation(angle, length as usize, &[frequency])[0];
+        agree("expectation", found, expected, 1e-9);
+        agree("density", sensor.densities(&[angle], &[frequency])[0].total[0], density, 1e-9);
+    }
+    let peak = sensor.narrowest_peak().expect("modes");
+    agree("decay", peak.width * std::f64::consts::PI * 0.3, -(0.998_961_065_569_073_f64.ln()), 1e-9);
+    assert!((17_000.0..20_000.0).contains(&peak.segment), "{peak:?}");
+    let variance = sum(&sensor.sample_variances(&[angle])[0]);
+    agree("variance", sensor.autocovariance(angle, 3)[0], variance, 1e-12);
+}
+
+/// Noise of three axes, and of a loop with a Kalman filter, by SciPy: `tests/golden/noise_reference.py`.
+#[test]
+fn deviations_are_those_of_scipy() {
+    let path = format!("{}/../../tests/golden/noise.csv", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("golden");
+    let loops = ["attitude-hold", "slew-wheel-lqg"].map(|name| (name, noisy(&scenario(name))));
+    let mut rows = 0;
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [name, output, source, deviation] = cells[..] else { panic!("{line}") };
+        let (_, noisy) = loops.iter().find(|(own, _)| *own == name).expect(name);
+        let output = noisy.output(output).expect(output);
+        let found = match noisy.sources.iter().position(|key| key == source) {
+            Some(source) => noisy.sample_variances(&[output])[0][source].sqrt(),
+            None => sum(&noisy.variance_at(output, 0.1)).sqrt(),
+        };
+        agree(line, found, deviation.parse().expect("a number"), 1e-9);
+        rows += 1;
+    }
+    assert_eq!(rows, 20);
+}
