@@ -33,6 +33,7 @@ mod plot;
 mod progress;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
+mod requirements;
 mod result_files;
 mod results;
 mod runs_table;
@@ -139,7 +140,7 @@ pub fn command() -> clap::Command {
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
-/// failed or a file could not be written, 2 bad input, 130 interrupted.
+/// failed or a file could not be written, 2 bad input, 3 a requirement is not met, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
