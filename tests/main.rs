@@ -135,6 +135,7 @@ mod plan;
 mod plan_figures;
 mod plot;
 mod reproduce;
+mod requirements;
 mod sheets;
 mod stops;
 #[cfg(unix)]

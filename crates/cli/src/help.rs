@@ -164,6 +164,16 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "budget",
+                [
+                    (
+                        "flexsc budget slew-wheel-lqg.toml --runs 25",
+                        "levels of the pointing indices over 25 runs",
+                    ),
+                    ("flexsc budget shaped-slew.toml --runs 1 --json", "those of one run, as JSON"),
+                ],
+            ),
+            (
                 "damping",
                 [
                     (

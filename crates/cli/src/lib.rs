@@ -1,5 +1,6 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
+mod budget;
 mod campaign;
 mod check;
 mod confirm_cost;
@@ -99,6 +100,10 @@ enum Verb {
     ///
     /// Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others closed and of all together.
     Margins(margins::MarginsArgs),
+    /// Print the pointing budget of a scenario's requirements
+    ///
+    /// Levels of each pointing index by a campaign, by convolution of the error sources, and by the rule of k sigma.
+    Budget(budget::BudgetArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -170,6 +175,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
         Verb::Margins(args) => margins::run(&args),
+        Verb::Budget(args) => budget::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

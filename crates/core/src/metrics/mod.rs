@@ -5,6 +5,7 @@ mod attitude;
 mod envelope;
 mod filter;
 pub mod goal;
+mod index_record;
 mod line_of_sight;
 mod pointing_index;
 mod requirements;
@@ -29,6 +30,7 @@ use crate::metric_list::*;
 pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
 
 pub use envelope::METRICS as OF_ENVELOPE;
+pub use index_record::IndexRecord;
 pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;

@@ -28,26 +28,26 @@ impl IndexStream {
         Self { index, recent, sum: Vector::zeros(), since: 0, means }
     }
 
-    /// Takes a sample of the error, and hands the norms of the index' new values to `give`.
-    pub fn push(&mut self, error: Vector, mut give: impl FnMut(f64)) {
+    /// Takes a sample of the error, and hands the new values of the index to `give`.
+    pub fn push(&mut self, error: Vector, mut give: impl FnMut(Vector)) {
         match self.index {
-            IndexWindow::Absolute => give(error.norm()),
+            IndexWindow::Absolute => give(error),
             IndexWindow::Mean { window } => {
                 if let Some(mean) = self.slide(error, window) {
-                    give(mean.norm());
+                    give(mean);
                 }
             }
             IndexWindow::Relative { window, convention: WindowConvention::Uniform } => {
                 self.recent.push_back(error);
                 if self.recent.len() as u64 == window {
                     let mean = self.recent.iter().sum::<Vector>() / window as f64;
-                    self.recent.drain(..).for_each(|error| give((error - mean).norm()));
+                    self.recent.drain(..).for_each(|error| give(error - mean));
                 }
             }
             IndexWindow::Relative { window, convention } => {
                 if let Some(mean) = self.slide(error, window) {
                     let at = if convention == WindowConvention::End { window - 1 } else { window / 2 };
-                    give((self.recent[at as usize] - mean).norm());
+                    give(self.recent[at as usize] - mean);
                 }
             }
             IndexWindow::Difference { window, shift, .. } => {
@@ -56,7 +56,7 @@ impl IndexStream {
                     if self.means.len() as u64 > shift
                         && let Some(before) = self.means.pop_front()
                     {
-                        give((mean - before).norm());
+                        give(mean - before);
                     }
                 }
             }

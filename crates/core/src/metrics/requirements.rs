@@ -44,10 +44,14 @@ struct IndexValues {
     largest: LargestValues,
     /// Number of values within the limit.
     within: u64,
+    /// All values, if they are kept: of one component with its sign, else the norm.
+    all: Option<Vec<f64>>,
+    /// True if the error has one component.
+    is_component: bool,
 }
 
 impl IndexValues {
-    fn new(requirement: &AssessedRequirement, error: &SampledError) -> Self {
+    fn new(requirement: &AssessedRequirement, error: &SampledError, is_component: bool) -> Self {
         // The ensemble takes the worst time of each run.
         let level = match requirement.interpretation {
             Interpretation::Ensemble => 1.0,
@@ -57,6 +61,8 @@ impl IndexValues {
             stream: IndexStream::new(error.index),
             largest: LargestValues::new(level, error.index.values(error.samples)),
             within: 0,
+            all: None,
+            is_component,
             error: error.clone(),
         }
     }
@@ -69,10 +75,15 @@ impl IndexValues {
             Some(ErrorAxis::Y) => Vector::new(error.y, 0.0, 0.0),
             Some(ErrorAxis::Z) => Vector::new(error.z, 0.0, 0.0),
         };
-        let Self { stream, largest, within, .. } = self;
+        let Self { stream, largest, within, all, is_component, .. } = self;
         stream.push(error, |value| {
-            largest.add(value);
-            *within += u64::from(value <= limit);
+            let magnitude = value.norm();
+            largest.add(magnitude);
+            *within += u64::from(magnitude <= limit);
+            if let Some(all) = all {
+                // The other components are 0.
+                all.push(if *is_component { value.sum() } else { magnitude });
+            }
         });
     }
 }
@@ -85,12 +96,34 @@ impl RequirementMetrics {
             limit: requirement.limit,
             source: match &requirement.source {
                 RequirementSource::Metric(name, element) => ValueSource::Metric(name.clone(), *element),
-                RequirementSource::Error(error) => {
-                    ValueSource::Index(Box::new(IndexValues::new(requirement, error)))
-                }
+                RequirementSource::Error(error) => ValueSource::Index(Box::new(IndexValues::new(
+                    requirement,
+                    error,
+                    error.is_component(scenario.axis_count()),
+                ))),
             },
         };
         Self(scenario.study.requirements.iter().map(values).collect())
+    }
+
+    /// Returns the collector with all values of the indices kept.
+    #[must_use]
+    pub fn with_all_values(mut self) -> Self {
+        for values in &mut self.0 {
+            if let ValueSource::Index(values) = &mut values.source {
+                values.all = Some(Vec::new());
+            }
+        }
+        self
+    }
+
+    /// Returns the values of the index of each requirement that are kept; empty for a metric.
+    pub fn into_values(self) -> Vec<Vec<f64>> {
+        let values = |source| match source {
+            ValueSource::Index(values) => values.all.unwrap_or_default(),
+            ValueSource::Metric(..) => Vec::new(),
+        };
+        self.0.into_iter().map(|of| values(of.source)).collect()
     }
 
     /// Returns the metrics that are required.

@@ -125,6 +125,11 @@ fn trimmed(value: f64) -> String {
 }
 
 impl SampledError {
+    /// Returns true if the error of a body with this number of axes has one component.
+    pub fn is_component(&self, axes: usize) -> bool {
+        self.axis.is_some() || axes == 1
+    }
+
     fn description(&self) -> String {
         let period = self.period.seconds();
         let seconds = |samples: u64| trimmed(samples as f64 * period);
@@ -145,6 +150,8 @@ impl SampledError {
         };
         let axis = self.axis.map_or(String::new(), |axis| format!(" about {}", axis.name()));
         let [from, to] = [self.from, self.to].map(|at| trimmed(at.seconds()));
-        format!("{index} of {quantity}{axis}, from {from} to {to} s")
+        let part =
+            if self.from > self.to { format!("from {from} s on") } else { format!("from {from} to {to} s") };
+        format!("{index} of {quantity}{axis}, {part}")
     }
 }
