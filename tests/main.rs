@@ -139,6 +139,7 @@ mod plot;
 #[cfg(feature = "full")]
 mod report;
 mod reproduce;
+mod requirements;
 mod sheets;
 mod stops;
 #[cfg(unix)]

@@ -23,6 +23,7 @@ use flexsc_core::campaign::{
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
+use flexsc_core::requirement_verdict::{self, RequirementRuns, RequirementVerdict};
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
@@ -31,14 +32,15 @@ use crate::error::CliError;
 use crate::human::Units;
 use crate::results::print_lines;
 use crate::runs_table::RunsTable;
-use crate::{files, say, stop, summary};
+use crate::{files, requirements, say, stop, summary};
 use campaign_record::CampaignRecord;
 pub use campaign_record::SCENARIO;
 pub use options::{CampaignOptions, TableFormat};
 use points::Points;
 use progress_table::LiveStatistics;
 pub use progress_table::{RunningMean, table as table_so_far};
-use report::{CampaignReport, are_alike, success_rate, verdict, write_statistics};
+pub use report::success_rate;
+use report::{CampaignReport, are_alike, verdict, write_statistics};
 
 /// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
 pub const MAIN: [&str; 23] = [
@@ -100,12 +102,12 @@ pub struct CampaignJob<'a> {
     pub plain: bool,
 }
 
-/// Runs a campaign; `work` simulates a single run.
+/// Runs a campaign, and returns the verdicts on the requirements; `work` simulates a single run.
 pub fn run(
     campaign: &Arc<Campaign>,
     job: &CampaignJob<'_>,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-) -> Result<(), CliError> {
+) -> Result<Vec<RequirementVerdict>, CliError> {
     let began = WallInstant::now();
     let _writing = stop::writing();
     let reported = match job.table {
@@ -127,14 +129,14 @@ pub fn run(
             summary::print_summary(campaign.scenario(), only, took, job.units);
         } else {
             say!("{name}   {}, {took:.2} s", counted(runs, "run"));
-            reported.say();
+            reported.say(job.units);
         }
         if let Some(path) = &reported.table {
             say!("  table          {}", path.display());
         }
     }
     match reported.failed {
-        None => Ok(()),
+        None => Ok(reported.requirements),
         Some((failed, number, why)) => Err(CliError::Runs { failed, runs, number, why }),
     }
 }
@@ -181,6 +183,7 @@ fn table(
         shown: points::runs(campaign, &job.range),
         points: RunRows::new(campaign.fields(&job.selection)),
         all: MetricColumns::default(),
+        requirements: RequirementRuns::new(campaign.scenario()),
         only: None,
         live: LiveStatistics::new(runs, 0),
         next: job.range.start,
@@ -193,7 +196,7 @@ fn table(
     } else {
         campaign.for_each_run(range, threads, work, report)
     };
-    let CampaignPrinter { all, only, failed, points, .. } = printer;
+    let CampaignPrinter { all, only, failed, points, requirements, .. } = printer;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
             (CliError::Interrupted(_) | CliError::Write { .. } | CliError::First { .. }, Some(table)) => {
@@ -204,9 +207,12 @@ fn table(
     }
     let mut table = table.map(|table| table.finish(campaign)).transpose()?;
     let only = only.filter(|_| all.runs() == 1);
-    let (runs, statistics) = (runs as usize, all.finish());
+    let (runs, statistics, requirements) = (runs as usize, all.finish(), requirements.finish());
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
+        if !requirements.is_empty() {
+            requirements::write_table(&dir.join(job.file("requirements")), &requirements)?;
+        }
     }
     if let (Some(path), Some(rows)) = (job.table, &rows) {
         let manifest = Manifest::new(campaign, job.range.clone(), &job.selection);
@@ -223,7 +229,7 @@ fn table(
     let column =
         |name: &str| -> Result<_, CliError> { Ok(points.column(name).map(std::borrow::Cow::into_owned)) };
     let points = Points::new((campaign, &job.range), (&statistics, &job.selection), column)?;
-    Ok(CampaignReport { runs, statistics, points, failed, only, table })
+    Ok(CampaignReport { runs, statistics, requirements, points, failed, only, table })
 }
 
 fn interruption(run: u64) -> CliError {
@@ -267,6 +273,7 @@ struct CampaignPrinter<'a> {
     shown: Vec<Range<u64>>,
     points: RunRows,
     all: MetricColumns,
+    requirements: RequirementRuns,
     only: Option<Metrics>,
     live: LiveStatistics,
     /// Number of the next expected run.
@@ -300,6 +307,7 @@ impl CampaignPrinter<'_> {
             let RunOutcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(self.campaign, *number, drawn, metrics.as_ref())])?;
         }
+        self.requirements.add(outcome.metrics.as_ref().ok());
         match outcome.metrics {
             Ok(metrics) => {
                 self.all.add(&metrics);
@@ -336,6 +344,10 @@ pub fn object(
     match metrics {
         Ok(metrics) => {
             object["metrics"] = metrics.to_json();
+            let verdicts = requirement_verdict::of_run(campaign.scenario(), metrics);
+            if !verdicts.is_empty() {
+                object["requirements"] = requirements::json(&verdicts);
+            }
             let warnings = summary::warnings(campaign.scenario(), metrics);
             if !warnings.is_empty() {
                 object["warnings"] = json!(warnings);

@@ -68,6 +68,9 @@ pub enum CliError {
     /// Stopped campaign whose completed rows are kept.
     #[error("{failure}; {} holds the runs before", path.display())]
     Kept { failure: Box<CliError>, path: PathBuf },
+    /// Requirements that are not met.
+    #[error("{0}")]
+    Requirements(String),
     /// Campaign with missing runs.
     #[error("{0}")]
     Incomplete(String),
@@ -124,6 +127,7 @@ impl CliError {
         match self {
             Self::Kept { failure, .. } => failure.code(),
             Self::Scenario(_) | Self::Told | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
+            Self::Requirements(_) => 3,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

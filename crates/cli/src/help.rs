@@ -183,6 +183,13 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                         "flexsc spectrum wheel-run-up.toml --speeds 30:115:86",
                         "lines of unbalanced wheels over their speed",
                     ),
+                "budget",
+                [
+                    (
+                        "flexsc budget slew-wheel-lqg.toml --runs 25",
+                        "levels of the pointing indices over 25 runs",
+                    ),
+                    ("flexsc budget shaped-slew.toml --runs 1 --json", "those of one run, as JSON"),
                 ],
             ),
             (

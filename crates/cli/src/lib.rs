@@ -1,5 +1,6 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
+mod budget;
 mod campaign;
 mod check;
 mod confirm_cost;
@@ -34,6 +35,7 @@ mod progress;
 mod report;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
+mod requirements;
 mod result_files;
 mod results;
 mod runs_table;
@@ -108,6 +110,10 @@ enum Verb {
     ///
     /// Exact from the closed loop, without a simulation: by source, over frequency, over windows, and the lines of unbalanced wheels over their speed.
     Spectrum(spectrum::SpectrumArgs),
+    /// Print the pointing budget of a scenario's requirements
+    ///
+    /// Levels of each pointing index by a campaign, by convolution of the error sources, and by the rule of k sigma.
+    Budget(budget::BudgetArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -149,7 +155,7 @@ pub fn command() -> clap::Command {
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
-/// failed or a file could not be written, 2 bad input, 130 interrupted.
+/// failed or a file could not be written, 2 bad input, 3 a requirement is not met, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
@@ -181,6 +187,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Margins(args) => margins::run(&args),
         Verb::Report(args) => report::run(&args),
         Verb::Spectrum(args) => spectrum::run(&args),
+        Verb::Budget(args) => budget::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

@@ -9,6 +9,7 @@ use flexsc_core::formats::count::counted;
 
 use crate::campaign::{TableFormat, file, part_files};
 use crate::error::CliError;
+use crate::human::Units;
 use crate::out::Out;
 use crate::{files, say, stop};
 
@@ -79,7 +80,7 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
             let remaining: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
             let reported = part_files::summary(&into, &merge.manifest().runs())?;
             say!("{}: {}, {remaining} missing", path.display(), counted(reported.runs, "run"));
-            reported.say();
+            reported.say(Units::default());
             if !missing.is_empty() {
                 return Err(incomplete(
                     &missing,

@@ -11,6 +11,7 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, CampaignRun, Design, Directory};
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, RecordError};
+use flexsc_core::requirement_verdict::{self, RequirementVerdict};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
 use crate::campaign::logs::{self, LogDetail, simulate_to_log};
@@ -22,7 +23,7 @@ use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, StopRecord};
-use crate::{files, say, scenario, summary};
+use crate::{files, requirements, say, scenario, summary};
 
 #[derive(clap::Args)]
 pub struct SimulateArgs {
@@ -157,6 +158,7 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
     args.make_room(&place)?;
     let prefixed = campaigns.len() > 1;
     let mut failures = Vec::new();
+    let mut judged = Vec::new();
     for campaign in campaigns {
         let done = match &args.runs {
             None => {
@@ -168,14 +170,15 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
         match done {
             // The other scenarios are still run.
             Err(failure @ (CliError::Run { .. } | CliError::Runs { .. })) => failures.push(failure),
-            done => done?,
+            done => judged.push((campaign.scenario().name.clone(), done?)),
         }
     }
     let last = failures.pop();
     for failure in failures {
         failure.print();
     }
-    last.map_or(Ok(()), Err)
+    last.map_or(Ok(()), Err)?;
+    requirements::validate(judged.iter().map(|(name, verdicts)| (name.as_str(), &verdicts[..])))
 }
 
 impl SimulateArgs {
@@ -207,7 +210,8 @@ impl SimulateArgs {
         let place = self.place()?;
         self.make_room(&place)?;
         let log = place.log(&format!("{}-{row}", run.scenario.name));
-        single(&work.campaign, &run, self, (log, detail))
+        let verdicts = single(&work.campaign, &run, self, (log, detail))?;
+        requirements::validate([(run.scenario.name.as_str(), &verdicts[..])])
     }
 
     /// Returns the level of detail of the log, with a default.
@@ -265,7 +269,7 @@ fn several(
     (args, place): (&SimulateArgs, &Place),
     runs: &RunRange,
     (prefixed, selection): (bool, &Selection),
-) -> Result<(), CliError> {
+) -> Result<Vec<RequirementVerdict>, CliError> {
     let detail = args.detail(LogDetail::None);
     let job = campaign::CampaignJob {
         range: runs.range.clone(),
@@ -297,7 +301,7 @@ fn single(
     run: &CampaignRun,
     args: &SimulateArgs,
     (path, detail): (PathBuf, Option<Detail>),
-) -> Result<(), CliError> {
+) -> Result<Vec<RequirementVerdict>, CliError> {
     let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
     let mut live = args.live.serve(run)?;
@@ -332,7 +336,7 @@ fn single(
     if let Some(live) = live {
         live.finish(&metrics);
     }
-    Ok(())
+    Ok(requirement_verdict::of_run(&run.scenario, &metrics))
 }
 
 fn interrupted(log: Option<Detail>, path: &Path) -> String {

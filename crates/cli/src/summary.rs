@@ -11,9 +11,10 @@ use flexsc_core::control::actuator::{EndState, Saturation};
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{MetricValue, Metrics};
+use flexsc_core::requirement_verdict::{self, Decision, RequirementVerdict};
 
 use crate::human::{Units, digits};
-use crate::say;
+use crate::{requirements, say};
 
 /// Share of a run with a wheel at its largest momentum or speed above which a warning says so.
 const FULL: f64 = 0.05;
@@ -22,6 +23,7 @@ const FULL: f64 = 0.05;
 struct Summary<'a> {
     scenario: &'a Scenario,
     metrics: &'a Metrics,
+    requirements: Vec<RequirementVerdict>,
     units: Units,
 }
 
@@ -30,7 +32,8 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {}", scenario.name, counted(modes, "mode"));
     let took = format!("{:.1} ms", took * 1e3);
-    let summary = Summary { scenario, metrics, units };
+    let requirements = requirement_verdict::of_run(scenario, metrics);
+    let summary = Summary { scenario, metrics, requirements, units };
     if scenario.axis_count() == 3 {
         say!("{head}, {took}");
         summary.three_axes();
@@ -44,6 +47,7 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
         summary.rotation();
         summary.adaptation();
     }
+    requirements::print(&summary.requirements, units);
     for warning in warnings(scenario, metrics) {
         say!("  warning        {warning}");
     }
@@ -84,6 +88,13 @@ impl Summary<'_> {
     /// Prints the goal; `bands` are those about each of three axes (rad), if there are several.
     fn goal(&self, bands: &[f64]) {
         let Some(MetricValue::Word(word)) = self.metrics.get("goal") else { return };
+        let unmet = self.requirements.iter().filter(|verdict| verdict.decision != Decision::Met).count();
+        let all = counted(self.requirements.len(), "requirement");
+        let others = match unmet {
+            0 => String::new(),
+            1 => format!(" (but 1 of {all} is not)"),
+            _ => format!(" (but {unmet} of {all} are not)"),
+        };
         let (band, outside) = (self.number("goal_band_rad"), self.number("time_outside_s"));
         if !band.is_finite() {
             say!("  goal           {word}");
@@ -97,10 +108,10 @@ impl Summary<'_> {
         };
         let outside = digits(outside);
         match *word {
-            "met" if outside == "0" => say!("  goal           met: {within} all the time"),
+            "met" if outside == "0" => say!("  goal           met{others}: {within} all the time"),
             "met" => {
                 say!(
-                    "  goal           met: {within} for the last tenth of the time or longer; outside for {outside} s before"
+                    "  goal           met{others}: {within} for the last tenth of the time or longer; outside for {outside} s before"
                 );
             }
             _ => say!(

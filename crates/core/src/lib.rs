@@ -44,9 +44,11 @@
 pub mod analysis;
 pub mod batch;
 pub mod campaign;
+mod metric_list;
 pub mod metrics;
 pub mod prelude;
 mod relay_setup;
+pub mod requirement_verdict;
 pub mod scenario;
 mod sim;
 pub mod statistics;

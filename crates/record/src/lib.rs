@@ -23,6 +23,7 @@ mod proto;
 mod provenance_check;
 mod recover;
 mod report;
+mod requirement_errors;
 pub mod row;
 mod scene_source;
 mod states;
@@ -50,6 +51,7 @@ pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Pr
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
+pub use requirement_errors::{RequirementError, RequirementErrors};
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use three_axis::{SteeringRecord, StoredMomentum, ThreeAxisCycle};

@@ -9,6 +9,7 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, ExistingLog, LogFile, Record, RecordError, RunEnd, existing_log};
+use flexsc_core::requirement_verdict::RequirementVerdict;
 use flexsc_view::scene::Scene;
 use flexsc_view::with_layout;
 
@@ -43,11 +44,17 @@ impl LogDetail {
 }
 
 /// Runs a campaign; if a detail is given, the log of each run is NAME-NUMBER.mcap beside the tables.
-pub fn run(campaign: &Arc<Campaign>, job: &CampaignJob<'_>, detail: Option<Detail>) -> Result<(), CliError> {
+///
+/// Returns the verdicts on the requirements.
+pub fn run(
+    campaign: &Arc<Campaign>,
+    job: &CampaignJob<'_>,
+    detail: Option<Detail>,
+) -> Result<Vec<RequirementVerdict>, CliError> {
     let directory = job.table.map(Path::to_owned).unwrap_or_default();
     let (name, force) = (campaign.scenario().name.clone(), job.force);
     let log = move |number: u64| -> PathBuf { directory.join(format!("{name}-{number}.mcap")) };
-    run_all(campaign, job, {
+    let verdicts = run_all(campaign, job, {
         let (log, selection) = (log.clone(), job.selection.clone());
         move |run| match detail {
             // Runs that had not started before the interruption have no log.
@@ -66,7 +73,7 @@ pub fn run(campaign: &Arc<Campaign>, job: &CampaignJob<'_>, detail: Option<Detai
             say!("  logs           {} to {}", first.display(), last.display());
         }
     }
-    Ok(())
+    Ok(verdicts)
 }
 
 /// Simulates a run with its log file, and returns the file's size. An interrupted or a failed run leaves a finished

@@ -11,16 +11,20 @@ use flexsc_core::campaign::{
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::Metrics;
+use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
 
 use super::points::{self, Points};
 use super::progress_table::LiveStatistics;
 use super::{CampaignJob, CampaignReport, interruption, object, scheduler, write_statistics};
 use crate::error::CliError;
 use crate::results::print_lines;
-use crate::{say, stop};
+use crate::{requirements, say, stop};
 
 /// Hint of the errors about a directory with another campaign.
 const HINT: &str = "hint: give another directory with -o, or use --force to replace what is there";
+/// Name of the table of the verdicts on the requirements.
+const REQUIREMENTS: &str = "requirements.csv";
+
 /// Converts an error of a campaign's directory to a failure of the command.
 pub fn failure(error: DirectoryError) -> CliError {
     match error {
@@ -200,7 +204,29 @@ pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignRepo
     let is_whole = directory.missing_among(range.clone()).map_err(failure)?.is_empty();
     let points = Points::new((&work.campaign, range), (&statistics, &work.selection), column)?;
     let (points, table) = (points.filter(|_| is_whole), Some(directory.path().to_owned()));
-    Ok(CampaignReport { runs, statistics, points, failed, only: None, table })
+    let requirements = verdicts(directory)?;
+    if !requirements.is_empty() {
+        requirements::write_table(&directory.path().join(REQUIREMENTS), &requirements)?;
+    }
+    Ok(CampaignReport { runs, statistics, requirements, points, failed, only: None, table })
+}
+
+/// Returns the verdicts on the requirements over all runs of a directory.
+fn verdicts(directory: &Directory) -> Result<Vec<RequirementVerdict>, CliError> {
+    let work = directory.work();
+    let mut runs = RequirementRuns::new(work.campaign.scenario());
+    let names = ["requirement_values", "requirement_shares"];
+    if runs.is_empty() || !work.fields().iter().any(|field| field.name == names[0]) {
+        return Ok(Vec::new());
+    }
+    for part in directory.parts().map_err(failure)? {
+        let columns = directory.columns_of(&part, &names).map_err(failure)?;
+        let [ColumnCells::Lists(values), ColumnCells::Lists(shares)] = &columns[..] else { continue };
+        for (values, shares) in values.iter().zip(shares) {
+            runs.add_values(values.as_deref().unwrap_or(&[]), shares.as_deref().unwrap_or(&[]));
+        }
+    }
+    Ok(runs.finish())
 }
 
 /// Writes the table of the statistics of a directory.

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{Metrics, goal};
+use flexsc_core::requirement_verdict::RequirementVerdict;
 use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
 
 use super::points::Points;
 use crate::error::CliError;
+use crate::human::Units;
 use crate::number::short;
-use crate::{files, say};
+use crate::{files, requirements, say};
 
 /// Results of a campaign.
 pub struct CampaignReport {
@@ -18,6 +20,8 @@ pub struct CampaignReport {
     pub runs: usize,
     /// Statistics of the metrics.
     pub statistics: Vec<Statistics>,
+    /// Verdicts on the requirements.
+    pub requirements: Vec<RequirementVerdict>,
     /// Points of a sweep.
     pub points: Option<Points>,
     /// Number of failed runs, number of the first failed run, and its error.
@@ -54,8 +58,8 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 }
 
 impl CampaignReport {
-    /// Prints the points of a sweep, or the statistics of another campaign.
-    pub fn say(&self) {
+    /// Prints the points of a sweep, or the verdicts and the statistics of another campaign.
+    pub fn say(&self, units: Units) {
         if self.runs == 0 {
             return;
         }
@@ -63,6 +67,7 @@ impl CampaignReport {
             say!("{}", points.text().trim_end());
             return;
         }
+        requirements::print(&self.requirements, units);
         let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name.as_str());
         for s in self.statistics.iter().filter(is_verdict).filter(|s| s.runs > 0) {
             say!("  {:32}{}", s.name, success_rate(s.runs as u64, s.mean));

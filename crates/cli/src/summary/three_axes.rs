@@ -49,14 +49,9 @@ impl Summary<'_> {
             );
         }
         self.lines_of_sight();
-        if let (Some(MetricValue::Word(word)), Some(pointing)) =
-            (self.metrics.get("requirement"), &self.scenario.reference.pointing)
-        {
+        if let Some(pointing) = &self.scenario.reference.pointing {
             let [start, end] = pointing.window.map(Time::get);
-            say!(
-                "  requirement    {word}: {} rms from {start} to {end} s",
-                self.quantity("pointing_rms_rad", "rad")
-            );
+            say!("  pointing       {} rms from {start} to {end} s", self.quantity("pointing_rms_rad", "rad"));
         }
         let own = self.scenario.study.expected_bands.iter().map(|band| band.unwrap_or(f64::NAN));
         let bands: Vec<f64> = match self.scenario.reference.band {

@@ -9,7 +9,7 @@ mod sampled;
 use flexsc_numerics::lanes::Processor;
 
 use crate::metrics::{Metrics, Selection};
-use crate::scenario::Scenario;
+use crate::scenario::{RequirementSource, Scenario};
 
 /// Run to simulate, without a log.
 #[derive(Copy, Clone, Debug)]
@@ -40,7 +40,14 @@ const ALL: &[&dyn BatchKernel] = &[&relay::RelayBatch, &sampled::SampledBatch];
 
 /// Returns true if runs of a scenario may be simulated in a batch on this machine.
 pub fn accepts(scenario: &Scenario) -> bool {
-    Processor::best().is_some() && ALL.iter().any(|batch| batch.accepts(scenario))
+    Processor::best().is_some() && ALL.iter().any(|batch| is_accepted(*batch, scenario))
+}
+
+/// Returns true if a batch may accept runs of a scenario: none has errors that requirements sample.
+fn is_accepted(batch: &dyn BatchKernel, scenario: &Scenario) -> bool {
+    let mut requirements = scenario.study.requirements.iter();
+    batch.accepts(scenario)
+        && requirements.all(|requirement| matches!(requirement.source, RequirementSource::Metric(..)))
 }
 
 /// Simulates runs in batches: returns the metrics of each, or `None` for a run that has to be simulated alone.
@@ -53,7 +60,7 @@ pub fn simulate_on(processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Me
     let mut all = vec![None; jobs.len()];
     for batch in ALL {
         let open: Vec<usize> = (0..jobs.len())
-            .filter(|index| all[*index].is_none() && batch.accepts(jobs[*index].scenario))
+            .filter(|index| all[*index].is_none() && is_accepted(*batch, jobs[*index].scenario))
             .collect();
         for some in open.chunks(batch.lanes(processor)) {
             // A single run gains nothing from a batch.

@@ -16,15 +16,9 @@ const MET: &str = "met";
 const MISSED: &str = "missed";
 const NONE: &str = "none";
 
-/// Returns the verdict on a value that is required to be at most `most`: met or missed, or none if a number is NaN.
-pub fn meets(value: f64, most: f64) -> &'static str {
-    if value.is_nan() {
-        NONE
-    } else if value <= most {
-        MET
-    } else {
-        MISSED
-    }
+/// Returns the word of a verdict.
+pub fn word(is_met: bool) -> &'static str {
+    if is_met { MET } else { MISSED }
 }
 
 /// Collector of the time outside a band about the goal.

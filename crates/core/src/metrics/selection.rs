@@ -2,7 +2,10 @@
 
 use flexsc_formats::document::nearest;
 
-use super::{ALL, MetricDescription, Metrics};
+use super::{ALL, MetricDescription, Metrics, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES};
+
+/// Metrics of requirements, which are never left out.
+const OF_REQUIREMENTS: [&str; 3] = [REQUIREMENT.name, REQUIREMENT_VALUES.name, REQUIREMENT_SHARES.name];
 
 /// Metrics in a campaign's table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,9 +39,15 @@ impl Selection {
         Ok(Self(Some(selected)))
     }
 
-    /// Returns true if a metric is wanted.
+    /// Returns true if a metric is wanted; those of requirements always are.
     pub fn wants(&self, name: &str) -> bool {
-        self.0.as_ref().is_none_or(|names| names.contains(&name))
+        self.0.as_ref().is_none_or(|names| names.contains(&name) || OF_REQUIREMENTS.contains(&name))
+    }
+
+    /// Returns the selection with other metrics.
+    #[must_use]
+    pub fn with(&self, others: impl Iterator<Item = &'static str>) -> Self {
+        Self(self.0.as_ref().map(|names| names.iter().copied().chain(others).collect()))
     }
 
     /// Returns true if any of some metrics is wanted.

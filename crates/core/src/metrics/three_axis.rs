@@ -7,14 +7,13 @@ use flexsc_record::{
     Accelerations, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle, WheelEvent,
 };
 
-use super::goal::{self, GoalMetrics};
+use super::goal::GoalMetrics;
 use super::{
     ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, BURN_IMPULSE, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE,
     FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
     GYRO_MOMENTUM_PEAK, LATE_SHARE, MOMENT_SHARE, MOMENTUM_END, MOMENTUM_PEAK, MOMENTUM_SHARE, MetricValue,
-    NamedMetric, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, SLEW_PEAK, SLEW_RMS,
-    TORQUE_ERROR, TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS,
-    ZERO_CROSSINGS,
+    NamedMetric, POINTING_END, POINTING_RMS, RATE_END, SINGULARITY, SLEW_PEAK, SLEW_RMS, TORQUE_ERROR,
+    TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS, ZERO_CROSSINGS,
 };
 use crate::scenario::{Pointing, Scenario};
 
@@ -64,8 +63,8 @@ pub struct ThreeAxisMetrics {
     /// Of slews, the largest error (rad), the sum of squares (rad²), and how many cycles; whether there are any.
     slews: (f64, f64, u64),
     has_slews: bool,
-    /// Pointing requirement, sum of the squared errors that count (rad²), and their number.
-    pointing_requirement: Option<Pointing>,
+    /// Window of the pointing error, sum of the squared errors that count (rad²), and their number.
+    pointing_window: Option<Pointing>,
     pointing: (f64, u64),
     verdict: GoalMetrics,
     /// Half width of the band about the target on each axis (rad), and the start of the current time outside (s).
@@ -119,7 +118,7 @@ impl ThreeAxisMetrics {
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
             steered: (!scenario.study.gimbals.is_empty()).then(SteeringRecord::unknown),
-            pointing_requirement: scenario.reference.pointing.clone(),
+            pointing_window: scenario.reference.pointing.clone(),
             pointing: (0.0, 0),
         }
     }
@@ -158,7 +157,7 @@ impl ThreeAxisMetrics {
         let stored = f64::sqrt(norm(stored.0));
         self.stored = [self.stored[0].max(stored), stored];
         self.steered = report.get().copied();
-        if self.pointing_requirement.as_ref().is_some_and(|pointing| pointing.includes(t)) {
+        if self.pointing_window.as_ref().is_some_and(|pointing| pointing.includes(t)) {
             self.pointing.0 += norm(cycle.error_rad);
             self.pointing.1 += 1;
         }
@@ -253,12 +252,10 @@ impl ThreeAxisMetrics {
             ]
         });
         let mut pointing: Vec<NamedMetric> = Vec::new();
-        if let Some(requirement) = &self.pointing_requirement {
+        if self.pointing_window.is_some() {
             // Without cycles the mean is 0/0: NaN.
             let rms = f64::sqrt(self.pointing.0 / self.pointing.1 as f64);
             pointing.push((&POINTING_RMS, MetricValue::Number(rms)));
-            let is_met = requirement.rms.map(|most| goal::meets(rms, most.get()));
-            pointing.extend(is_met.map(|word| (&REQUIREMENT, MetricValue::Word(word))));
         }
         let displacement =
             self.accelerations.iter().map(|(_, square, count)| f64::sqrt(square / *count as f64));

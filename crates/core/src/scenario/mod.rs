@@ -4,6 +4,7 @@ mod actuator_checks;
 mod adaptation_checks;
 mod appendage_drives;
 mod assembly;
+mod assessed_requirement;
 mod authority;
 mod compatibility;
 mod consistency;
@@ -23,6 +24,8 @@ mod meant;
 mod pace;
 mod reference_values;
 mod remarks;
+mod requirement;
+mod requirement_checks;
 mod resolved;
 mod sensor_checks;
 mod small_angle_checks;
@@ -41,12 +44,16 @@ use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::{AppendageDrives, DriveProfiles};
+pub use assessed_requirement::{
+    AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
+};
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::CustomParts;
 pub use failures::FailureInterval;
 pub use line_of_sight::LineOfSight;
 pub use log::{LogSpec, SceneSpec};
 pub use reference_values::{Pointing, Reference};
+pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, WindowConvention};
 pub use resolved::ResolvedScenario;
 pub use spec::ScenarioSpec;
 
@@ -139,6 +146,9 @@ impl Scenario {
         scenario.validate(&offers, &unmet)?;
         scenario.plan = scenario.planned()?;
         scenario.linear = scenario.linear_flow()?;
+        let period = scenario.study.assessment_period;
+        scenario.study.requirements =
+            requirement_checks::assessed(&scenario.written, &scenario.model, period)?;
         Ok(scenario)
     }
 

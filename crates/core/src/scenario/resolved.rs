@@ -22,7 +22,7 @@ use flexsc_spacecraft::body::{BodyAxes, BodyModel};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
-use super::{AppendageDrives, Scenario, ScenarioSpec};
+use super::{AppendageDrives, AssessedRequirement, Scenario, ScenarioSpec};
 
 /// Period of the cycles if neither law nor sensors have a period (s).
 const DEFAULT_CYCLE: f64 = 1.0;
@@ -84,6 +84,8 @@ pub struct ResolvedScenario {
     pub shared_steps: SharedSteps,
     /// Error band about the target that the law of each axis promises (rad), if it promises one.
     pub expected_bands: Vec<Option<f64>>,
+    /// Requirements, that of `reference.pointing.rms` first.
+    pub requirements: Vec<AssessedRequirement>,
 }
 
 impl ResolvedScenario {

@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
-use super::{LineOfSight, LogSpec, Reference, epoch};
+use super::{LineOfSight, LogSpec, Reference, Requirement, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
@@ -91,6 +91,9 @@ pub struct ScenarioSpec {
     /// Reference values for the metrics.
     #[serde(default, skip_serializing_if = "Reference::is_empty")]
     pub reference: Reference,
+    /// Requirements, each a limit on a pointing index or on a metric.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requirement: Vec<Requirement>,
     /// Distributions of keys from which a campaign draws a value for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,

@@ -122,6 +122,12 @@ impl Guidance {
         Some([0, 1, 2].map(goal))
     }
 
+    /// Returns the rate of the reference attitude (rad/s) in the axes of a body that is `error` (rad) away from it.
+    pub fn reference_rate(&self, now: Instant, error: &Vector) -> Vector {
+        let rate = self.profile.as_ref().map(|way| way.at(now).in_body_axes(error)[0]);
+        rate.unwrap_or_default()
+    }
+
     /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the
     /// start of the next target.
     pub fn next_change(&self, now: Instant) -> Option<Instant> {

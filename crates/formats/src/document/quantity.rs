@@ -147,6 +147,27 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
 /// Converts a number to the unit of its key.
 fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
     let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
+    converted(number, unit, &wanted)
+}
+
+/// Returns the number of a text with a unit, such as `2 arcsec`, converted to `wanted`, or as it is without a unit.
+///
+/// # Errors
+/// A text without a number, and a unit that is unknown or measures something else.
+pub fn number_in(text: &str, wanted: &str) -> Result<f64, String> {
+    let wanted = Some(wanted).filter(|wanted| !wanted.is_empty());
+    let plain = || text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    match split(text) {
+        Some((number, unit)) => converted(number, unit, wanted.as_slice()),
+        None => plain().ok_or_else(|| {
+            let example = wanted.map_or(String::new(), |unit| format!(" such as \"2 {unit}\""));
+            format!("must be a number, or a number with a unit{example}, got `{text}`")
+        }),
+    }
+}
+
+/// Converts a number to the first of some units that measures the same; without any, a percentage to a fraction.
+fn converted(number: f64, unit: &str, wanted: &[&str]) -> Result<f64, String> {
     let Some(first) = wanted.first() else {
         if unit == PERCENT {
             return Ok(number / 100.0);

@@ -196,7 +196,8 @@ fn metrics<'a>(
             metric.varies() && runs.keys.iter().all(|key| key.values != metric.values)
         };
         // A required metric comes first.
-        let required = runs.requirement().map(|(name, _)| name);
+        let required = runs.requirement();
+        let required = required.as_deref();
         let others = MAIN.into_iter().filter(|name| Some(*name) != required);
         let main: Vec<_> =
             required.into_iter().chain(others).filter_map(named).filter(is_informative).collect();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::Scenario;
 use flexsc_core::metrics::{self, MetricDescription};
 use flexsc_core::record::atomic_file;
+use flexsc_core::scenario::{AssessedRequirement, RequirementSource};
 
 use crate::campaign::SCENARIO;
 use crate::error::CliError;
@@ -227,23 +228,39 @@ fn is_about(column: &str) -> bool {
     ["run", "seed", "error"].contains(&column)
 }
 
+/// Returns the name of the metric that a requirement limits; `None` for a pointing index.
+fn required_metric(requirement: &AssessedRequirement) -> Option<String> {
+    match &requirement.source {
+        RequirementSource::Metric(name, None) => Some(name.clone()),
+        RequirementSource::Metric(name, Some(index)) => Some(format!("{name}[{index}]")),
+        RequirementSource::Error(_) => None,
+    }
+}
+
 impl CampaignRuns {
     /// Returns the keys that a sweep varies.
     pub fn swept(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
-    /// Returns the metric on which the scenario has a requirement, and its largest allowed value.
-    pub fn requirement(&self) -> Option<(&'static str, f64)> {
+    /// Returns the first metric on which the scenario has a requirement.
+    pub fn requirement(&self) -> Option<String> {
         let (scenario, _) = self.scenario.as_ref()?;
-        let most = scenario.reference.pointing.as_ref()?.rms?.get();
-        Some(("pointing_rms_rad", most))
+        scenario.study.requirements.iter().find_map(required_metric)
     }
 
     /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
     /// it.
     pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
-        let (_, most) = self.requirement().filter(|(name, _)| *name == metric.name)?;
+        let (scenario, _) = self.scenario.as_ref()?;
+        let requirements = &scenario.study.requirements;
+        let of_metric = |(index, requirement): (usize, &AssessedRequirement)| {
+            let name = format!("requirement_values[{index}]");
+            let is_it =
+                metric.name == name || required_metric(requirement).is_some_and(|name| name == metric.name);
+            is_it.then_some(requirement.limit)
+        };
+        let most = requirements.iter().enumerate().find_map(of_metric)?;
         let sorted = metric.sorted();
         let successes = sorted.iter().filter(|value| **value <= most).count();
         let part = 100.0 * successes as f64 / sorted.len().max(1) as f64;

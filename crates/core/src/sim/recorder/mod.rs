@@ -10,6 +10,7 @@ mod lines_of_sight;
 mod manoeuvre_end;
 mod motion_rows;
 mod reports;
+mod requirement_samples;
 mod scene_frames;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
@@ -28,6 +29,7 @@ use journal_events::JournalEvents;
 use lines_of_sight::LinesOfSight;
 use manoeuvre_end::ManoeuvreEnd;
 use motion_rows::MotionRows;
+use requirement_samples::RequirementSamples;
 use scene_frames::SceneFrames;
 
 /// Schedule and memory of everything that a run writes to its record.
@@ -41,6 +43,7 @@ pub struct Recorder {
     manoeuvre_end: Option<ManoeuvreEnd>,
     accelerometers: Accelerometers,
     lines_of_sight: LinesOfSight,
+    requirements: RequirementSamples,
     failures: Failures,
     frames: SceneFrames,
 }
@@ -56,6 +59,7 @@ impl Recorder {
             manoeuvre_end: ManoeuvreEnd::new(scenario, &guidance.setpoint),
             accelerometers: Accelerometers::new(scenario, run),
             lines_of_sight: LinesOfSight::new(scenario),
+            requirements: RequirementSamples::new(scenario),
             failures: Failures::new(scenario),
             frames: SceneFrames::default(),
         }
@@ -70,6 +74,7 @@ impl Recorder {
             self.failures.due(),
             self.accelerometers.due(),
             self.lines_of_sight.due(),
+            self.requirements.due(),
         ];
         due.into_iter().flatten().min()
     }
@@ -125,6 +130,7 @@ impl Recorder {
         self.failures.record_due(run.now, &self.journal, record)?;
         self.accelerometers.record_due(run, record)?;
         self.lines_of_sight.record_due(run, record)?;
+        self.requirements.record_due(run, record)?;
         if is_cycle {
             self.cycles.record(run, &mut self.journal, record)?;
         }

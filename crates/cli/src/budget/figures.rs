@@ -1,0 +1,38 @@
+//! Figure of a budget: the fraction of all values of the index that are within a value.
+
+use flexsc_core::analysis::budget::CampaignBudget;
+use flexsc_core::scenario::Interpretation;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
+
+/// Number of points of a line.
+const POINTS: usize = 200;
+
+/// Returns the figure of a budget, with the name of its file.
+pub fn named(scenario: &str, budget: &CampaignBudget) -> Named {
+    let requirement = &budget.requirement;
+    let largest = budget.magnitudes.last().copied().unwrap_or(0.0).max(requirement.limit);
+    let points = || (0..=POINTS).map(move |index| 1.05 * largest * index as f64 / POINTS as f64);
+    let count = budget.magnitudes.len() as f64;
+    let shown = points().map(|most| {
+        let within = budget.magnitudes.partition_point(|value| *value <= most);
+        (most, 100.0 * within as f64 / count)
+    });
+    let mut layers = vec![Layer::new("runs", colour::BLUE, LayerShape::Line(1.6), shown.collect())];
+    if let Some(sources) = &budget.sources {
+        let convolved = points().map(|most| (most, 100.0 * sources.probability(most, Interpretation::Mixed)));
+        layers.push(Layer::new("convolved", colour::ORANGE, LayerShape::Dashes, convolved.collect()));
+    }
+    let limit = vec![(requirement.limit, 0.0), (requirement.limit, 100.0)];
+    layers.push(Layer::new("limit", colour::BLACK, LayerShape::Dashes, limit));
+    let x =
+        FigureAxis::exact(&format!("{} ({})", requirement.name, requirement.unit), "", 0.0..1.05 * largest);
+    let y = FigureAxis::exact("within (%)", "", 0.0..104.0);
+    let title = format!("{scenario}: {}", requirement.description());
+    let figure = Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 260 };
+    (format!("{scenario}-budget-{}", file_part(&requirement.name)), figure)
+}
+
+/// Returns a name as a part of a file's name.
+fn file_part(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() { c } else { '-' }).collect()
+}

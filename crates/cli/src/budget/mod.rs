@@ -1,0 +1,252 @@
+//! `flexsc budget`: levels of the pointing indices that a scenario's requirements limit, by a campaign, by convolution and by
+//! the rule of k sigma.
+
+mod figures;
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use flexsc_core::analysis::budget::{CampaignBudget, INTERPRETATIONS, LEVELS};
+use flexsc_core::campaign::{Campaign, Design};
+use flexsc_core::formats::count::counted;
+use flexsc_core::metrics::IndexRecord;
+use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
+use flexsc_core::scenario::{RequirementSource, Scenario};
+use flexsc_figure::Named;
+use serde_json::{Value as Json, json};
+
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
+use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::number_table::NumberTable;
+use crate::result_files::ResultOutput;
+use crate::results::{Results, print_lines};
+use crate::stop::{self, StopRecord};
+use crate::{requirements, say, scenario};
+
+/// Largest number of values of all runs, by the memory that they need.
+const MOST_VALUES: u64 = 20_000_000;
+
+#[derive(clap::Args)]
+pub struct BudgetArgs {
+    #[command(flatten)]
+    pub scenario: scenario::ScenarioArgs,
+    /// Number of runs of the campaign over the [uncertain] keys and the noise
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    runs: u64,
+    /// Seed [default: the scenario's]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
+    seed: Option<u64>,
+    /// Number of threads [default: one per core]
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    output: ResultOutput,
+    #[command(flatten)]
+    consent: CostConfirmation,
+}
+
+/// Budgets of the requirements of a scenario.
+pub struct Budgets {
+    name: String,
+    runs: u64,
+    budgets: Vec<CampaignBudget>,
+    verdicts: Vec<RequirementVerdict>,
+    units: Units,
+}
+
+pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
+    let path = &args.scenario.scenario;
+    let target = args.output.target(&[path])?;
+    let scenario = scenario::load(path, &args.scenario.set, args.seed)?;
+    let budgets = results(scenario, args)?;
+    if let Some(target) = &target {
+        target.save(&budgets)?;
+    }
+    if args.scenario.json {
+        print_lines(&budgets.json())?;
+    } else {
+        budgets.print()?;
+    }
+    requirements::validate([(budgets.name.as_str(), &budgets.verdicts[..])])
+}
+
+/// Runs the campaign, and computes the budgets.
+pub fn results(scenario: Scenario, args: &BudgetArgs) -> Result<Budgets, CliError> {
+    let name = scenario.name.clone();
+    let samples = |source: &RequirementSource| match source {
+        RequirementSource::Metric(..) => 0,
+        RequirementSource::Error(error) => error.index.values(error.samples),
+    };
+    let values: u64 = scenario.study.requirements.iter().map(|of| samples(&of.source)).sum();
+    if values == 0 {
+        let why = "has no [[requirement]] on a pointing index with a value in the run";
+        return Err(CliError::Arguments(format!("{name}: {why}")));
+    }
+    if values.saturating_mul(args.runs) > MOST_VALUES {
+        let why = format!(
+            "--runs: {} with {values} values each are more than {MOST_VALUES}",
+            counted(args.runs, "run")
+        );
+        return Err(CliError::Arguments(format!(
+            "{why}\n\nhint: give fewer runs, or a longer `period` in [[requirement]]"
+        )));
+    }
+    let origin = args.scenario.scenario.display().to_string();
+    let campaign = Arc::new(Campaign::from_design(scenario, &origin, Design::default())?);
+    let cost = campaign.cost(args.runs, None).map_err(|why| CliError::Arguments(format!("--runs {why}")))?;
+    args.consent.check(&cost)?;
+    let kept = Arc::new(Mutex::new(BTreeMap::new()));
+    let work = {
+        let kept = Arc::clone(&kept);
+        move |run: &flexsc_core::campaign::CampaignRun| {
+            let mut record = IndexRecord::new(&run.scenario);
+            let metrics = Campaign::simulate(run, (&mut record, StopRecord))?;
+            kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, record.finish());
+            Ok(metrics)
+        }
+    };
+    let mut runs = RequirementRuns::new(campaign.scenario());
+    campaign.for_each_run(0..args.runs, usize::from(args.jobs.unwrap_or(0)), work, |outcome| {
+        let Some(outcome) = outcome else {
+            return if stop::stop_requested() { Err(CliError::Interrupted(String::new())) } else { Ok(()) };
+        };
+        let number = outcome.number;
+        let metrics = outcome.metrics.map_err(|error| CliError::Runs {
+            failed: 1,
+            runs: args.runs,
+            number,
+            why: error.to_string(),
+        })?;
+        runs.add(Some(&metrics));
+        Ok(())
+    })?;
+    let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
+    let scenario = campaign.scenario();
+    let mut budgets = Vec::new();
+    for (index, requirement) in scenario.study.requirements.iter().enumerate() {
+        let RequirementSource::Error(error) = &requirement.source else { continue };
+        let values: Vec<Vec<f64>> = all.values().map(|run| run[index].clone()).collect();
+        let is_signed = error.is_component(scenario.axis_count());
+        budgets.push(CampaignBudget::new(requirement.clone(), &values, is_signed));
+    }
+    Ok(Budgets { name, runs: args.runs, budgets, verdicts: runs.finish(), units: args.units.units })
+}
+
+impl Results for Budgets {
+    fn json(&self) -> Vec<Json> {
+        let budget = |budget: &CampaignBudget| {
+            let level = |(probability, levels): (&f64, &[_; 3])| {
+                let mut object = json!({ "level": probability });
+                for (interpretation, level) in INTERPRETATIONS.iter().zip(levels) {
+                    let level: &flexsc_core::analysis::budget::BudgetLevel = level;
+                    object[interpretation.word()] = json!({
+                        "campaign": level.campaign,
+                        "convolution": level.convolution,
+                        "rule": level.rule,
+                    });
+                }
+                object
+            };
+            let sources = budget
+                .sources
+                .as_ref()
+                .map(|of| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise }));
+            json!({
+                "name": budget.requirement.name,
+                "description": budget.requirement.description(),
+                "unit": budget.requirement.unit,
+                "limit": budget.requirement.limit,
+                "sources": sources,
+                "levels": LEVELS.iter().zip(&budget.levels).map(level).collect::<Vec<_>>(),
+            })
+        };
+        vec![json!({
+            "scenario": self.name,
+            "runs": self.runs,
+            "budgets": self.budgets.iter().map(budget).collect::<Vec<_>>(),
+            "requirements": requirements::json(&self.verdicts),
+        })]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        self.budgets.iter().map(|budget| figures::named(&self.name, budget)).collect()
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        let mut names = vec!["budget".to_owned(), "level".to_owned()];
+        for interpretation in INTERPRETATIONS {
+            names.extend(
+                ["campaign", "convolution", "rule"].map(|way| format!("{}_{way}", interpretation.word())),
+            );
+        }
+        let mut rows = Vec::new();
+        for (index, budget) in self.budgets.iter().enumerate() {
+            for (probability, levels) in LEVELS.iter().zip(&budget.levels) {
+                let cells =
+                    levels.iter().flat_map(|level| [Some(level.campaign), level.convolution, level.rule]);
+                let finite = |cell: Option<f64>| cell.filter(|value| value.is_finite());
+                rows.push(
+                    [Some(index as f64), Some(*probability)].into_iter().chain(cells).map(finite).collect(),
+                );
+            }
+        }
+        Some(NumberTable { columns: names, rows })
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        say!("{}   {}", self.name, counted(self.runs, "run"));
+        for budget in &self.budgets {
+            self.print_budget(budget);
+        }
+        requirements::print(&self.verdicts, self.units);
+        Ok(())
+    }
+}
+
+impl Budgets {
+    /// Prints the levels of an index in one unit.
+    fn print_budget(&self, budget: &CampaignBudget) {
+        let requirement = &budget.requirement;
+        let largest = budget.magnitudes.last().copied().unwrap_or(f64::NAN);
+        let (factor, unit) = self.units.common(&[largest], requirement.unit);
+        say!("\n  {}: {} ({unit})", requirement.name, requirement.description());
+        if let Some(sources) = &budget.sources {
+            let bias = sources.biases.iter().sum::<f64>();
+            let [bias, noise] = [bias, sources.noise].map(|value| digits(value * factor));
+            say!("  sources by the runs: bias within ±{bias}, random part of {noise} rms");
+        }
+        let mut rows = vec![
+            ["level", "temporal", "", "", "ensemble", "", "", "mixed", "", ""].map(str::to_owned).to_vec(),
+            [
+                "%",
+                "runs",
+                "convolved",
+                "k sigma",
+                "runs",
+                "convolved",
+                "k sigma",
+                "runs",
+                "convolved",
+                "k sigma",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+        ];
+        for (probability, levels) in LEVELS.iter().zip(&budget.levels) {
+            let text =
+                |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| digits(value * factor));
+            let mut row = vec![digits(100.0 * probability)];
+            for level in levels {
+                row.extend([Some(level.campaign), level.convolution, level.rule].map(text));
+            }
+            rows.push(row);
+        }
+        for line in columns(&rows, 0) {
+            say!("  {line}");
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Metrics of requirements: the value of each, the fraction within its limit, and whether all are met.
+
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{LineOfSightSample, RequirementErrors};
+
+use super::goal;
+use super::pointing_index::{IndexStream, LargestValues};
+use super::{
+    MetricValue, Metrics, NamedMetric, NumberWithUnit, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES,
+};
+use crate::metric_list;
+use crate::scenario::{
+    AssessedRequirement, ErrorAxis, Interpretation, RequirementSource, SampledError, SampledQuantity,
+    Scenario,
+};
+
+/// Collector of the values of all requirements of a run.
+#[derive(Clone, Debug)]
+pub struct RequirementMetrics(Vec<RequirementValues>);
+
+/// Values of a requirement.
+#[derive(Clone, Debug)]
+struct RequirementValues {
+    unit: &'static str,
+    limit: f64,
+    source: ValueSource,
+}
+
+/// Origin of the values of a requirement.
+#[derive(Clone, Debug)]
+enum ValueSource {
+    /// Metric by its name, with the index of an element, if one is named.
+    Metric(String, Option<usize>),
+    /// Values of a pointing index.
+    Index(Box<IndexValues>),
+}
+
+/// Values of a pointing index.
+#[derive(Clone, Debug)]
+struct IndexValues {
+    error: SampledError,
+    stream: IndexStream,
+    largest: LargestValues,
+    /// Number of values within the limit.
+    within: u64,
+    /// All values, if they are kept: of one component with its sign, else the norm.
+    all: Option<Vec<f64>>,
+    /// True if the error has one component.
+    is_component: bool,
+}
+
+impl IndexValues {
+    fn new(requirement: &AssessedRequirement, error: &SampledError, is_component: bool) -> Self {
+        // The ensemble takes the worst time of each run.
+        let level = match requirement.interpretation {
+            Interpretation::Ensemble => 1.0,
+            Interpretation::Temporal | Interpretation::Mixed => requirement.level,
+        };
+        Self {
+            stream: IndexStream::new(error.index),
+            largest: LargestValues::new(level, error.index.values(error.samples)),
+            within: 0,
+            all: None,
+            is_component,
+            error: error.clone(),
+        }
+    }
+
+    /// Takes a sample of the error about the body's axes.
+    fn push(&mut self, error: Vector, limit: f64) {
+        let error = match self.error.axis {
+            None => error,
+            Some(ErrorAxis::X) => Vector::new(error.x, 0.0, 0.0),
+            Some(ErrorAxis::Y) => Vector::new(error.y, 0.0, 0.0),
+            Some(ErrorAxis::Z) => Vector::new(error.z, 0.0, 0.0),
+        };
+        let Self { stream, largest, within, all, is_component, .. } = self;
+        stream.push(error, |value| {
+            let magnitude = value.norm();
+            largest.add(magnitude);
+            *within += u64::from(magnitude <= limit);
+            if let Some(all) = all {
+                // The other components are 0.
+                all.push(if *is_component { value.sum() } else { magnitude });
+            }
+        });
+    }
+}
+
+impl RequirementMetrics {
+    /// Creates an empty collector for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let values = |requirement: &AssessedRequirement| RequirementValues {
+            unit: requirement.unit,
+            limit: requirement.limit,
+            source: match &requirement.source {
+                RequirementSource::Metric(name, element) => ValueSource::Metric(name.clone(), *element),
+                RequirementSource::Error(error) => ValueSource::Index(Box::new(IndexValues::new(
+                    requirement,
+                    error,
+                    error.is_component(scenario.axis_count()),
+                ))),
+            },
+        };
+        Self(scenario.study.requirements.iter().map(values).collect())
+    }
+
+    /// Returns the collector with all values of the indices kept.
+    #[must_use]
+    pub fn with_all_values(mut self) -> Self {
+        for values in &mut self.0 {
+            if let ValueSource::Index(values) = &mut values.source {
+                values.all = Some(Vec::new());
+            }
+        }
+        self
+    }
+
+    /// Returns the values of the index of each requirement that are kept; empty for a metric.
+    pub fn into_values(self) -> Vec<Vec<f64>> {
+        let values = |source| match source {
+            ValueSource::Index(values) => values.all.unwrap_or_default(),
+            ValueSource::Metric(..) => Vec::new(),
+        };
+        self.0.into_iter().map(|of| values(of.source)).collect()
+    }
+
+    /// Returns the metrics that are required.
+    pub fn metrics(&self) -> impl Iterator<Item = &'static str> {
+        let names = self.0.iter().filter_map(|values| match &values.source {
+            ValueSource::Metric(name, _) => Some(name.as_str()),
+            ValueSource::Index(_) => None,
+        });
+        names.filter_map(|name| Some(metric_list::meaning(name, None)?.name))
+    }
+
+    /// Records sampled errors.
+    pub fn observe(&mut self, errors: &RequirementErrors) {
+        for sampled in &errors.0 {
+            if let Some(RequirementValues { source: ValueSource::Index(values), limit, .. }) =
+                self.0.get_mut(sampled.requirement)
+            {
+                values.push(Vector::from(sampled.error), *limit);
+            }
+        }
+    }
+
+    /// Records a sample of a line of sight.
+    pub fn observe_line(&mut self, now: Instant, sample: &LineOfSightSample) {
+        for RequirementValues { source, limit, .. } in &mut self.0 {
+            let ValueSource::Index(values) = source else { continue };
+            let SampledQuantity::LineOfSight(line, _) = &values.error.quantity else { continue };
+            if *line as u64 == sample.line && values.error.from <= now && now <= values.error.to {
+                values.push(Vector::from_iterator(sample.axes.iter().map(|axis| axis.error_rad)), *limit);
+            }
+        }
+    }
+
+    /// Returns the metrics of the run that has ended, from its other metrics; empty without requirements.
+    pub fn finish(self, metrics: &Metrics) -> Vec<NamedMetric> {
+        if self.0.is_empty() {
+            return Vec::new();
+        }
+        let (mut values, mut shares, mut is_met) = (Vec::new(), Vec::new(), true);
+        for RequirementValues { unit, limit, source } in self.0 {
+            let (value, share) = match source {
+                ValueSource::Metric(name, element) => {
+                    let value = metric(metrics, &name, element);
+                    let share = if value.is_nan() { f64::NAN } else { f64::from(u8::from(value <= limit)) };
+                    (value, share)
+                }
+                ValueSource::Index(values) => {
+                    // Without values the share is 0/0: NaN.
+                    let share = values.within as f64 / values.largest.count() as f64;
+                    (values.largest.finish(), share)
+                }
+            };
+            // A value that is missing meets no limit.
+            is_met &= value <= limit;
+            values.push(NumberWithUnit { value, unit: unit.to_owned() });
+            shares.push(share);
+        }
+        vec![
+            (&REQUIREMENT, MetricValue::Word(goal::word(is_met))),
+            (&REQUIREMENT_VALUES, MetricValue::Quantities(values)),
+            (&REQUIREMENT_SHARES, MetricValue::Numbers(shares)),
+        ]
+    }
+}
+
+/// Returns a metric, an element of a list, or its largest element; NaN if there is none.
+fn metric(metrics: &Metrics, name: &str, element: Option<usize>) -> f64 {
+    match (metrics.get(name), element) {
+        (Some(MetricValue::Count(count)), None) => *count as f64,
+        (Some(MetricValue::Number(number)), None) => *number,
+        (Some(list @ (MetricValue::Numbers(_) | MetricValue::Quantities(_))), element) => {
+            let list = list.numbers();
+            match element {
+                Some(index) => list.get(index).copied().unwrap_or(f64::NAN),
+                None if list.iter().any(|value| value.is_nan()) => f64::NAN,
+                None => list.into_iter().fold(f64::NAN, f64::max),
+            }
+        }
+        _ => f64::NAN,
+    }
+}

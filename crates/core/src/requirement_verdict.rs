@@ -1,0 +1,188 @@
+//! Verdicts on the requirements of a scenario, over one run or the runs of a campaign.
+
+use serde_json::{Value as Json, json};
+
+use crate::metrics::{MetricValue, Metrics};
+use crate::scenario::{AssessedRequirement, Interpretation, Scenario};
+use crate::statistics::{confidence, order_statistic, runs_needed, wilson};
+
+/// Part of a level by which a mean of shares may be below it because of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Verdict on a requirement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequirementVerdict {
+    /// Requirement.
+    pub requirement: AssessedRequirement,
+    /// Decision.
+    pub decision: Decision,
+    /// Value that is compared with the limit; NaN without one, and for the mixed interpretation of several runs, which
+    /// compares the share.
+    pub value: f64,
+    /// Mean over the runs of the share of values within the limit; NaN if a run has no value.
+    pub share: f64,
+    /// Number of runs.
+    pub runs: u64,
+    /// Number of runs whose own value is within the limit.
+    pub runs_met: u64,
+    /// Confidence of a level below 1 of the ensemble.
+    pub confidence: Option<Confidence>,
+}
+
+/// Decision on a requirement.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Decision {
+    /// Value within the limit, with the wanted confidence.
+    Met,
+    /// Value within the limit, by too few runs for the wanted confidence.
+    Undecided,
+    /// Value beyond the limit, or no value.
+    Missed,
+}
+
+impl Decision {
+    /// Returns the word of the decision.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::Undecided => "undecided",
+            Self::Missed => "missed",
+        }
+    }
+}
+
+/// Confidence in a level of the ensemble (Clopper-Pearson, one-sided).
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Confidence {
+    /// Confidence that the runs give.
+    pub reached: f64,
+    /// Confidence that is wanted; `None` if none is.
+    pub wanted: Option<f64>,
+    /// Number of runs that give the wanted confidence if as many runs exceed the limit; of no wanted one, `None`.
+    pub runs_needed: Option<u64>,
+}
+
+/// Values of the requirements of runs.
+#[derive(Clone, Debug, Default)]
+pub struct RequirementRuns {
+    requirements: Vec<AssessedRequirement>,
+    runs: u64,
+    /// Values and shares of each requirement, one of each run.
+    values: Vec<Vec<f64>>,
+    shares: Vec<Vec<f64>>,
+}
+
+impl RequirementRuns {
+    /// Creates an empty collector for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let requirements = scenario.study.requirements.clone();
+        let empty = vec![Vec::new(); requirements.len()];
+        Self { requirements, runs: 0, values: empty.clone(), shares: empty }
+    }
+
+    /// Returns true if the scenario has no requirement.
+    pub fn is_empty(&self) -> bool {
+        self.requirements.is_empty()
+    }
+
+    /// Adds a run by its metrics; one that failed has none.
+    pub fn add(&mut self, metrics: Option<&Metrics>) {
+        let list =
+            |name: &str| metrics.and_then(|run| run.get(name)).map_or_else(Vec::new, MetricValue::numbers);
+        self.add_values(&list("requirement_values"), &list("requirement_shares"));
+    }
+
+    /// Adds a run by the lists of its values and shares.
+    pub fn add_values(&mut self, values: &[f64], shares: &[f64]) {
+        self.runs += 1;
+        let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
+        for index in 0..self.requirements.len() {
+            self.values[index].push(at(values, index));
+            self.shares[index].push(at(shares, index));
+        }
+    }
+
+    /// Returns the verdicts, in the order of the requirements; none without a run.
+    pub fn finish(self) -> Vec<RequirementVerdict> {
+        if self.runs == 0 {
+            return Vec::new();
+        }
+        let each = self.requirements.into_iter().zip(self.values.into_iter().zip(self.shares));
+        each.map(|(requirement, (values, shares))| verdict(requirement, values, &shares)).collect()
+    }
+}
+
+/// Returns the verdicts on one run, of which no confidence is asked for.
+pub fn of_run(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVerdict> {
+    let mut runs = RequirementRuns::new(scenario);
+    runs.requirements.iter_mut().for_each(|requirement| requirement.confidence = None);
+    runs.add(Some(metrics));
+    runs.finish()
+}
+
+fn verdict(requirement: AssessedRequirement, mut values: Vec<f64>, shares: &[f64]) -> RequirementVerdict {
+    let (limit, level) = (requirement.limit, requirement.level);
+    let runs = values.len() as u64;
+    let runs_met = values.iter().filter(|value| **value <= limit).count() as u64;
+    let share = shares.iter().sum::<f64>() / runs as f64;
+    // A run without a value is beyond every limit.
+    values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = f64::INFINITY);
+    values.sort_by(f64::total_cmp);
+    let (value, is_within) = match requirement.interpretation {
+        Interpretation::Mixed if runs > 1 => (f64::NAN, share >= level * (1.0 - ROUNDING)),
+        Interpretation::Ensemble => {
+            let value = order_statistic(&values, level);
+            (value, value <= limit)
+        }
+        Interpretation::Temporal | Interpretation::Mixed => {
+            let value = order_statistic(&values, 1.0);
+            (value, value <= limit)
+        }
+    };
+    let has_level = requirement.interpretation == Interpretation::Ensemble && level < 1.0;
+    let confidence = has_level.then(|| Confidence {
+        reached: confidence(level, runs - runs_met, runs),
+        wanted: requirement.confidence,
+        runs_needed: requirement.confidence.map(|wanted| runs_needed(level, wanted, runs - runs_met)),
+    });
+    let is_shown = confidence.is_none_or(|shown| shown.wanted.is_none_or(|wanted| shown.reached >= wanted));
+    let decision = match (is_within, is_shown) {
+        (true, true) => Decision::Met,
+        (true, false) => Decision::Undecided,
+        (false, _) => Decision::Missed,
+    };
+    let value = if value.is_finite() { value } else { f64::NAN };
+    RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence }
+}
+
+impl RequirementVerdict {
+    /// Returns the 95 % interval of the probability that a run meets the requirement (Wilson).
+    pub fn interval(&self) -> [f64; 2] {
+        wilson(self.runs_met, self.runs).into()
+    }
+
+    /// Returns the verdict as JSON, with null for NaN.
+    pub fn to_json(&self) -> Json {
+        let Self { requirement, decision, value, share, runs, runs_met, confidence } = self;
+        json!({
+            "name": requirement.name,
+            "verdict": decision.word(),
+            "description": requirement.description(),
+            "value": value,
+            "limit": requirement.limit,
+            "unit": requirement.unit,
+            "level": requirement.level,
+            "interpretation": requirement.interpretation.word(),
+            "share": share,
+            "runs": runs,
+            "runs_met": runs_met,
+            "interval": self.interval(),
+            "confidence": confidence.map(|shown| shown.reached),
+            "confidence_wanted": requirement.confidence,
+            "runs_needed": confidence.and_then(|shown| shown.runs_needed),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,157 @@
+//! Requirement of a scenario as it is assessed: what is sampled, how often, and against which limit.
+
+use flexsc_numerics::time::{Instant, Span};
+
+use super::requirement::{ErrorAxis, Interpretation, PointingIndex, WindowConvention};
+
+/// Requirement of a scenario, ready to be assessed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssessedRequirement {
+    /// Name of the requirement.
+    pub name: String,
+    /// Origin of its values.
+    pub source: RequirementSource,
+    /// Unit of its values.
+    pub unit: &'static str,
+    /// Largest accepted value, in the unit.
+    pub limit: f64,
+    /// Probability at which the value is at most the limit.
+    pub level: f64,
+    /// Interpretation of the level.
+    pub interpretation: Interpretation,
+    /// Confidence that a campaign has to reach, if any.
+    pub confidence: Option<f64>,
+}
+
+/// Origin of the values of a requirement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RequirementSource {
+    /// Metric by its name, and the index of an element; of a list without one, the largest element.
+    Metric(String, Option<usize>),
+    /// Pointing index of a sampled error.
+    Error(SampledError),
+}
+
+/// Sampled error and its pointing index.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampledError {
+    /// Quantity that is sampled.
+    pub quantity: SampledQuantity,
+    /// Axis of the component; `None` for the norm.
+    pub axis: Option<ErrorAxis>,
+    /// Index.
+    pub index: IndexWindow,
+    /// Sampling period.
+    pub period: Span,
+    /// First instant that counts.
+    pub from: Instant,
+    /// Last instant that may count.
+    pub to: Instant,
+    /// Number of samples from `from` to `to`.
+    pub samples: u64,
+}
+
+/// Sampled quantity.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SampledQuantity {
+    /// Rotation from the reference attitude or angle (rad).
+    PointingError,
+    /// Rate less the reference rate (rad/s).
+    RateError,
+    /// Error of the line of sight with this index (rad), and its point.
+    LineOfSight(usize, String),
+}
+
+/// Pointing index with its window.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum IndexWindow {
+    /// Error itself.
+    Absolute,
+    /// Mean over a window.
+    Mean {
+        /// Length (samples).
+        window: u64,
+    },
+    /// Error less the mean over a window.
+    Relative {
+        /// Length (samples).
+        window: u64,
+        /// Position of the error in the window.
+        convention: WindowConvention,
+    },
+    /// Difference of the means over two windows.
+    Difference {
+        /// Length of each (samples).
+        window: u64,
+        /// Distance of their starts (samples).
+        shift: u64,
+        /// PDE or PRE.
+        index: PointingIndex,
+    },
+}
+
+impl IndexWindow {
+    /// Returns the number of values of the index among a number of samples.
+    pub fn values(self, samples: u64) -> u64 {
+        match self {
+            Self::Absolute => samples,
+            Self::Relative { window, convention: WindowConvention::Uniform } => samples / window * window,
+            Self::Mean { window } | Self::Relative { window, .. } => (samples + 1).saturating_sub(window),
+            Self::Difference { window, shift, .. } => (samples + 1).saturating_sub(window + shift),
+        }
+    }
+}
+
+impl AssessedRequirement {
+    /// Returns the index, the window, the quantity and the part of the run, in words.
+    pub fn description(&self) -> String {
+        let of = match &self.source {
+            RequirementSource::Metric(name, None) => name.clone(),
+            RequirementSource::Metric(name, Some(index)) => format!("{name}[{index}]"),
+            RequirementSource::Error(error) => error.description(),
+        };
+        if self.level < 1.0 {
+            format!("{of}, {} % {}", trimmed(100.0 * self.level), self.interpretation.word())
+        } else {
+            of
+        }
+    }
+}
+
+/// Returns a number without the digits of rounding errors.
+fn trimmed(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+impl SampledError {
+    /// Returns true if the error of a body with this number of axes has one component.
+    pub fn is_component(&self, axes: usize) -> bool {
+        self.axis.is_some() || axes == 1
+    }
+
+    fn description(&self) -> String {
+        let period = self.period.seconds();
+        let seconds = |samples: u64| trimmed(samples as f64 * period);
+        let index = match self.index {
+            IndexWindow::Absolute => "APE".to_owned(),
+            IndexWindow::Mean { window } => format!("MPE over {} s", seconds(window)),
+            IndexWindow::Relative { window, convention } => {
+                format!("RPE over {} s ({})", seconds(window), convention.word())
+            }
+            IndexWindow::Difference { window, shift, index } => {
+                format!("{index} of {} s windows {} s apart", seconds(window), seconds(shift))
+            }
+        };
+        let quantity = match &self.quantity {
+            SampledQuantity::PointingError => "the pointing error".to_owned(),
+            SampledQuantity::RateError => "the rate error".to_owned(),
+            SampledQuantity::LineOfSight(_, point) => format!("the line of sight of {point}"),
+        };
+        let axis = self.axis.map_or(String::new(), |axis| format!(" about {}", axis.name()));
+        let [from, to] = [self.from, self.to].map(|at| trimmed(at.seconds()));
+        let part =
+            if self.from > self.to { format!("from {from} s on") } else { format!("from {from} to {to} s") };
+        format!("{index} of {quantity}{axis}, {part}")
+    }
+}

@@ -1,0 +1,319 @@
+//! Checks of the tables `[[requirement]]`, which become the requirements that are assessed.
+
+use flexsc_formats::document::{ConfigError, nearest};
+use flexsc_numerics::quantity::{Positive, Share, Time};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::BodyModel;
+
+use super::assessed_requirement::{
+    AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
+};
+use super::requirement::{ErrorAxis, Interpretation, PointingIndex, Requirement};
+use super::spec::ScenarioSpec;
+use crate::metric_list;
+
+/// Name of the requirement of `reference.pointing.rms`.
+pub const POINTING_RMS: &str = "pointing";
+/// Metric of the requirement of `reference.pointing.rms`.
+const POINTING_METRIC: &str = "pointing_rms_rad";
+/// Largest number of samples that a requirement assesses in a run.
+pub const MOST_SAMPLES: u64 = 1_000_000;
+/// Largest number of requirements.
+const MOST_REQUIREMENTS: usize = 1000;
+/// Part of a sampling period by which a window may differ from a whole number of them.
+const ROUNDING: f64 = 1e-6;
+/// Quantities that are sampled.
+const SAMPLED: [&str; 3] = ["pointing_error", "rate_error", "line_of_sight"];
+
+/// Returns the requirements of a scenario, that of `reference.pointing.rms` first; `period` is the default sampling
+/// period.
+///
+/// # Errors
+/// Fails with the first inconsistent key, and the reason.
+pub fn assessed(
+    written: &ScenarioSpec,
+    model: &BodyModel,
+    period: Span,
+) -> Result<Vec<AssessedRequirement>, ConfigError> {
+    let pointing = written.reference.pointing.as_ref().and_then(|pointing| pointing.rms);
+    let pointing = pointing.map(|most| AssessedRequirement {
+        name: POINTING_RMS.to_owned(),
+        source: RequirementSource::Metric(POINTING_METRIC.to_owned(), None),
+        unit: "rad",
+        limit: most.get(),
+        level: 1.0,
+        interpretation: Interpretation::Ensemble,
+        confidence: None,
+    });
+    let mut all: Vec<AssessedRequirement> = pointing.into_iter().collect();
+    if written.requirement.len() > MOST_REQUIREMENTS {
+        let why = format!("has at most {MOST_REQUIREMENTS} tables, got {}", written.requirement.len());
+        return Err(ConfigError::new("requirement", why));
+    }
+    for (index, requirement) in written.requirement.iter().enumerate() {
+        let context = Context { written, model, period };
+        let judged = context.assess(requirement).and_then(|judged| {
+            if judged.name.is_empty() || all.iter().any(|other| other.name == judged.name) {
+                let why = format!("must be a name of its own, got `{}`", judged.name);
+                return Err(ConfigError::new("name", why));
+            }
+            Ok(judged)
+        });
+        all.push(judged.map_err(|fault| fault.within(&format!("requirement[{index}]")))?);
+    }
+    Ok(all)
+}
+
+/// Scenario of the requirements.
+struct Context<'a> {
+    written: &'a ScenarioSpec,
+    model: &'a BodyModel,
+    period: Span,
+}
+
+impl Context<'_> {
+    fn assess(&self, requirement: &Requirement) -> Result<AssessedRequirement, ConfigError> {
+        let at = |key: &str, why: String| Err(ConfigError::new(key, why));
+        let (source, unit) = self.source(requirement)?;
+        let limit = requirement.limit.in_unit(unit).map_err(|why| ConfigError::new("limit", why))?;
+        if limit.is_nan() || limit < 0.0 && matches!(source, RequirementSource::Error(_)) {
+            return at("limit", format!("must be 0 or more, got {limit}"));
+        }
+        let level = requirement.level.map_or(1.0, Share::get);
+        let is_metric = matches!(source, RequirementSource::Metric(..));
+        let interpretation = match requirement.interpretation {
+            Some(word) if is_metric && word != Interpretation::Ensemble => {
+                let why = format!(
+                    "of a metric, which has one value in each run, is `ensemble`, got `{}`",
+                    word.word()
+                );
+                return at("interpretation", why);
+            }
+            None if !is_metric && level < 1.0 => {
+                let why = "is missing: a `level` below 1 means a fraction of the time in the worst run (`temporal`), of the \
+                           runs (`ensemble`), or of both (`mixed`)";
+                return at("interpretation", why.to_owned());
+            }
+            word => word.unwrap_or_default(),
+        };
+        if requirement.confidence.is_some() {
+            if level >= 1.0 {
+                let why = "needs a `level` below 1: no number of runs shows that all others meet a limit";
+                return at("confidence", why.to_owned());
+            }
+            if interpretation != Interpretation::Ensemble {
+                let why = format!(
+                    "is for `interpretation = \"ensemble\"`, got `{}`: the values of one run depend on each other",
+                    interpretation.word()
+                );
+                return at("confidence", why);
+            }
+        }
+        Ok(AssessedRequirement {
+            name: requirement.name.clone(),
+            source,
+            unit,
+            limit,
+            level,
+            interpretation,
+            confidence: requirement.confidence.map(flexsc_numerics::quantity::Fraction::get),
+        })
+    }
+
+    /// Returns the origin of the values and their unit.
+    fn source(&self, requirement: &Requirement) -> Result<(RequirementSource, &'static str), ConfigError> {
+        let quantity = match requirement.quantity.as_str() {
+            "pointing_error" => SampledQuantity::PointingError,
+            "rate_error" => SampledQuantity::RateError,
+            "line_of_sight" => self.line_of_sight(requirement)?,
+            name => return metric(requirement, name, self.model),
+        };
+        let unit = if quantity == SampledQuantity::RateError { "rad/s" } else { "rad" };
+        if requirement.point.is_some() && !matches!(quantity, SampledQuantity::LineOfSight(..)) {
+            let why = format!("is that of a `line_of_sight`, and the quantity is `{}`", requirement.quantity);
+            return Err(ConfigError::new("point", why));
+        }
+        if let Some(axis) =
+            requirement.axis.filter(|axis| self.model.one_axis().is_some() && *axis != ErrorAxis::X)
+        {
+            let why = format!("must be `x`, the only axis of this body, got `{}`", axis.name());
+            return Err(ConfigError::new("axis", why));
+        }
+        Ok((RequirementSource::Error(self.error(requirement, quantity)?), unit))
+    }
+
+    fn line_of_sight(&self, requirement: &Requirement) -> Result<SampledQuantity, ConfigError> {
+        let lines = &self.written.line_of_sight;
+        let points: Vec<&str> = lines.iter().map(|line| line.point.as_str()).collect();
+        let why = match &requirement.point {
+            _ if points.is_empty() => {
+                "`line_of_sight` needs a `[[line_of_sight]]` in the scenario".to_owned()
+            }
+            None => format!("is missing: the point of one of the lines of sight, `{}`", points.join("`, `")),
+            Some(point) => match points.iter().filter(|other| *other == point).count() {
+                1 => {
+                    let index = points.iter().position(|other| other == point).unwrap_or(0);
+                    return Ok(SampledQuantity::LineOfSight(index, point.clone()));
+                }
+                0 => format!(
+                    "must be the point of one of the lines of sight, `{}`, got `{point}`",
+                    points.join("`, `")
+                ),
+                count => format!("must be the point of one line of sight, and `{point}` has {count}"),
+            },
+        };
+        Err(ConfigError::new(if points.is_empty() { "quantity" } else { "point" }, why))
+    }
+
+    fn error(
+        &self,
+        requirement: &Requirement,
+        quantity: SampledQuantity,
+    ) -> Result<SampledError, ConfigError> {
+        let at = |key: &str, why: String| Err(ConfigError::new(key, why));
+        let period = match (&quantity, requirement.period) {
+            (SampledQuantity::LineOfSight(index, _), None) => self.written.line_of_sight[*index].period,
+            (SampledQuantity::LineOfSight(..), Some(_)) => {
+                return at("period", "is that of the `[[line_of_sight]]`: leave it out".to_owned());
+            }
+            (_, period) => period.unwrap_or(self.period),
+        };
+        let end = Instant::START + self.written.duration;
+        let time = |time: Time| Instant::START + Span::from_seconds(time.get());
+        let from = requirement.from.map_or(Instant::START, time);
+        let to = requirement.to.map_or(end, |to| time(to).min(end));
+        if let Some((from, to)) = requirement.from.zip(requirement.to)
+            && from.get() >= to.get()
+        {
+            return at("to", format!("must be after `from`, {} s, got {} s", from.get(), to.get()));
+        }
+        // A line of sight is sampled from the start of the run on, an error from `from` on.
+        let is_line = matches!(quantity, SampledQuantity::LineOfSight(..));
+        let samples = if from > to {
+            0
+        } else if is_line {
+            let before = if from == Instant::START {
+                0
+            } else {
+                count(from.before(Span::TICK).since(Instant::START), period)
+            };
+            count(to.since(Instant::START), period) - before
+        } else {
+            count(to.since(from), period)
+        };
+        if samples > MOST_SAMPLES {
+            let why = format!(
+                "samples the error {samples} times, every {} s: at most {MOST_SAMPLES} are allowed",
+                period.seconds()
+            );
+            return at(if requirement.period.is_some() { "period" } else { "quantity" }, why);
+        }
+        let index = index_window(requirement, period.seconds())?;
+        Ok(SampledError { quantity, axis: requirement.axis, index, period, from, to, samples })
+    }
+}
+
+/// Returns the number of samples in a span, at its start and after each period.
+fn count(span: Span, period: Span) -> u64 {
+    const FEMTOSECONDS: u128 = 1_000_000_000_000_000;
+    let femtoseconds = |span: Span| {
+        let (whole, part) = (Instant::START + span).parts();
+        u128::from(whole) * FEMTOSECONDS + u128::from(part)
+    };
+    u64::try_from(femtoseconds(span) / femtoseconds(period).max(1)).unwrap_or(u64::MAX - 1) + 1
+}
+
+/// Returns the index of a requirement with its window in samples.
+fn index_window(requirement: &Requirement, period: f64) -> Result<IndexWindow, ConfigError> {
+    let at = |key: &str, why: String| Err(ConfigError::new(key, why));
+    let index = requirement.index.unwrap_or(PointingIndex::Absolute);
+    let is_difference = matches!(index, PointingIndex::Drift | PointingIndex::Reproducibility);
+    let misplaced = [
+        ("window", requirement.window.is_some() && index == PointingIndex::Absolute, "MPE, RPE, PDE and PRE"),
+        ("convention", requirement.convention.is_some() && index != PointingIndex::Relative, "RPE"),
+        ("shift", requirement.shift.is_some() && !is_difference, "PDE and PRE"),
+    ];
+    if let Some((key, _, indices)) = misplaced.into_iter().find(|(_, is_given, _)| *is_given) {
+        return at(key, format!("is for {indices}, and the index is {index}"));
+    }
+    let samples = |key: &str, length: Option<Positive>| {
+        let Some(length) = length.map(Positive::get) else {
+            return Err(ConfigError::new(key, format!("is missing: {index} needs it (s)")));
+        };
+        let (ratio, whole) = (length / period, (length / period).round());
+        if whole < 1.0 || (ratio - whole).abs() > ROUNDING * whole || whole > MOST_SAMPLES as f64 {
+            let why = format!(
+                "must be a whole number of sampling periods of {period} s, at most {MOST_SAMPLES}, got {length} s"
+            );
+            return Err(ConfigError::new(key, why));
+        }
+        Ok(whole as u64)
+    };
+    if index == PointingIndex::Absolute {
+        return Ok(IndexWindow::Absolute);
+    }
+    let window = samples("window", requirement.window)?;
+    match index {
+        PointingIndex::Relative if window < 2 => {
+            at("window", format!("must contain at least two samples, which are {period} s apart"))
+        }
+        PointingIndex::Relative => match requirement.convention {
+            Some(convention) => Ok(IndexWindow::Relative { window, convention }),
+            None => {
+                let why = "is missing: RPE depends on the position of the instant in its window, `uniform`, `end` or `middle`";
+                at("convention", why.to_owned())
+            }
+        },
+        PointingIndex::Drift | PointingIndex::Reproducibility => {
+            let shift = samples("shift", requirement.shift)?;
+            if shift < window {
+                return at("shift", "must be at least the window: the two windows do not overlap".to_owned());
+            }
+            Ok(IndexWindow::Difference { window, shift, index })
+        }
+        PointingIndex::Absolute | PointingIndex::Mean => Ok(IndexWindow::Mean { window }),
+    }
+}
+
+/// Returns a metric as the origin of a requirement's values, and its unit.
+fn metric(
+    requirement: &Requirement,
+    name: &str,
+    model: &BodyModel,
+) -> Result<(RequirementSource, &'static str), ConfigError> {
+    let at = |key: &str, why: String| Err(ConfigError::new(key, why));
+    let (list, element) = match name.strip_suffix(']').and_then(|name| name.rsplit_once('[')) {
+        Some((list, index)) => (list, index.parse().ok()),
+        None => (name, None),
+    };
+    let known = metric_list::meaning(list, Some(model)).filter(|_| element.is_some() || list == name);
+    let Some(meaning) = known else {
+        let names: Vec<&str> =
+            SAMPLED.into_iter().chain(metric_list::ALL.iter().map(|meaning| meaning.name)).collect();
+        let hint = nearest(name, &names).map_or_else(
+            || "`flexsc schema --metrics` lists them".to_owned(),
+            |close| format!("did you mean `{close}`?"),
+        );
+        let why = format!("must be `{}` or a metric, got `{name}`; {hint}", SAMPLED.join("`, `"));
+        return at("quantity", why);
+    };
+    if metric_list::is_word(list) || list.starts_with("requirement") {
+        return at("quantity", format!("must be a number to have a limit, and `{list}` is none"));
+    }
+    let given = [
+        ("point", requirement.point.is_some()),
+        ("axis", requirement.axis.is_some()),
+        ("index", requirement.index.is_some()),
+        ("window", requirement.window.is_some()),
+        ("convention", requirement.convention.is_some()),
+        ("shift", requirement.shift.is_some()),
+        ("period", requirement.period.is_some()),
+        ("from", requirement.from.is_some()),
+        ("to", requirement.to.is_some()),
+    ];
+    if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+        let why = format!("is for `{}`, and the quantity is the metric `{list}`", SAMPLED.join("`, `"));
+        return at(key, why);
+    }
+    Ok((RequirementSource::Metric(list.to_owned(), element), meaning.unit))
+}
