@@ -71,6 +71,9 @@ pub enum CliError {
     /// Campaign with missing runs.
     #[error("{0}")]
     Incomplete(String),
+    /// Claims about outputs that are violated or not decided.
+    #[error("{failed} of {} not proved", counted(*claims as u64, "claim"))]
+    Claims { failed: usize, claims: usize },
     /// Interruption by the user.
     #[error("interrupted{0}")]
     Interrupted(String),
@@ -124,6 +127,7 @@ impl CliError {
         match self {
             Self::Kept { failure, .. } => failure.code(),
             Self::Scenario(_) | Self::Told | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
+            Self::Claims { .. } => 3,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

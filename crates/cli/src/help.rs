@@ -164,6 +164,13 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "bound",
+                [
+                    ("flexsc bound bounded-jitter.toml", "the claims of the scenario, proved"),
+                    ("flexsc bound bounded-jitter.toml -o range.csv", "and the guaranteed ranges over time"),
+                ],
+            ),
+            (
                 "damping",
                 [
                     (

@@ -1,5 +1,6 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
+mod bound;
 mod campaign;
 mod check;
 mod confirm_cost;
@@ -98,6 +99,10 @@ enum Verb {
     ///
     /// Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others closed and of all together.
     Margins(margins::MarginsArgs),
+    /// Prove that outputs of a body stay within limits
+    ///
+    /// Over sets of initial states, inputs in time, natural frequencies and damping ratios: guaranteed ranges, the first possible violation, and a witness.
+    Bound(bound::BoundArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -139,7 +144,7 @@ pub fn command() -> clap::Command {
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
-/// failed or a file could not be written, 2 bad input, 130 interrupted.
+/// failed or a file could not be written, 2 bad input, 3 a claim was not proved, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
@@ -169,6 +174,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Tune(args) => tune::run(&args),
         Verb::Map(args) => map::run(&args),
         Verb::Margins(args) => margins::run(&args),
+        Verb::Bound(args) => bound::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

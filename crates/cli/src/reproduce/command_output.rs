@@ -12,7 +12,7 @@ use super::shipped_scenarios;
 use crate::error::CliError;
 use crate::results::Results;
 use crate::stop::StopRecord;
-use crate::{Verb, campaign, cycle, margins, modes, simulate};
+use crate::{Verb, bound, campaign, cycle, margins, modes, simulate};
 
 impl PageCommand {
     /// Returns the object that the command prints, with its own text as `command_line`. For a run it has the run's
@@ -51,6 +51,7 @@ impl PageCommand {
             Verb::Tune(args) => Box::new(args.results(&analysed(&args.scenario)?)?),
             Verb::Map(args) => Box::new(args.results(&analysed(&args.scenario)?)?),
             Verb::Margins(args) => Box::new(margins::results(&analysed(&args.scenario)?, args)?),
+            Verb::Bound(args) => Box::new(bound::results(&analysed(&args.scenario)?, args)?),
             Verb::Damping(args) => Box::new(args.results()?),
             Verb::Identify(args) => Box::new(args.results()?),
             Verb::Observer(args) => Box::new(args.results()?),

@@ -5,6 +5,7 @@ mod adaptation_checks;
 mod appendage_drives;
 mod assembly;
 mod authority;
+mod bound;
 mod compatibility;
 mod consistency;
 mod cost;
@@ -41,6 +42,7 @@ use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::{AppendageDrives, DriveProfiles};
+pub use bound::BoundSpec;
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::CustomParts;
 pub use failures::FailureInterval;

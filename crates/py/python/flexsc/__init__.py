@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
     from flexsc._optimisation import optimise
+    from flexsc._output_bounds import OutputBound, Witness
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
@@ -95,6 +96,7 @@ __all__ = [
     "LoopMargins",
     "Margins",
     "Metrics",
+    "OutputBound",
     "Plan",
     "Quantities",
     "Reading",
@@ -117,6 +119,7 @@ __all__ = [
     "ThreeAxisHold",
     "ThreeAxisLaw",
     "Topic",
+    "Witness",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -160,11 +163,13 @@ _LATER = {
     "Linear": "_linear",
     "LoopMargins": "_loop_margins",
     "Margins": "_margins",
+    "OutputBound": "_output_bounds",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
     "StateSpace": "structure",
     "Structure": "structure",
+    "Witness": "_output_bounds",
     "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",
