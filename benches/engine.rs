@@ -8,6 +8,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use flexsc_core::analysis::bound::OutputBound;
 use flexsc_core::analysis::sampled_loop::{DiscretePlant, SampledLoop, Scaling, SettlingWindow, map};
 use flexsc_core::batch::{BatchJob, simulate_on};
 use flexsc_core::campaign::{Campaign, CampaignRun};
@@ -294,9 +295,48 @@ fn even(low: f64, high: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| low + (high - low) * i as f64 / (count - 1) as f64).collect()
 }
 
+/// Four claims about a body of the size of the space station's first Russian module: 135 modes from 0.62 to 61.3 rad/s.
+fn bounded(inputs: &str, limit: f64) -> Scenario {
+    let mode = |index: u32| {
+        let part = f64::from(index) / 134.0;
+        let (frequency, turn) = (0.62 * 98.9_f64.powf(part), f64::from(index) * 2.4);
+        let shape = |phase: f64, size: f64| {
+            let [x, y, z] = [0.0, 1.0, 2.0].map(|axis| size * (turn * (1.0 + axis) + phase).sin());
+            format!("[{x:e}, {y:e}, {z:e}]")
+        };
+        format!(
+            "{{ frequency = {frequency}, damping = 0.005, shapes = {{ jets = {{ rotation = {} }}, gyro = {{ rotation = {} }} }} }}",
+            shape(0.3, 0.02),
+            shape(1.1, 5e-6),
+        )
+    };
+    let modes: Vec<String> = (0..135).map(mode).collect();
+    scenario(&format!(
+        "duration = 20.0\n[law.open]\n[sensor.gyro]\npoint = \"gyro\"\nperiod = 0.1\n[body.spatial]\n\
+         inertia = [[1e8, 0, 0], [0, 1e8, 0], [0, 0, 1e8]]\npoints = [{{ name = \"jets\" }}, {{ name = \"gyro\" }}]\n\
+         modes = [{}]\n[[bound]]\noutput = \"yaw_rate\"\nelastic = true\nlimits = [-{limit}, {limit}]\n\
+         start = {{ displacements = [-1e-4, 1e-4], rates = [-1e-4, 1e-4] }}\n\
+         {inputs} = {{ torque_roll = [0, 0.1], torque_pitch = [0.8, 1.0], torque_yaw = [0.9, 1.0] }}\n",
+        modes.join(", ")
+    ))
+}
+
+fn bound(c: &mut Criterion) {
+    let mut group = c.benchmark_group("guaranteed range of 270 states over 20 s");
+    for inputs in ["constant_inputs", "varying_inputs"] {
+        for (limit, verdict) in [(1.0, "proved"), (1e-7, "violated")] {
+            let scenario = bounded(inputs, limit);
+            group.bench_function(BenchmarkId::new(inputs, verdict), |b| {
+                b.iter(|| OutputBound::from_scenario(black_box(&scenario)).expect("a modal form"));
+            });
+        }
+    }
+    group.finish();
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(3));
-    targets = run, lanes, modes, filters, log, structure, sampled_loop, station, observer
+    targets = run, lanes, modes, filters, log, structure, sampled_loop, station, observer, bound
 }
 criterion_main!(benches);

@@ -79,6 +79,7 @@ mod unloading;
 
 // Semantics of the loop: instants, records, pieces, batches, failures, custom parts, every combination.
 mod beside;
+mod bound;
 mod combination_tables;
 mod combinations;
 mod determinism;

@@ -74,6 +74,9 @@ pub enum CliError {
     /// Campaign with missing runs.
     #[error("{0}")]
     Incomplete(String),
+    /// Claims about outputs that are violated or not decided.
+    #[error("{failed} of {} not proved", counted(*claims as u64, "claim"))]
+    Claims { failed: usize, claims: usize },
     /// Interruption by the user.
     #[error("interrupted{0}")]
     Interrupted(String),
@@ -128,6 +131,7 @@ impl CliError {
             Self::Kept { failure, .. } => failure.code(),
             Self::Scenario(_) | Self::Told | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
             Self::Requirements(_) => 3,
+            Self::Claims { .. } => 3,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

@@ -190,6 +190,10 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                         "levels of the pointing indices over 25 runs",
                     ),
                     ("flexsc budget shaped-slew.toml --runs 1 --json", "those of one run, as JSON"),
+                "bound",
+                [
+                    ("flexsc bound bounded-jitter.toml", "the claims of the scenario, proved"),
+                    ("flexsc bound bounded-jitter.toml -o range.csv", "and the guaranteed ranges over time"),
                 ],
             ),
             (

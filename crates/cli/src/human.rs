@@ -129,6 +129,23 @@ pub fn digits(value: f64) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
+/// Returns a number in some significant digits, rounded upwards or downwards.
+pub fn outward_digits(value: f64, count: i32, upwards: bool) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return digits(value);
+    }
+    let power = count - 1 - value.abs().log10().floor() as i32;
+    let scale = 10.0_f64.powi(power);
+    let scaled = value * scale;
+    let rounded = if upwards { scaled.next_up().ceil() } else { scaled.next_down().floor() };
+    let decimals = usize::try_from(power).unwrap_or(0);
+    if power > 12 {
+        let decimals = usize::try_from(count - 1).unwrap_or(0);
+        return format!("{:.decimals$e}", rounded / scale);
+    }
+    format!("{:.decimals$}", rounded / scale)
+}
+
 /// Removes trailing zeros of the decimals.
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
@@ -172,6 +189,22 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(digits(value), text);
+        }
+    }
+
+    #[test]
+    fn bounds_are_rounded_outwards() {
+        let cases = [
+            (171.118_71, true, "171.119"),
+            (171.118_01, true, "171.119"),
+            (-171.118_01, false, "-171.119"),
+            (-171.118_91, true, "-171.118"),
+            (1.0, true, "1.00001"),
+            (1.234_567_8e-20, true, "1.23457e-20"),
+            (0.0, true, "0"),
+        ];
+        for (value, upwards, text) in cases {
+            assert_eq!(outward_digits(value, 6, upwards), text);
         }
     }
 

@@ -1,6 +1,7 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
 mod budget;
+mod bound;
 mod campaign;
 mod check;
 mod confirm_cost;
@@ -114,6 +115,10 @@ enum Verb {
     ///
     /// Levels of each pointing index by a campaign, by convolution of the error sources, and by the rule of k sigma.
     Budget(budget::BudgetArgs),
+    /// Prove that outputs of a body stay within limits
+    ///
+    /// Over sets of initial states, inputs in time, natural frequencies and damping ratios: guaranteed ranges, the first possible violation, and a witness.
+    Bound(bound::BoundArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -156,6 +161,7 @@ pub fn command() -> clap::Command {
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 3 a requirement is not met, 130 interrupted.
+/// failed or a file could not be written, 2 bad input, 3 a claim was not proved, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
@@ -188,6 +194,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Report(args) => report::run(&args),
         Verb::Spectrum(args) => spectrum::run(&args),
         Verb::Budget(args) => budget::run(&args),
+        Verb::Bound(args) => bound::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

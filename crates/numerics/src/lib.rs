@@ -11,6 +11,7 @@ pub mod attitude;
 pub mod biquad;
 pub mod delay_margin;
 pub mod elliptic;
+pub mod enclosure;
 pub mod exp_branch_free;
 pub mod exponential;
 pub mod extrapolation;

@@ -1,6 +1,7 @@
 //! Linear models of bodies, and the exponential that samples them.
 
 use flexsc_core::ScenarioError;
+use flexsc_core::analysis::bound::{OutputBound, RangeRow};
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
 use flexsc_core::analysis::margins::StabilityMargins;
@@ -106,6 +107,27 @@ pub fn spectrum_json(
         fault => PyValueError::new_err(format!("{name}: {fault}")),
     })?;
     Ok(json!(report).to_string())
+/// The guaranteed ranges of the outputs that a scenario claims, with their rows as columns and their witnesses as
+/// scenario files.
+#[pyfunction]
+pub fn bounds_json(py: Python<'_>, scenario: &Scenario) -> PyResult<String> {
+    let inner = &scenario.inner;
+    let bounds = py.detach(|| OutputBound::from_scenario(inner)).map_err(|fault| {
+        let origin = inner.name.clone();
+        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
+    })?;
+    let object = |bound: &OutputBound| {
+        let column = |of: fn(&RangeRow) -> f64| bound.rows.iter().map(of).collect::<Vec<f64>>();
+        let mut object = json!(bound);
+        object["rows"] = json!({
+            "time": column(|row| row.time_s),
+            "low": column(|row| row.low),
+            "high": column(|row| row.high),
+        });
+        object["witness_scenario"] = json!(bound.witness_text(inner));
+        object
+    };
+    Ok(json!(bounds.iter().map(object).collect::<Vec<_>>()).to_string())
 }
 
 /// The exponential of a square matrix.

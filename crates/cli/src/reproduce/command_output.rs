@@ -12,7 +12,7 @@ use super::shipped_scenarios;
 use crate::error::CliError;
 use crate::results::Results;
 use crate::stop::StopRecord;
-use crate::{Verb, budget, campaign, cycle, margins, modes, simulate, spectrum};
+use crate::{Verb, bound, budget, campaign, cycle, margins, modes, simulate, spectrum};
 
 impl PageCommand {
     /// Returns the object that the command prints, with its own text as `command_line`. For a run it has the run's
@@ -53,6 +53,7 @@ impl PageCommand {
             Verb::Margins(args) => Box::new(margins::results(&analysed(&args.scenario)?, args)?),
             Verb::Spectrum(args) => Box::new(spectrum::results(&analysed(&args.scenario)?, args)?),
             Verb::Budget(args) => Box::new(budget::results(analysed(&args.scenario)?, args)?),
+            Verb::Bound(args) => Box::new(bound::results(&analysed(&args.scenario)?, args)?),
             Verb::Damping(args) => Box::new(args.results()?),
             Verb::Identify(args) => Box::new(args.results()?),
             Verb::Observer(args) => Box::new(args.results()?),

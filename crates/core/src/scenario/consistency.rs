@@ -48,6 +48,12 @@ impl Scenario {
         if let Some(fault) = self.log.scene.inconsistency() {
             return Some(fault.within("log.scene"));
         }
+        let bounds = self.bound.iter().enumerate();
+        let mut faults =
+            bounds.filter_map(|(index, bound)| Some(bound.fault()?.within(&format!("bound[{index}]"))));
+        if let Some(fault) = faults.next() {
+            return Some(fault);
+        }
         if let Some(pointing) = &self.reference.pointing
             && let Some(fault) = pointing.fault(self.axis_count())
         {

@@ -6,6 +6,7 @@ mod appendage_drives;
 mod assembly;
 mod assessed_requirement;
 mod authority;
+mod bound;
 mod compatibility;
 mod consistency;
 mod cost;
@@ -47,6 +48,7 @@ pub use appendage_drives::{AppendageDrives, DriveProfiles};
 pub use assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
 };
+pub use bound::BoundSpec;
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::CustomParts;
 pub use failures::FailureInterval;

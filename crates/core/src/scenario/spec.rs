@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
 use super::{LineOfSight, LogSpec, Reference, Requirement, epoch};
+use super::{BoundSpec, LineOfSight, LogSpec, Reference, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
@@ -88,6 +89,9 @@ pub struct ScenarioSpec {
     /// Lines of sight of instruments on a body with three axes, which are recorded and assessed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub line_of_sight: Vec<LineOfSight>,
+    /// Claims about outputs of the linear body, for `flexsc bound`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bound: Vec<BoundSpec>,
     /// Reference values for the metrics.
     #[serde(default, skip_serializing_if = "Reference::is_empty")]
     pub reference: Reference,

@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from flexsc._margins import Margins
     from flexsc._noise import NoiseSpectrum, OutputNoise, WheelLines, WheelSpectrum
     from flexsc._optimisation import optimise
+    from flexsc._output_bounds import OutputBound, Witness
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
@@ -99,6 +100,7 @@ __all__ = [
     "Metrics",
     "NoiseSpectrum",
     "OutputNoise",
+    "OutputBound",
     "Plan",
     "Quantities",
     "Reading",
@@ -125,6 +127,7 @@ __all__ = [
     "TunedScenario",
     "WheelLines",
     "WheelSpectrum",
+    "Witness",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -170,6 +173,7 @@ _LATER = {
     "Margins": "_margins",
     "NoiseSpectrum": "_noise",
     "OutputNoise": "_noise",
+    "OutputBound": "_output_bounds",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
@@ -179,6 +183,7 @@ _LATER = {
     "Structure": "structure",
     "WheelLines": "_noise",
     "WheelSpectrum": "_noise",
+    "Witness": "_output_bounds",
     "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from flexsc._structured_tuning import TunedScenario
     from flexsc._noise import NoiseSpectrum
     from flexsc._open_loop import Break
+    from flexsc._output_bounds import OutputBound
     from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
 
@@ -303,6 +304,23 @@ class Scenario(ScenarioFile):
         from flexsc._noise import noise_spectrum
 
         return noise_spectrum(self, signals, window, separation, speeds)
+    def bound(self) -> list[OutputBound]:
+        """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
+
+        Each is over all states at the start, inputs in time, frequencies and damping ratios of the claim, with
+        the verdict about its limits.
+
+        >>> import flexsc
+        >>> [bound.verdict for bound in flexsc.Scenario.example("bounded-jitter").bound()]
+        ['proved', 'proved']
+
+        Raises:
+            ScenarioError: The scenario has no claims, or its body or a claim is not accepted: the key, and the
+                reason.
+        """
+        from flexsc._output_bounds import output_bounds
+
+        return output_bounds(self)
 
     def with_law(
         self,

@@ -1,0 +1,139 @@
+"""Guaranteed ranges of outputs of the linear body of a scenario."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._scenario import Scenario
+
+
+@dataclass(frozen=True)
+class Witness:
+    """State at the start and inputs over time that bring an output beyond its limits.
+
+    >>> scenario = flexsc.Scenario.example("bounded-jitter").with_("bound[0].limits", [-5e-6, 5e-6])
+    >>> witness = scenario.bound()[0].witness
+    >>> abs(witness.simulated / witness.value - 1.0) < 1e-9
+    True
+    """
+
+    time: float
+    """Time (s) at which the output has this value."""
+    value: float
+    """Value of the output, in its unit."""
+    simulated: float
+    """Value in a run of the engine from this state under these inputs; NaN if there is no such run."""
+    frequency_factor: float
+    """Factor on every natural frequency of the scenario."""
+    damping_factor: float
+    """Factor on every damping ratio."""
+    start: npt.NDArray[np.float64]
+    """State at the start, of shape (states,), in the order of `linearise().states`."""
+    inputs: dict[str, tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]]
+    """Times (s) from which each value of an input acts, and the values, by the name of the input."""
+    scenario: Scenario | None
+    """The body from this state, under these inputs as disturbances; None if no scenario file can have them."""
+
+
+@dataclass(frozen=True)
+class OutputBound:
+    """Guaranteed range of an output over sets of states, inputs and parameters, and the verdict about its limits.
+
+    >>> bound = flexsc.Scenario.example("bounded-jitter").bound()[0]
+    >>> bound.output, bound.verdict
+    ('roll', 'proved')
+    >>> bool((bound.rows["high"] <= bound.range[1]).all())
+    True
+    """
+
+    output: str
+    """Name of the output."""
+    unit: str
+    """Unit of the output."""
+    elastic: bool
+    """True if the output is without the rigid motion."""
+    limits: tuple[float, float] | None
+    """Limits of the claim; None if there are none."""
+    until: float
+    """End of the interval of time (s)."""
+    verdict: Literal["proved", "violated", "undecided", "unlimited"]
+    """Outcome; `unlimited` without limits."""
+    range: tuple[float, float]
+    """Guaranteed range over the whole interval, rounded outwards."""
+    attained: tuple[float, float]
+    """Range that is attained by states and inputs that are known."""
+    attained_at: tuple[float, float]
+    """Times (s) at which the range is attained."""
+    safe_until: float
+    """Time (s) before which no limit is passed; NaN without limits."""
+    violated_at: float
+    """First time (s) at which a limit is passed for a state and inputs of the sets; NaN if none is known."""
+    gap: float
+    """Largest excess of the guaranteed range over the limits, if the claim is undecided; otherwise NaN."""
+    witness: Witness | None
+    """State and inputs that violate the claim the most; None if it is not violated."""
+    rows: dict[str, npt.NDArray[np.float64]]
+    """Range at instants, columns of shape (instants,): `time` (s), `low` and `high`. The output may leave it
+    between two instants, but not `range`."""
+
+
+OutputBound.__module__ = Witness.__module__ = "flexsc"
+
+
+def output_bounds(scenario: Scenario) -> list[OutputBound]:
+    """Return the ranges of all claims of a scenario."""
+    return [_bound(each) for each in json.loads(engine.bounds_json(scenario._native))]
+
+
+def _bound(found: dict[str, Any]) -> OutputBound:
+    import numpy as np
+
+    rows = {name: np.array(values, dtype=np.float64) for name, values in found["rows"].items()}
+    return OutputBound(
+        output=found["output"]["name"],
+        unit=found["output"]["unit"],
+        elastic=found["elastic"],
+        limits=None if found["limits"] is None else tuple(found["limits"]),
+        until=found["until_s"],
+        verdict=found["verdict"],
+        range=tuple(found["range"]),
+        attained=tuple(found["attained"]),
+        attained_at=tuple(found["attained_at_s"]),
+        safe_until=_number(found["safe_until_s"]),
+        violated_at=_number(found["violated_at_s"]),
+        gap=_number(found["gap"]),
+        witness=None if found["witness"] is None else _witness(found["witness"], found["witness_scenario"]),
+        rows=rows,
+    )
+
+
+def _witness(found: dict[str, Any], text: str | None) -> Witness:
+    import numpy as np
+
+    from flexsc._scenario import Scenario
+
+    def column(values: list[float]) -> npt.NDArray[np.float64]:
+        return np.array(values, dtype=np.float64)
+
+    return Witness(
+        time=found["time_s"],
+        value=found["value"],
+        simulated=_number(found["simulated"]),
+        frequency_factor=found["frequency_factor"],
+        damping_factor=found["damping_factor"],
+        start=column(found["start"]),
+        inputs={each["name"]: (column(each["times_s"]), column(each["values"])) for each in found["inputs"]},
+        scenario=None if text is None else Scenario.parse(text),
+    )
+
+
+def _number(found: float | None) -> float:
+    return float("nan") if found is None else found
