@@ -130,8 +130,7 @@ impl CliError {
         match self {
             Self::Kept { failure, .. } => failure.code(),
             Self::Scenario(_) | Self::Told | Self::Arguments(_) | Self::Log(_) | Self::Busy { .. } => 2,
-            Self::Requirements(_) => 3,
-            Self::Claims { .. } => 3,
+            Self::Requirements(_) | Self::Claims { .. } => 3,
             Self::Interrupted(_) => 130,
             _ => 1,
         }

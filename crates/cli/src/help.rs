@@ -173,6 +173,10 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc report attitude-hold.toml -o short.html --runs 0 --set duration=60",
                         "a page without a campaign, of a shorter run",
+                    ),
+                ],
+            ),
+            (
                 "spectrum",
                 [
                     (
@@ -183,6 +187,9 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                         "flexsc spectrum wheel-run-up.toml --speeds 30:115:86",
                         "lines of unbalanced wheels over their speed",
                     ),
+                ],
+            ),
+            (
                 "budget",
                 [
                     (
@@ -190,6 +197,9 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                         "levels of the pointing indices over 25 runs",
                     ),
                     ("flexsc budget shaped-slew.toml --runs 1 --json", "those of one run, as JSON"),
+                ],
+            ),
+            (
                 "bound",
                 [
                     ("flexsc bound bounded-jitter.toml", "the claims of the scenario, proved"),

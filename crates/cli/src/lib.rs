@@ -1,7 +1,7 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
-mod budget;
 mod bound;
+mod budget;
 mod campaign;
 mod check;
 mod confirm_cost;

@@ -76,9 +76,9 @@ mod _native {
     #[pymodule_export]
     use super::instants::MotionSampler;
     #[pymodule_export]
-    use super::linear::{exponential, linear_json, loop_json, margins_json, tuned_json};
-    use super::linear::{exponential, linear_json, loop_json, margins_json, spectrum_json};
-    use super::linear::{bounds_json, exponential, linear_json, loop_json, margins_json};
+    use super::linear::{
+        bounds_json, exponential, linear_json, loop_json, margins_json, spectrum_json, tuned_json,
+    };
     #[pymodule_export]
     use super::log::Log;
     #[pymodule_export]

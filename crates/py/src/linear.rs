@@ -85,6 +85,8 @@ pub fn tuned_json(
         fault => PyValueError::new_err(format!("{name}: {fault}")),
     })?;
     Ok((table, text.map_err(scenario_error)?))
+}
+
 /// The noise of a scenario's loop: of some outputs, over windows, and at speeds of its wheels.
 #[pyfunction]
 pub fn spectrum_json(
@@ -107,6 +109,8 @@ pub fn spectrum_json(
         fault => PyValueError::new_err(format!("{name}: {fault}")),
     })?;
     Ok(json!(report).to_string())
+}
+
 /// The guaranteed ranges of the outputs that a scenario claims, with their rows as columns and their witnesses as
 /// scenario files.
 #[pyfunction]

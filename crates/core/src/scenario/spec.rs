@@ -18,8 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
-use super::{LineOfSight, LogSpec, Reference, Requirement, epoch};
-use super::{BoundSpec, LineOfSight, LogSpec, Reference, epoch};
+use super::{BoundSpec, LineOfSight, LogSpec, Reference, Requirement, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
