@@ -280,7 +280,7 @@ def python_and_around() -> str:
 STEPS = [
     Step("licences, sources and duplicates of all crates", 5, crates),
     Step(
-        "form of the code: rustfmt, ruff, spelling; the light build and the benchmarks without warnings; rustdoc",
+        "form of the code: rustfmt, ruff, spelling; light build and benchmarks without warnings; rustdoc",
         75,
         form_and_light,
     ),

@@ -5,9 +5,9 @@
 clippy gets the arguments of the compiler for each crate that is built. A warning of either fails the build.
 
 A crate is compiled a second time for its unit tests, which are quick: without optimisation, which cargo can
-set for a crate, and not for its tests alone. No result depends on how much a crate is optimised. A library that
-has unit tests is linted with them, once. With `FLEXSC_LINTS=benches` only the benchmarks are linted, which the
-full build does not have, and a warning of the compiler fails the build.
+set for a crate, and not for its tests alone. No result depends on how much a crate is optimised. A library
+that has unit tests is linted with them, once. With `FLEXSC_LINTS=benches` only the benchmarks are linted,
+which the full build does not have, and a warning of the compiler fails the build.
 """
 
 import os

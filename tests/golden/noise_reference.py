@@ -63,7 +63,9 @@ def middle(name: str) -> list[str]:
 
 def main() -> None:
     lines = ["scenario,output,source,deviation"]
-    lines += rows("attitude-hold", {"sensor.sampled.noise": (0, 1e-4), "sensor.sampled.rate_noise": (1, 3e-5)})
+    lines += rows(
+        "attitude-hold", {"sensor.sampled.noise": (0, 1e-4), "sensor.sampled.rate_noise": (1, 3e-5)}
+    )
     lines += rows("slew-wheel-lqg", {"sensor.sampled.noise": (0, 1e-5)})
     lines += middle("attitude-hold")
     (ROOT / "tests/golden/noise.csv").write_text("\n".join(lines) + "\n")

@@ -60,7 +60,9 @@ def test_samples_do_not_depend_on_those_before(name: str) -> None:
     run = scenario.simulate(log="none")
     # Between the snapshots, on them, and on the same time again.
     end = scenario.duration
-    times = np.append(np.random.default_rng(3).uniform(0.0, end, 12), end * np.array([0.25, 0.5, 0.0, 1.0, 0.5]))
+    times = np.append(
+        np.random.default_rng(3).uniform(0.0, end, 12), end * np.array([0.25, 0.5, 0.0, 1.0, 0.5])
+    )
     at_once = run.sample(times)
     for start in range(0, len(times), 2):
         seen = run.sample(times[start : start + 2])

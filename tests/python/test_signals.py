@@ -115,6 +115,7 @@ def test_words_are_columns_of_a_log(tmp_path: Path, text: str) -> None:
     log = flexsc.read_log(path)
     assert log["own_law"]["mode"].tolist() == expected.tolist()
     for mode, error in ((3, "the signal mode must be a str, got"), ("a\nb", "a word of at most 64 bytes")):
+
         class Wrong(Sliding):
             word: Any = mode
 

@@ -69,7 +69,6 @@ __all__ = [
     "rigid_cycles_json",
     "rivals_json",
     "robust_gains_json",
-    "sample",
     "schema_json",
     "simulate",
     "spectrum_json",

@@ -15,8 +15,8 @@ class OwnPart(ABC):  # noqa: B024
     """The common base of all parts; each role adds its methods."""
 
     signals: Mapping[str, str | tuple[str, int] | type[str]] = MappingProxyType({})
-    """Attributes that a full log has as columns, each with its unit, with (unit, size) for a sequence, or with
-    `str` for words, such as the states of a law.
+    """Attributes that a full log has as columns, each with its unit, with (unit, size) for a sequence, or
+    with `str` for words, such as the states of a law.
 
     >>> class Sliding(Law):
     ...     period = 0.25

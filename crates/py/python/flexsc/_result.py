@@ -223,8 +223,8 @@ class Result(Topics):
 
         The run is simulated again, up to the last time, and its exact motion is read at each time: nothing is
         interpolated. At the time of a row of a full log, such as a switching, the values are bit-identical to
-        those of the row. Later calls go on from the last sample, or from one of 64 snapshots of the run; a run
-        with parts of one's own has none, and is simulated from its start.
+        those of the row. Later calls go on from the last sample, or from one of 64 snapshots of the run; a
+        run with parts of one's own has none, and is simulated from its start.
 
         Args:
             times: Of shape (times,), in any order, from 0 to the duration.

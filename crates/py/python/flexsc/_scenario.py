@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Linear
     from flexsc._loop_margins import StabilityMargins
-    from flexsc._structured_tuning import TunedScenario
     from flexsc._noise import NoiseSpectrum
     from flexsc._open_loop import Break
     from flexsc._output_bounds import OutputBound
     from flexsc._part import Part
+    from flexsc._structured_tuning import TunedScenario
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
 
 P = TypeVar("P", bound="Part")
@@ -271,6 +271,7 @@ class Scenario(ScenarioFile):
         from flexsc._structured_tuning import tune
 
         return tune(self, ranges, loop, bandwidth, corners)
+
     def spectrum(
         self,
         signals: Sequence[str] | None = None,
@@ -304,6 +305,7 @@ class Scenario(ScenarioFile):
         from flexsc._noise import noise_spectrum
 
         return noise_spectrum(self, signals, window, separation, speeds)
+
     def bound(self) -> list[OutputBound]:
         """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
 
