@@ -23,6 +23,7 @@ __all__ = [
     "Known",
     "Log",
     "LogError",
+    "MotionSampler",
     "Reading",
     "Scenario",
     "ScenarioError",
@@ -76,6 +77,7 @@ __all__ = [
     "text_beside_parts",
     "to_mcap",
     "topics_json",
+    "tuned_json",
     "with_parts",
     "write",
 ]
