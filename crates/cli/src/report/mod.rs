@@ -9,6 +9,8 @@ use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
+use flexsc_core::Scenario;
+
 use crate::error::CliError;
 use crate::{files, out, say, scenario, stop};
 use scratch::ScratchDirectory;
@@ -48,7 +50,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     let scratch = ScratchDirectory::new()?;
     let runner = SectionRunner::new(&args.scenario, &args.set, scratch.path());
     let mut sections = Vec::new();
-    for make in makers(args.runs) {
+    for make in makers(&scenario, args.runs) {
         if stop::stop_requested() {
             return Err(CliError::Interrupted(String::new()));
         }
@@ -57,20 +59,25 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     let text = fs::read_to_string(&args.scenario).unwrap_or_default();
     let page = page::html(&scenario, &args.set, &text, &sections);
     files::write(&args.out, page.as_bytes(), true)?;
-    let failed: Vec<&str> =
-        sections.iter().filter(|section| section.is_refused()).map(|of| of.title).collect();
+    let titles = |selected: fn(&Section) -> bool| -> Vec<&str> {
+        sections.iter().filter(|section| selected(section)).map(|section| section.title).collect()
+    };
+    let (failed, unmet) = (titles(Section::is_refused), titles(Section::is_unmet));
     say!("{} ({:.0} kB)", args.out.display(), page.len() as f64 / 1e3);
     if !failed.is_empty() {
         say!("  without numbers, with the reason on the page: {}", failed.join(", "));
     }
-    Ok(())
+    if unmet.is_empty() {
+        return Ok(());
+    }
+    Err(CliError::Requirements(format!("{}: not met or not proved: {}", scenario.name, unmet.join(", "))))
 }
 
 /// Function that makes a section.
 type Maker = Box<dyn Fn(&SectionRunner<'_>) -> Result<Section, CliError>>;
 
-/// Returns the makers of the sections.
-fn makers(runs: u64) -> Vec<Maker> {
+/// Returns the makers of the sections of a scenario.
+fn makers(scenario: &Scenario, runs: u64) -> Vec<Maker> {
     let mut makers: Vec<Maker> = vec![
         Box::new(|runner| {
             let intro = "Masses and inertias, and the elastic modes: clamped, as a finite-element model has them, and \
@@ -87,9 +94,30 @@ fn makers(runs: u64) -> Vec<Maker> {
             runner.printed("Margins at the measurement", intro, &["margins", "--loop", "measurement"], None)
         }),
         Box::new(|runner| {
-            runner.simulated("One run", "A run of the scenario as it is, with its metrics and verdicts.")
+            let intro = "Noise of the measured angles and of lines of sight, exact from the closed loop: rms by source, \
+                         spectral density with cumulative rms, and the lines of unbalanced wheels.";
+            runner.printed("Noise", intro, &["spectrum"], Some("spectrum"))
+        }),
+        Box::new(|runner| {
+            let intro = "A run of the scenario as it is, with its metrics and verdicts.";
+            runner.simulated("One run", intro)
         }),
     ];
+    if !scenario.bound.is_empty() {
+        makers.push(Box::new(|runner| {
+            let intro =
+                "Guaranteed ranges of outputs over sets of initial states, inputs, frequencies and damping ratios.";
+            runner.printed("Guaranteed ranges", intro, &["bound"], Some("bound"))
+        }));
+    }
+    if runs > 0 && !scenario.requirement.is_empty() {
+        makers.push(Box::new(move |runner| {
+            let intro = "Levels of the pointing indices of the requirements: by a campaign, by convolution of the error \
+                         sources, and by the rule of k sigma.";
+            let count = runs.to_string();
+            runner.printed("Pointing budget", intro, &["budget", "--runs", &count], Some("budget"))
+        }));
+    }
     if runs > 0 {
         makers.push(Box::new(move |runner| {
             let intro = "Runs with other noise, and with the uncertain keys drawn anew for each.";

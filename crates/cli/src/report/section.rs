@@ -29,6 +29,8 @@ pub struct SectionPart {
     pub figures: Vec<String>,
     /// True if the command ended with an error: the text is the reason.
     pub is_refused: bool,
+    /// True if a requirement is not met, or a claim not proved.
+    pub is_unmet: bool,
 }
 
 /// Runner of the commands of a report.
@@ -40,6 +42,11 @@ pub struct SectionRunner<'a> {
 }
 
 impl Section {
+    /// Returns true if a command of the section found a requirement that is not met, or a claim that is not proved.
+    pub fn is_unmet(&self) -> bool {
+        self.parts.iter().any(|part| part.is_unmet)
+    }
+
     /// Returns true if a command of the section ended with an error.
     pub fn is_refused(&self) -> bool {
         self.parts.iter().any(|part| part.is_refused)
@@ -123,6 +130,7 @@ impl<'a> SectionRunner<'a> {
             text: text.replace(&source.display().to_string(), shown),
             figures: drawn(&directory),
             is_refused,
+            is_unmet: false,
         })
     }
 
@@ -151,8 +159,14 @@ impl<'a> SectionRunner<'a> {
         say!("  {}", words.join(" "));
         let output = self.output(command)?;
         // A requirement that is missed has an exit code of its own.
-        let is_refused = !matches!(output.status.code(), Some(0 | 3));
-        Ok(SectionPart { command: words.join(" "), text: text_of(&output), figures: Vec::new(), is_refused })
+        let code = output.status.code();
+        Ok(SectionPart {
+            command: words.join(" "),
+            text: text_of(&output),
+            figures: Vec::new(),
+            is_refused: !matches!(code, Some(0 | 3)),
+            is_unmet: code == Some(3),
+        })
     }
 
     fn command(&self) -> Command {
