@@ -3,8 +3,9 @@
 use serde_json::{Value as Json, json};
 
 use crate::metrics::{MetricValue, Metrics};
+use crate::order_statistics::{confidence, order_statistic, runs_needed};
 use crate::scenario::{AssessedRequirement, Interpretation, Scenario};
-use crate::statistics::{confidence, order_statistic, runs_needed, wilson};
+use crate::statistics::wilson;
 
 /// Part of a level by which a mean of shares may be below it because of rounding.
 const ROUNDING: f64 = 1e-12;
