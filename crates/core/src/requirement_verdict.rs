@@ -97,9 +97,10 @@ impl RequirementRuns {
     pub fn add_values(&mut self, values: &[f64], shares: &[f64]) {
         self.runs += 1;
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
-        for index in 0..self.requirements.len() {
-            self.values[index].push(at(values, index));
-            self.shares[index].push(at(shares, index));
+        let each = self.values.iter_mut().zip(&mut self.shares);
+        for (index, (of_values, of_shares)) in each.enumerate() {
+            of_values.push(at(values, index));
+            of_shares.push(at(shares, index));
         }
     }
 
