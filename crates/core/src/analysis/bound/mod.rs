@@ -36,6 +36,8 @@ const IN_EACH: f64 = 2.0;
 const IN_EACH_OF_BOX: f64 = 16.0;
 /// Largest number of responses that are evaluated on a grid.
 const MOST_RESPONSES: f64 = 2e8;
+/// Largest number of instants of a grid, which are kept.
+const MOST_INSTANTS: f64 = 1e6;
 /// Largest number of rows of the range over time.
 const MOST_ROWS: usize = 2000;
 
@@ -136,11 +138,10 @@ impl OutputBound {
         }
         let nominal = ExactTube::new(&body, &sets, until);
         let count = nominal.grid_count(until, if is_box { IN_EACH_OF_BOX } else { IN_EACH });
-        let responses = count * model.states.len() as f64;
-        if responses > MOST_RESPONSES {
+        let most = (MOST_RESPONSES / model.states.len() as f64).min(MOST_INSTANTS);
+        if count > most {
             let why = format!(
-                "must be shorter: {count:.0} instants of {} states are more than {MOST_RESPONSES:e} responses",
-                model.states.len()
+                "must be shorter: it needs {count:.0} instants, and {most:.0} are possible, got {until} s"
             );
             return Err(ConfigError::new("until", why));
         }
@@ -264,6 +265,7 @@ impl OutputBound {
         let names: Vec<String> = self.model.inputs.iter().map(|signal| signal.name.clone()).collect();
         let mut witness = witness::extreme_inputs((&tube, &body), sets, &names, (side, time, value), count);
         (witness.frequency_factor, witness.damping_factor) = (frequency, damping);
+        witness.states = self.model.states.iter().map(|signal| signal.name.clone()).collect();
         let run = witness_run::scenario(scenario, &self.model, &witness);
         let state = run.and_then(|run| witness_run::final_state(&run, &self.model));
         witness.simulated = state.map(|state| {
