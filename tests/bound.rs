@@ -72,7 +72,7 @@ fn ranges_are_those_of_dense_sums() {
         assert!(found.range[0] <= found.attained[0] && found.attained[1] <= found.range[1]);
         assert_eq!(found.verdict, Verdict::Violated);
         let violated = found.violated_at_s.expect("a crossing");
-        agree(violated, crossing, 2e-4);
+        agree(violated, crossing, 2e-6);
         agree(found.safe_until_s.expect("a time"), violated, 1e-8);
         let witness = found.witness.expect("a witness");
         agree(witness.value, high, 2e-7);
