@@ -26,7 +26,7 @@ use crate::scenario::{BoundSpec, Scenario};
 use box_tube::BoxTube;
 use exact_tube::ExactTube;
 use modal_form::ModalForm;
-use reach::{Crossing, Extreme, Reach, Side, Tube};
+use reach::{Extreme, LimitCrossing, Reach, Side, Tube};
 use sets::InputSets;
 pub use witness::{InputHistory, Witness};
 
@@ -184,7 +184,7 @@ impl OutputBound {
         let step = reach.grid().len().div_ceil(MOST_ROWS).max(1);
         let last = reach.grid().len() - 1;
         let rows = reach.grid().iter().enumerate().filter(|(index, _)| index % step == 0 || *index == last);
-        let row = |instant: &reach::Instant<T::State>| RangeRow {
+        let row = |instant: &reach::TubeInstant<T::State>| RangeRow {
             time_s: instant.t,
             low: instant.bounds[0],
             high: instant.bounds[1],
@@ -198,7 +198,8 @@ impl OutputBound {
             range: [low.bound, high.bound],
             attained: [low.attained, high.attained],
             attained_at_s: [low.time, high.time],
-            safe_until_s: limits.map(|_| crossing.map_or(until, |crossing: Crossing| crossing.safe_until)),
+            safe_until_s: limits
+                .map(|_| crossing.map_or(until, |crossing: LimitCrossing| crossing.safe_until)),
             violated_at_s: crossing.and_then(|crossing| crossing.passed_at),
             gap: None,
             witness: None,
