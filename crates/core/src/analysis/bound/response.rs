@@ -9,14 +9,14 @@ const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Pole -zeta w + i w sqrt(1 - zeta²) of a mode; 0 of a rigid motion.
 #[derive(Copy, Clone, Debug)]
-pub struct Pole {
+pub struct ModePole {
     /// Natural frequency w (rad/s).
     pub frequency: f64,
     /// Pole (1/s).
     pub value: Complex<f64>,
 }
 
-impl Pole {
+impl ModePole {
     /// Returns the pole of a pair.
     pub fn new(pair: &StatePair) -> Self {
         let (w, zeta) = (pair.frequency, pair.damping);
