@@ -36,7 +36,7 @@ pub struct ExactTube {
     small: f64,
 }
 
-/// ExactIntegrals of an instant, of each input that varies, and its impulse response.
+/// Integrals of an instant, of each input that varies, and its impulse response.
 #[derive(Clone, Debug)]
 pub struct ExactIntegrals(Vec<(Impulse, Variation)>);
 
