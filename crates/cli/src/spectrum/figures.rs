@@ -48,7 +48,8 @@ fn density_figure(
     }
     let all = if report.sources.len() > 1 { "all" } else { &report.sources[0] };
     layers.push(line(all, colour::BLACK, 1.5, &output.density));
-    let rms = FigureAxis::from_zero(&format!("rms up to it ({unit})"), "", output.cumulative_rms.iter().copied());
+    let rms =
+        FigureAxis::from_zero(&format!("rms up to it ({unit})"), "", output.cumulative_rms.iter().copied());
     let cumulative = line("", colour::BLACK, 1.5, &output.cumulative_rms);
     let panels = vec![Panel::new(x.clone(), y, layers), Panel::new(x, rms, vec![cumulative])];
     Figure { title: format!("{name}: noise of {}", output.output), panels, panel_height: 240 }

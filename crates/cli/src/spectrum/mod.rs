@@ -25,6 +25,7 @@ use crate::{say, scenario};
 use welch::{LogPart, WelchEstimate, estimates};
 
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct SpectrumArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
@@ -132,7 +133,8 @@ impl SpectrumResults {
         let windows: Vec<(&OutputNoise, WindowRms)> =
             self.report.outputs.iter().filter_map(|output| Some((output, output.window?))).collect();
         let Some((_, first)) = windows.first() else { return };
-        let apart = first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
+        let apart =
+            first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
         say!("  indices over windows of {} s{apart}, rms", first.window_s);
         let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
         let mut rows = vec![
@@ -168,7 +170,8 @@ impl SpectrumResults {
         let titles = ["output", "rms of the log", "exact", "bins within the 90 % interval", "column"];
         let mut rows = vec![titles.map(str::to_owned).to_vec()];
         for estimate in &self.welch {
-            let Some(output) = self.report.outputs.iter().find(|output| output.output == estimate.output) else {
+            let Some(output) = self.report.outputs.iter().find(|output| output.output == estimate.output)
+            else {
                 continue;
             };
             let quantity = |value: f64| self.units.quantity(value, &output.unit);
@@ -182,7 +185,9 @@ impl SpectrumResults {
         }
         print_table(&rows, 1);
         let (factor, unit) = self.units.frequency();
-        if let Some((segment, frequency)) = first.narrowest.filter(|(segment, _)| *segment > first.segment as f64) {
+        if let Some((segment, frequency)) =
+            first.narrowest.filter(|(segment, _)| *segment > first.segment as f64)
+        {
             say!(
                 "  warning: a bin is too wide for the narrowest peak of the loop, at {} {unit}, where the estimate is low: \
                  it takes segments of {} samples (--segment)",
@@ -225,7 +230,8 @@ impl Results for SpectrumResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let NoiseReport { spectral_radius, period_s, samples, nyquist_hz, sources, outputs, .. } = &self.report;
+        let NoiseReport { spectral_radius, period_s, samples, nyquist_hz, sources, outputs, .. } =
+            &self.report;
         let samples = match *samples {
             1 => String::new(),
             count => format!(", {}", counted(count, "sample") + " of the law"),

@@ -67,8 +67,11 @@ impl WelchEstimate {
     pub fn part_within(&self) -> f64 {
         let expected = self.expectation.as_ref().unwrap_or(&self.exact);
         let [low, high] = self.interval;
-        let within =
-            self.density.iter().zip(expected).filter(|(found, exact)| (low..high).contains(&(*exact / *found)));
+        let within = self
+            .density
+            .iter()
+            .zip(expected)
+            .filter(|(found, exact)| (low..high).contains(&(*exact / *found)));
         within.count() as f64 / self.density.len().max(1) as f64
     }
 }
@@ -118,7 +121,8 @@ fn refused(path: &Path, why: &str) -> CliError {
 
 /// Returns the time between rows (s), and the values of rows that far apart; rows of events between them are left out.
 fn even_rows(times: &[f64], values: &[f64], part: &LogPart<'_>) -> Result<(f64, Vec<f64>), CliError> {
-    let mut gaps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 0.0).collect();
+    let mut gaps: Vec<f64> =
+        times.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 0.0).collect();
     gaps.sort_by(f64::total_cmp);
     let Some(step) = gaps.get(gaps.len() / 2).copied() else {
         return Err(refused(part.path, "has no two rows"));
@@ -158,9 +162,8 @@ fn estimate(
     let count = segments as f64;
     let freedom = 2.0 * count / (1.0 + (count - 1.0) / (18.0 * count));
     let is_sampled = (step / noisy.sample_period() - 1.0).abs() < ROUNDING && segment <= EXPECTED;
-    let narrowest = noisy.narrowest_peak().map(|peak| {
-        (peak.segment * noisy.sample_period() / step, peak.frequency)
-    });
+    let narrowest =
+        noisy.narrowest_peak().map(|peak| (peak.segment * noisy.sample_period() / step, peak.frequency));
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let square = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>();
     Ok(WelchEstimate {
@@ -226,7 +229,16 @@ mod tests {
         let values: Vec<f64> = (0..40).map(value).collect();
         let (frequencies, density, segments) = welch(&values, 0.5, 16);
         assert_eq!((frequencies[0], frequencies[7], segments), (0.125, 1.0, 4));
-        let expected = [1.3974057017371302, 2.5115209123588236, 0.31185324721052804, 0.0014067267401694109, 0.00011459648690020757, 1.9769197001634308e-05, 0.23818968709830934, 0.48150508207829185];
+        let expected = [
+            1.3974057017371302,
+            2.5115209123588236,
+            0.31185324721052804,
+            0.0014067267401694109,
+            0.00011459648690020757,
+            1.9769197001634308e-05,
+            0.23818968709830934,
+            0.48150508207829185,
+        ];
         for (found, exact) in density.iter().zip(expected) {
             assert!((found - exact).abs() < 1e-12, "{found} {exact}");
         }

@@ -37,7 +37,8 @@ pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
         }
     }
     let speeds = &wheels.speed_rad_s;
-    let [first, last] = [speeds.first(), speeds.last()].map(|speed| units.speed(speed.copied().unwrap_or(0.0)));
+    let [first, last] =
+        [speeds.first(), speeds.last()].map(|speed| units.speed(speed.copied().unwrap_or(0.0)));
     say!("  largest lines of the wheels' imbalance, {first} to {last}");
     print_table(&rows, 0);
 }

@@ -102,7 +102,8 @@ impl<'a> LineLoop<'a> {
         let end = driven.body.a.nrows();
         let period_rows = PeriodRows::driven(&driven, &[], &oscillators)?;
         let kept = &period_rows.kept;
-        let within: Vec<usize> = (0..kept.len()).filter(|place| !(order..end).contains(&kept[*place])).collect();
+        let within: Vec<usize> =
+            (0..kept.len()).filter(|place| !(order..end).contains(&kept[*place])).collect();
         let turn = unit_circle(frequency * seconds(period_rows.period));
         let a = period_rows.a.map(|entry| Complex::new(entry, 0.0));
         let own = -a.select_rows(&within).select_columns(&within);
@@ -128,7 +129,9 @@ impl<'a> LineLoop<'a> {
             let after = &a * &state;
             // A meter that no load reaches is not kept.
             let metered = |index: usize| {
-                kept.iter().position(|kept| *kept == index).map_or(Complex::new(0.0, 0.0), |place| after[place])
+                kept.iter()
+                    .position(|kept| *kept == index)
+                    .map_or(Complex::new(0.0, 0.0), |place| after[place])
             };
             let mut next = meters;
             let lines = outputs.iter().map(|output| match &self.rows[*output] {

@@ -33,11 +33,7 @@ pub struct Motion {
 
 impl Motion {
     /// Creates the motion of a body x' = a x + b u over these pieces of a period.
-    pub fn new(
-        (a, b): (&DMatrix<f64>, &DMatrix<f64>),
-        pieces: Vec<Piece>,
-        outputs: Vec<OutputRow>,
-    ) -> Self {
+    pub fn new((a, b): (&DMatrix<f64>, &DMatrix<f64>), pieces: Vec<Piece>, outputs: Vec<OutputRow>) -> Self {
         let poles = eigenvalues(a).unwrap_or_default();
         let fastest = poles.iter().map(|pole| modulus(*pole)).fold(0.0, f64::max);
         Self { a: a.clone(), b: b.clone(), pieces, outputs, fastest }

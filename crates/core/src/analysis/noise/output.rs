@@ -16,7 +16,9 @@ pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
     let mut all: Vec<(Signal, OutputRow)> = Vec::new();
     let row = |place: usize| OutputRow::Body(RowDVector::from_row_slice(&model.c[place]));
     all.extend((0..measured).map(|place| (model.outputs[place].clone(), row(place))));
-    all.extend(parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))));
+    all.extend(
+        parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))),
+    );
     all.extend(line_of_sight_rows(parts.scenario, order));
     all.extend((measured..model.outputs.len()).map(|place| (model.outputs[place].clone(), row(place))));
     all.into_iter().unzip()

@@ -123,10 +123,12 @@ impl PeriodRows {
         schedule: &Schedule,
         draws: &Draws<'_>,
     ) -> Self {
-        let outputs: Vec<&DMatrix<f64>> = pieces.iter().flat_map(|piece| [&piece.body, &piece.command]).collect();
+        let outputs: Vec<&DMatrix<f64>> =
+            pieces.iter().flat_map(|piece| [&piece.body, &piece.command]).collect();
         let read = read_states(end, &stacked(&outputs), size);
         let is_drawn = |row: usize| (size..end.ncols()).any(|column| end[(row, column)] != 0.0);
-        let mut kept: Vec<usize> = read.iter().copied().filter(|row| drivers.contains(row) || is_drawn(*row)).collect();
+        let mut kept: Vec<usize> =
+            read.iter().copied().filter(|row| drivers.contains(row) || is_drawn(*row)).collect();
         loop {
             let reached: Vec<usize> = read
                 .iter()
@@ -241,7 +243,8 @@ impl LoopRows {
                 NoiseEntry::Wander { decay, change, own_share, white } => {
                     let before = self.memory[index].clone();
                     let after = &before * *decay + drawn(change);
-                    let mean = if *own_share < 1.0 { (&before + &after) * (0.5 * own_share) } else { after.clone() };
+                    let mean =
+                        if *own_share < 1.0 { (&before + &after) * (0.5 * own_share) } else { after.clone() };
                     add(&mut errors.rate, mean + drawn(white));
                     self.memory[index] = after;
                 }
@@ -295,7 +298,13 @@ impl LoopRows {
     }
 
     /// Goes through a period; the columns of the draws begin at `size`.
-    fn run(&mut self, parts: &LoopParts<'_>, schedule: &Schedule, draws: &Draws<'_>, size: usize) -> Vec<Piece> {
+    fn run(
+        &mut self,
+        parts: &LoopParts<'_>,
+        schedule: &Schedule,
+        draws: &Draws<'_>,
+        size: usize,
+    ) -> Vec<Piece> {
         let mut flows = BTreeMap::new();
         let gain = parts.actuators.gain;
         let late = schedule.delay % schedule.step;

@@ -104,7 +104,8 @@ impl NoiseReport {
         let outputs = chosen(&noisy, &request.signals)?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
         if noisy.sources.is_empty() && wheels.is_none() {
-            let why = "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
+            let why =
+                "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
             return Err(NoiseError::Key(ConfigError::new("sensor", why)));
         }
         let report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
@@ -183,7 +184,8 @@ fn wheel_spectrum(
     if let Some(given) = &speeds {
         let wrong = given.iter().find(|speed| !(**speed > 0.0 && speed.is_finite()));
         if wrong.is_some() || given.is_empty() || given.len() > MOST_SPEEDS {
-            let got = wrong.map_or_else(|| format!("{} of them", given.len()), |speed| format!("{speed} rad/s"));
+            let got =
+                wrong.map_or_else(|| format!("{} of them", given.len()), |speed| format!("{speed} rad/s"));
             let why = format!("speeds must be positive, and from 1 to {MOST_SPEEDS} of them, got {got}");
             return Err(NoiseError::Request(why));
         }

@@ -121,7 +121,10 @@ impl SourceList {
                     return refused("period", why);
                 }
                 if gyro.period.is_some_and(|own| own.leading_femtoseconds() != period) {
-                    return refused("period", "is not that of the law: the noise of a linear loop has one period");
+                    return refused(
+                        "period",
+                        "is not that of the law: the noise of a linear loop has one period",
+                    );
                 }
                 self.add_gyro(&key, gyro, period);
             }
@@ -186,7 +189,8 @@ impl SourceList {
         self.add(format!("{key}.rate_random_walk"), period, walk);
         let quantum = diagonal(axes, |axis| rounding(gyro.quantum.about(axis).get()) / time);
         self.add(format!("{key}.quantum"), period, quantum.map(NoiseEntry::Remainder));
-        let wander = diagonal(axes, |axis| gyro.bias_instability(axis).map_or(0.0, |(deviation, _)| deviation));
+        let wander =
+            diagonal(axes, |axis| gyro.bias_instability(axis).map_or(0.0, |(deviation, _)| deviation));
         let wander = wander.zip(gyro.correlation_time).map(|(deviation, correlation)| {
             wander_entry(&deviation, time / correlation.get(), gyro.integrates())
         });
@@ -195,7 +199,8 @@ impl SourceList {
 
     fn add_quanta_of_wheels(&mut self, scenario: &Scenario, period: i64) {
         for member in scenario.actuator.members() {
-            let (ActuatorTask::Executes(_), ActuatorKind::Wheel(wheel)) = (&member.task, &*member.kind) else {
+            let (ActuatorTask::Executes(_), ActuatorKind::Wheel(wheel)) = (&member.task, &*member.kind)
+            else {
                 continue;
             };
             let entry = diagonal(self.axes, |_| rounding(wheel.quantum.get())).map(NoiseEntry::Command);
@@ -238,7 +243,11 @@ fn wander_entry(deviation: &DMatrix<f64>, ratio: f64, integrates: bool) -> Noise
         let z = 0.5 * ratio;
         let tanh = libm::tanh(z);
         // The series of z - tanh z, where the difference loses its digits.
-        let rest = if z > 0.02 { z - tanh } else { z * z * z * (1.0 / 3.0 - z * z * (2.0 / 15.0 - z * z * (17.0 / 315.0))) };
+        let rest = if z > 0.02 {
+            z - tanh
+        } else {
+            z * z * z * (1.0 / 3.0 - z * z * (2.0 / 15.0 - z * z * (17.0 / 315.0)))
+        };
         (tanh / z, libm::sqrt(rest) / z)
     } else {
         (1.0, 0.0)

@@ -29,8 +29,11 @@ impl NoisyLoop {
     pub fn welch_expectation(&self, output: usize, length: usize, frequencies: &[f64]) -> Vec<f64> {
         let step = self.sample_period();
         let covariance = self.autocovariance(output, length - 1);
-        let weighted: Vec<f64> =
-            covariance.iter().enumerate().map(|(lag, value)| value * window_correlation(length, lag)).collect();
+        let weighted: Vec<f64> = covariance
+            .iter()
+            .enumerate()
+            .map(|(lag, value)| value * window_correlation(length, lag))
+            .collect();
         let power = window_correlation(length, 0);
         let at = |frequency: &f64| {
             let angle = TAU * frequency * step;

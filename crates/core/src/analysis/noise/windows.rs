@@ -115,7 +115,8 @@ impl NoisyLoop {
         let mean = || Functional::mean(0.0, length, 1.0);
         // Legendre's polynomial of degree 1 over the window, normalised to a mean square of 1.
         let root = libm::sqrt(3.0) / length;
-        let line = Functional { lines: vec![([0.0, length], [-root, 2.0 * root / length])], points: Vec::new() };
+        let line =
+            Functional { lines: vec![([0.0, length], [-root, 2.0 * root / length])], points: Vec::new() };
         let minus_mean = || Functional::mean(0.0, length, -1.0);
         let mut found = vec![WindowVariances::default(); self.sources.len()];
         let moments = self.moments(output, [0.0, self.period]);
@@ -237,7 +238,8 @@ impl NoisyLoop {
             if inside[1] - inside[0] <= ROUNDING * self.period {
                 continue;
             }
-            let own = if inside == [0.0, self.period] { moments.clone() } else { self.moments(output, inside) };
+            let own =
+                if inside == [0.0, self.period] { moments.clone() } else { self.moments(output, inside) };
             row += &own[0] * (first + second * start) + &own[1] * *second;
         }
         for (time, weight) in &functional.points {
@@ -274,12 +276,7 @@ impl WindowWeights {
         let mean = j0(u) * j0(u);
         let difference =
             window.separation.map_or(0.0, |separation| 2.0 * (1.0 - libm::cos(frequency * separation)));
-        Self {
-            mpe: mean,
-            rpe_uniform: 1.0 - mean,
-            smear: 3.0 * j1(u) * j1(u),
-            pde: difference * mean,
-        }
+        Self { mpe: mean, rpe_uniform: 1.0 - mean, smear: 3.0 * j1(u) * j1(u), pde: difference * mean }
     }
 }
 
@@ -290,7 +287,11 @@ fn j0(u: f64) -> f64 {
 
 /// Returns the spherical Bessel function of order 1, (sin u/u - cos u)/u.
 fn j1(u: f64) -> f64 {
-    if u.abs() < 0.02 { u / 3.0 * (1.0 - u * u / 10.0 * (1.0 - u * u / 28.0)) } else { (j0(u) - libm::cos(u)) / u }
+    if u.abs() < 0.02 {
+        u / 3.0 * (1.0 - u * u / 10.0 * (1.0 - u * u / 28.0))
+    } else {
+        (j0(u) - libm::cos(u)) / u
+    }
 }
 
 #[cfg(test)]
@@ -345,8 +346,13 @@ mod tests {
             [index.mpe, index.rpe_uniform, index.rpe_end, index.rpe_middle, index.pde]
         };
         let (coarse, fine) = (at(0.1), at(0.05));
-        let expected =
-            [0.426_421_318_802_5, 0.573_578_681_197_5, 0.847_825_714_810_9, 0.453_072_042_207_6, 0.852_842_627_933_8];
+        let expected = [
+            0.426_421_318_802_5,
+            0.573_578_681_197_5,
+            0.847_825_714_810_9,
+            0.453_072_042_207_6,
+            0.852_842_627_933_8,
+        ];
         for (place, exact) in expected.into_iter().enumerate() {
             let found = (4.0 * fine[place] - coarse[place]) / 3.0;
             assert!((found / exact - 1.0).abs() < 1e-6, "{place}: {found} {exact}");
