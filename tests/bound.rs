@@ -72,7 +72,7 @@ fn ranges_are_those_of_dense_sums() {
         assert!(found.range[0] <= found.attained[0] && found.attained[1] <= found.range[1]);
         assert_eq!(found.verdict, Verdict::Violated);
         let violated = found.violated_at_s.expect("a crossing");
-        agree(violated, crossing, 2e-4);
+        agree(violated, crossing, 2e-6);
         agree(found.safe_until_s.expect("a time"), violated, 1e-8);
         let witness = found.witness.expect("a witness");
         agree(witness.value, high, 2e-7);
@@ -130,7 +130,7 @@ fn constant_inputs_and_states_reach_their_closed_forms() {
     );
     let found = &bounds(&text)[0];
     // The largest of 0.009375 (1 - cos p) + 0.005 |sin p| and of its parts with the other signs, over phases p.
-    let (step, swing) = (0.3 * (0.5 / 4.0) / 4.0, 0.02 / 2.0);
+    let (step, swing): (f64, f64) = (0.3 * (0.5 / 4.0) / 4.0, 0.02 / 2.0);
     let high = step + step.hypot(swing);
     agree(found.range[1], high, 1e-9);
     let low = 0.1 * (0.5 / 4.0) / 4.0;
@@ -160,6 +160,25 @@ fn an_elastic_output_has_no_rigid_motion() {
     let claim = "output = \"rate\"\nelastic = true\nconstant_inputs = { torque = [0.3, 0.3] }";
     let found = &bounds(&one_mode(claim))[0];
     agree(found.range[1], 0.3 * (0.5 / 4.0) / 2.0, 1e-9);
+}
+
+/// The free mode of a spacecraft of one appendage, and its run, which is linear to the second order.
+#[test]
+fn a_spacecraft_has_free_modes() {
+    let text = "duration = 20.0\n[law.open]\n[spacecraft]\nmass = 300.0\n\
+                inertia = [[120, 0, 0], [0, 100, 0], [0, 0, 90]]\n[[appendage]]\nname = \"boom\"\nmass = 10.0\n\
+                centre = [1.5, 0.0, 0.0]\ninertia = [[0.1, 0, 0], [0, 7.5, 0], [0, 0, 7.5]]\nat = [0.5, 0.0, 0.0]\n\
+                modes = [{ frequency = 1.5, damping = 0.005, translation = [0, 0, 2.476], rotation = [0, -5.396, 0] }]\n\
+                [[bound]]\noutput = \"pitch\"\nlimits = [-1e-6, 1e-6]\nstart = { displacements = [-1e-3, 1e-3] }\n\
+                varying_inputs = { torque_pitch = [-1e-3, 1e-3] }";
+    let found = &bounds(text)[0];
+    assert_eq!(found.verdict, Verdict::Violated);
+    let witness = found.witness.as_ref().expect("a witness");
+    agree(witness.simulated.expect("a run"), witness.value, 1e-4);
+    assert_eq!(witness.states.len(), witness.start.len());
+    // No key gives a free mode at the start.
+    let scenario = Scenario::parse("bound.toml", text).expect("valid");
+    assert_eq!(found.witness_text(&scenario), None);
 }
 
 #[test]

@@ -223,6 +223,36 @@ fn modes_and_cycles_have_json_output() {
 }
 
 #[test]
+fn noise_of_a_loop() {
+    let dir = Dir::with(&["slew-wheel-lqg", "relay-fixed", "wheel-unstable-band", "wheel-fast-mode"]);
+    let verb = "spectrum slew-wheel-lqg.toml";
+    let noise = dir.run(&format!("{verb} --window 1 --separation 5 --json")).exits(0).json();
+    let angle = &noise["outputs"][0];
+    // By SciPy: tests/golden/noise.csv.
+    assert!((angle["sample_rms"].as_f64().expect("a number") / 1.523_989_711_307_738e-6 - 1.0).abs() < 1e-9);
+    assert_eq!(noise["sources"][0], "sensor.sampled.noise");
+    assert!(angle["window"]["pde"].as_f64() > angle["window"]["smear"].as_f64());
+    dir.run(verb).exits(0).says(&["1 source of noise", "sensor.sampled.noise", "100.0 %", "arcsec"]);
+    dir.run(&format!("{verb} -o noise.csv")).exits(0);
+    assert!(
+        dir.text("noise.csv").starts_with("frequency_hz,angle_density,angle_cumulative_rms,angle_density ")
+    );
+    dir.run(&format!("{verb} -o figures --format svg")).exits(0);
+    assert!(dir.has("figures/density_angle.svg"));
+    let set = "--set manoeuvre.angle=1e-9 --set duration=600";
+    dir.run(&format!("simulate slew-wheel-lqg.toml {set} --log full")).exits(0);
+    let compared = dir.run(&format!("{verb} --log slew-wheel-lqg.mcap --from 100")).exits(0);
+    compared.says(&["by Welch's method", "/attitude angle_rad", "too wide for the narrowest peak"]);
+    dir.run(&format!("{verb} --log slew-wheel-lqg.mcap --segment 4")).exits(2).says(&["--segment must be"]);
+    dir.run(&format!("{verb} --signal roll")).exits(2).says(&["--signal must be", "mode0_displacement"]);
+    dir.run(&format!("{verb} --window -1")).exits(2).says(&["--window must be positive"]);
+    dir.run(&format!("{verb} --speeds 1:2:3")).exits(2).says(&["actuator.wheels.imbalance"]);
+    dir.run("spectrum relay-fixed.toml").exits(2).says(&["law.relay", "is not linear"]);
+    dir.run("spectrum wheel-fast-mode.toml").exits(2).says(&["has no noise"]);
+    dir.run("spectrum wheel-unstable-band.toml").exits(2).says(&["not stable and has no spectrum"]);
+}
+
+#[test]
 fn margins_of_a_loop() {
     let dir = Dir::with(&["wheel-fast-mode", "wheel-unstable-band", "relay-fixed"]);
     let margins = dir.run("margins wheel-fast-mode.toml --json").exits(0).json();

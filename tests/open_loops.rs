@@ -91,7 +91,6 @@ fn a_part_that_is_not_linear_is_named_with_its_key() {
         ("relay-fixed", "`law.relay` is not linear: a loop has `pd`, `attitude` or `state_space`"),
         ("canted-jets", "`actuator.jets` is not linear: a loop has `ideal`, `wheel` or `wheels`"),
         ("wheel-fixed-gain", "`law.pd.extra` is not supported in linear loops: leave it out"),
-        ("wheel-run-up", "`sensor` is several sensors: a linear loop has one"),
     ] {
         assert_eq!(refusal(name, command), expected);
     }

@@ -4,7 +4,7 @@ use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::util::{Dir, UNCERTAIN};
+use crate::util::Dir;
 
 /// A PD loop on one axis with a manoeuvre to follow no more: it settles and stays within its noise.
 const HOLD: &str = r#"
@@ -69,9 +69,8 @@ fn indices_of_a_run_are_those_of_its_log() {
     ];
     let (metrics, trace) = flown(&text.concat());
     let rows = trace.topic("/attitude").expect("the angle");
-    let times = rows.numbers("time_s").expect("times");
-    let angles = rows.numbers("angle_rad").expect("angles");
-    let e: Vec<f64> = times.iter().zip(angles).filter(|(t, _)| **t >= 20.0 - 1e-9).map(|(_, e)| *e).collect();
+    // Rows are 0.1 s apart.
+    let e = rows.numbers("angle_rad").expect("angles")[200..].to_vec();
     assert_eq!(e.len(), 401);
     let mean = |from: usize| e[from..from + 20].iter().sum::<f64>() / 20.0;
     let positions = 0..e.len() - 19;
@@ -141,18 +140,18 @@ fn a_missed_requirement_ends_with_3_and_is_beside_no_plain_goal() {
 #[test]
 fn a_campaign_has_verdicts_with_intervals_and_confidence() {
     let dir = Dir::new();
-    let requirement = "\n[[requirement]]\nname = \"duty\"\nquantity = \"duty\"\nlimit = 0.5\nlevel = 0.8\nconfidence = 0.9\n";
-    dir.write("study.toml", UNCERTAIN.to_owned() + requirement);
+    let requirement = "\n[[requirement]]\nname = \"error\"\nquantity = \"pointing_error\"\nfrom = 40.0\nlimit = 1e-3\nlevel = 0.8\ninterpretation = \"ensemble\"\nconfidence = 0.9\n";
+    dir.write("study.toml", HOLD.to_owned() + requirement);
     // 1 - 0.8^10 = 0.893 is below the confidence; 11 runs give 0.914.
-    let few = "simulate study.toml --runs 10 --table csv -o few --metrics switchings";
+    let few = "simulate study.toml --runs 10 --table csv -o few --metrics itae";
     dir.run(few).exits(3).says(&[
-        "undecided: duty",
+        "undecided: error",
         "10 of 10 met (100 %, 95 % interval 72 to 100)",
         "confidence 89.26 %, 11 runs needed for 90 %",
     ]);
     dir.run("simulate study.toml --runs 11 -o enough")
         .exits(0)
-        .says(&["requirement    met: duty", "confidence 91.41 %, at least 90 %"]);
+        .says(&["requirement    met: error", "confidence 91.41 %, at least 90 %"]);
     for (table, verdict) in [("few/requirements.csv", "undecided"), ("enough/requirements.csv", "met")] {
         let text = dir.text(table);
         let mut lines = text.lines();
@@ -160,13 +159,13 @@ fn a_campaign_has_verdicts_with_intervals_and_confidence() {
             lines.next().is_some_and(|heading| heading.starts_with("name,verdict,value,limit,unit,level,")),
             "{text}"
         );
-        assert!(lines.next().is_some_and(|row| row.starts_with(&format!("duty,{verdict},"))), "{text}");
+        assert!(lines.next().is_some_and(|row| row.starts_with(&format!("error,{verdict},"))), "{text}");
     }
     assert!(
         dir.text("few/runs.csv").lines().next().is_some_and(|heading| heading.contains("requirement_values"))
     );
     // A sweep explores.
-    dir.run("sweep study.toml --vary law.relay.k_t=0.3:0.32:3").exits(0);
+    dir.run("sweep study.toml --vary law.pd.k_d=60:70:3").exits(0);
 }
 
 #[test]
@@ -246,4 +245,48 @@ fn bad_requirements_are_refused_at_their_keys() {
         dir.write("bad.toml", format!("{HOLD}\n[[requirement]]\n{table}\n"));
         dir.run("simulate bad.toml").exits(2).says(&[expected, "requirement[0]", "bad.toml:"]);
     }
+}
+
+#[test]
+fn a_budget_has_levels_of_all_runs_by_campaign_convolution_and_rule() {
+    let dir = Dir::new();
+    let requirement =
+        "\n[[requirement]]\nname = \"error\"\nquantity = \"pointing_error\"\nfrom = 40.0\nlimit = 1e-3\n";
+    dir.write("hold.toml", HOLD.to_owned() + requirement);
+    let object = dir.run("budget hold.toml --runs 8 --json").exits(0).json();
+    let budget = &object["budgets"][0];
+    assert_eq!(
+        (budget["name"].as_str(), object["requirements"][0]["verdict"].as_str()),
+        (Some("error"), Some("met"))
+    );
+    let level = |place: usize, interpretation: &str, way: &str| {
+        budget["levels"][place][interpretation][way].as_f64().expect("a number")
+    };
+    for place in 0..3 {
+        // The mixed level is the least: the others take the worst run, or the worst time.
+        let mixed = level(place, "mixed", "campaign");
+        assert!(mixed > 0.0 && mixed <= level(place, "temporal", "campaign"));
+        assert!(mixed <= level(place, "ensemble", "campaign"));
+    }
+    // Noise is nearly all of the error: by convolution 68.3 % is one standard deviation, as by the rule.
+    let noise = budget["sources"]["noise"].as_f64().expect("a number");
+    assert!(
+        (level(0, "mixed", "rule") / noise - 1.0).abs() < 0.2
+            && (level(0, "mixed", "convolution") / noise - 1.0).abs() < 0.2
+    );
+    dir.run("budget hold.toml --runs 8 -o budget.csv").exits(0).says(&[
+        "temporal",
+        "convolved",
+        "k sigma",
+        "requirement    met: error",
+    ]);
+    let table = dir.text("budget.csv");
+    let mut lines = table.lines();
+    assert!(lines.next().is_some_and(|heading| heading.starts_with("budget,level,temporal_campaign,")));
+    assert_eq!(lines.count(), 3);
+    dir.write("bad.toml", HOLD.to_owned() + &requirement.replace("1e-3", "1e-9"));
+    dir.run("budget bad.toml --runs 2 -o figures --format svg").exits(3).says(&["missed: error"]);
+    assert!(dir.text("figures/hold-budget-error.svg").contains("<svg"));
+    dir.write("none.toml", HOLD);
+    dir.run("budget none.toml").exits(2).says(&["has no [[requirement]] on a pointing index"]);
 }

@@ -2,11 +2,15 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::noise::{
-    LineLoop, NoiseError, NoiseReport, NoisyLoop, Window, WindowVariances, WindowWeights, cumulative_rms,
+    LineLoop, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, Window, WindowVariances, WindowWeights,
+    cumulative_rms,
 };
+
+use flexsc_core::record::Detail;
 
 use crate::margins::wheel_loop;
 use crate::open_loops::scenario;
+use crate::traces::{column, flown};
 
 /// Returns the loop over four undamped modes with further keys of its sensor, and disturbances.
 fn noisy_wheel(sensor: &str, disturbances: &str) -> NoisyLoop {
@@ -251,4 +255,52 @@ fn deviations_are_those_of_scipy() {
         rows += 1;
     }
     assert_eq!(rows, 20);
+}
+
+/// Asserts that the mean square of the samples of a run is the variance, within three standard errors of its estimate.
+fn run_agrees(noisy: &NoisyLoop, name: &str, samples: &[f64]) {
+    let output = noisy.output(name).expect(name);
+    let lags = samples.len() / 4;
+    let covariance = noisy.autocovariance(output, lags);
+    let beyond: f64 = covariance[1..].iter().map(|value| value * value).sum();
+    let count = samples.len() as f64;
+    let error = (2.0 / count * (covariance[0] * covariance[0] + 2.0 * beyond)).sqrt();
+    let found = samples.iter().map(|value| value * value).sum::<f64>() / count;
+    assert!((found - covariance[0]).abs() < 3.0 * error, "{name}: {found:e} {:e} {error:e}", covariance[0]);
+    assert!(error < 0.2 * covariance[0], "{name}: {error:e} of {:e}", covariance[0]);
+}
+
+/// Runs of the engine, from 20 times the slowest time constant on.
+#[test]
+fn long_runs_have_the_variances_within_their_error() {
+    let text = wheel_loop(0.0)
+        .replace(
+            "sensor.sampled.period",
+            "sensor.sampled.noise = 1e-5\nlog.period = 0.3\nsensor.sampled.period",
+        )
+        .replace("angle = 0.06", "angle = 0.0")
+        .replace("duration = 600.0", "duration = 9000.0");
+    let wheel = Scenario::parse("wheel.toml", &text).expect("valid");
+    let (_, trace) = flown(&wheel, 0, Detail::Full);
+    run_agrees(&noisy(&wheel), "angle", &column(&trace, "/attitude", "angle_rad")[3000..]);
+}
+
+/// A mode of the panels at 92.9 rad/s, which turns the hub about yaw.
+#[test]
+fn unbalanced_wheels_excite_a_mode_at_its_frequency() {
+    let request = NoiseRequest { speeds: Some(vec![46.45, 70.0, 92.9]), ..NoiseRequest::default() };
+    let report = NoiseReport::from_scenario(&scenario("wheel-run-up"), &request).expect("linear");
+    let wheels = report.wheels.expect("imbalance");
+    assert_eq!(wheels.lines.len(), 3 * 8);
+    let yaw = report.outputs.iter().position(|output| output.output == "yaw").expect("an axis");
+    let rms = &wheels.rms[yaw];
+    assert!(rms[2] > 3.0 * rms[1], "{rms:?}");
+    let strongest = wheels
+        .lines
+        .iter()
+        .max_by(|a, b| a.outputs[yaw].direct.amplitude.total_cmp(&b.outputs[yaw].direct.amplitude));
+    let strongest = strongest.expect("lines");
+    assert_eq!((strongest.speed_rad_s, strongest.order, strongest.wheel), (92.9, 1.0, 1));
+    // The Nyquist frequency of the law is 12.566 rad/s.
+    assert!(strongest.outputs[yaw].aliases[0].frequency_rad_s < 12.567);
 }

@@ -73,9 +73,8 @@ def peak(values):
     if k in (0, len(values) - 1):
         return values[k]
     before, at, after = values[k - 1 : k + 2]
-    return (
-        at + (after - before) ** 2 / (8.0 * (2.0 * at - before - after)) if 2.0 * at > before + after else at
-    )
+    bend = 2.0 * at - before - after
+    return at + (after - before) ** 2 / (8.0 * bend) if bend > 0.0 else at
 
 
 def claim(scenario, index, factors=(1.0, 1.0)):

@@ -1,9 +1,9 @@
 """Golden numbers of tests/spectra.rs, with flexsc and SciPy installed: noise of loops by Lyapunov equations.
 
 Python assembles the loops, cut open at the measurement, with NumPy; it has the body and the settled gains of
-filters from the engine. The inputs at that break are measured angles and rates, so that they are where the noise
-of the sensor enters. `noise.csv` has the standard deviation of each measured output at the samples for each
-source, and that of its mean over one sample, by Gauss's quadrature of the motion between samples.
+filters from the engine. The inputs at that break are measured angles and rates, where the noise of the sensor
+enters. `noise.csv` has the standard deviation of each measured output at the samples for each source, and
+that in the middle between two samples from all noise (`middle`).
 """
 
 from pathlib import Path
@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def rows(name: str, noises: dict[str, tuple[int, float]]) -> list[str]:
-    """Rows of a scenario whose sources have their first input, 0 for angles or 1 for rates, and a deviation."""
+    """Rows of a scenario whose sources have a first input (0: angles, 1: rates) and a deviation."""
     scenario = flexsc.Scenario.load(ROOT / "scenarios" / f"{name}.toml")
     opened = scenario.linearise(loop="measurement")
     closed = opened.a - opened.b @ opened.c

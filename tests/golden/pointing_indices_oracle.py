@@ -1,6 +1,9 @@
-"""Pointing indices of ten runs of 600 s, by direct sums over every window: numbers of crates/core/src/metrics/pointing_index/tests.rs.
+"""Pointing indices of ten runs of 600 s, by direct sums over every window.
 
-Runs r = 0..9, t = 0..599 s: e = (r - 4.5) 2e-6 + (r mod 3 - 1) 1e-8 t + (3 + .4 r) 1e-6 sin(2 pi t/37 + .7 r).
+The numbers are those of crates/core/src/metrics/pointing_index/tests.rs.
+
+Runs r = 0..9, t = 0..599 s:
+e = (r - 4.5) 2e-6 + (r mod 3 - 1) 1e-8 t + (3 + .4 r) 1e-6 sin(2 pi t/37 + .7 r).
 Windows of 60 samples; PDE between windows that start 300 samples apart; order statistics ceil(P n).
 
 Result (temporal 95 %, ensemble 95 %, ensemble 90 %, mixed 95 %):

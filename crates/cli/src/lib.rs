@@ -117,7 +117,7 @@ enum Verb {
     Budget(budget::BudgetArgs),
     /// Prove that outputs of a body stay within limits
     ///
-    /// Over sets of initial states, inputs in time, natural frequencies and damping ratios: guaranteed ranges, the first possible violation, and a witness.
+    /// Over sets of initial states, inputs in time, natural frequencies and damping ratios: guaranteed ranges, the first possible violation, and a witness, which `-o FILE.toml` writes as a scenario. The exit code is 3 if a claim is not proved.
     Bound(bound::BoundArgs),
     /// Analyse active damping by thrusters
     ///

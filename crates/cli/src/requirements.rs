@@ -1,5 +1,6 @@
 //! Verdicts on requirements: as text, as JSON, as a table, and as the exit code of the command.
 
+use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 
@@ -34,16 +35,17 @@ fn text(verdict: &RequirementVerdict, units: Units) -> String {
     };
     let mut text = format!("{}: {found} ({})", decision.word(), requirement.description());
     if *runs > 1 {
-        text += &format!("; {}", success_rate(*runs, *runs_met as f64 / *runs as f64));
+        let _ = write!(text, "; {}", success_rate(*runs, *runs_met as f64 / *runs as f64));
     }
     if let Some(shown) = confidence.filter(|_| *runs > 1 || *decision == Decision::Undecided) {
-        text += &format!("; confidence {} %", digits(100.0 * shown.reached));
+        let _ = write!(text, "; confidence {} %", digits(100.0 * shown.reached));
         if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
             let needed = counted(needed, "run");
-            text += &if shown.reached >= wanted {
-                format!(", at least {} %", digits(100.0 * wanted))
+            let wanted_part = digits(100.0 * wanted);
+            let _ = if shown.reached >= wanted {
+                write!(text, ", at least {wanted_part} %")
             } else {
-                format!(", {needed} needed for {} %", digits(100.0 * wanted))
+                write!(text, ", {needed} needed for {wanted_part} %")
             };
         }
     }

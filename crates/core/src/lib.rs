@@ -46,6 +46,7 @@ pub mod batch;
 pub mod campaign;
 mod metric_list;
 pub mod metrics;
+pub mod order_statistics;
 pub mod prelude;
 mod relay_setup;
 pub mod requirement_verdict;

@@ -3,8 +3,9 @@
 use serde_json::{Value as Json, json};
 
 use crate::metrics::{MetricValue, Metrics};
+use crate::order_statistics::{confidence, order_statistic, runs_needed};
 use crate::scenario::{AssessedRequirement, Interpretation, Scenario};
-use crate::statistics::{confidence, order_statistic, runs_needed, wilson};
+use crate::statistics::wilson;
 
 /// Part of a level by which a mean of shares may be below it because of rounding.
 const ROUNDING: f64 = 1e-12;
@@ -96,9 +97,10 @@ impl RequirementRuns {
     pub fn add_values(&mut self, values: &[f64], shares: &[f64]) {
         self.runs += 1;
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
-        for index in 0..self.requirements.len() {
-            self.values[index].push(at(values, index));
-            self.shares[index].push(at(shares, index));
+        let each = self.values.iter_mut().zip(&mut self.shares);
+        for (index, (of_values, of_shares)) in each.enumerate() {
+            of_values.push(at(values, index));
+            of_shares.push(at(shares, index));
         }
     }
 

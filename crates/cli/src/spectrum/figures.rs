@@ -39,7 +39,7 @@ fn density_figure(
         let points: Vec<Point> = frequencies.iter().copied().zip(values.iter().copied()).collect();
         Layer::new(name, colour, LayerShape::Line(width), points)
     };
-    let mut layers: Vec<Layer> = welch.map(|estimate| estimate_layer(estimate)).into_iter().collect();
+    let mut layers: Vec<Layer> = welch.map(estimate_layer).into_iter().collect();
     if report.sources.len() > 1 {
         let each = report.sources.iter().zip(&output.density_by_source).zip(COLOURS.iter().cycle());
         let is_driven = |values: &[f64]| values.iter().any(|value| *value > 0.0);

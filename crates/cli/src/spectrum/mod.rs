@@ -25,6 +25,7 @@ use crate::{say, scenario};
 use welch::{LogPart, WelchEstimate, estimates};
 
 #[derive(clap::Args)]
+#[command(allow_negative_numbers = true)]
 pub struct SpectrumArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,

@@ -8,6 +8,9 @@ use super::print_table;
 use crate::human::{Units, digits};
 use crate::say;
 
+/// Selection of a line under a harmonic of a wheel.
+type LineOf<'a> = &'a dyn Fn(&WheelLines) -> Option<SpectralLine>;
+
 /// Prints the largest direct line and the largest alias of each output.
 pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
     let (factor, unit) = units.frequency();
@@ -19,8 +22,7 @@ pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
     for (index, output) in report.outputs.iter().enumerate() {
         let direct = |lines: &WheelLines| Some(lines.outputs[index].direct);
         let alias = |lines: &WheelLines| lines.outputs[index].aliases.first().copied();
-        let kinds: [(&str, &dyn Fn(&WheelLines) -> Option<SpectralLine>); 2] =
-            [("direct", &direct), ("alias", &alias)];
+        let kinds: [(&str, LineOf<'_>); 2] = [("direct", &direct), ("alias", &alias)];
         for (kind, line_of) in kinds {
             let all = wheels.lines.iter().filter_map(|lines| Some((lines, line_of(lines)?)));
             let largest = all.max_by(|a, b| a.1.amplitude.total_cmp(&b.1.amplitude));

@@ -19,7 +19,9 @@ fn judged(requirement: AssessedRequirement, runs: &[(f64, f64)]) -> RequirementV
     let empty = vec![Vec::new()];
     let requirements = vec![requirement];
     let mut all = RequirementRuns { requirements, runs: 0, values: empty.clone(), shares: empty };
-    runs.iter().for_each(|(value, share)| all.add_values(&[*value], &[*share]));
+    for (value, share) in runs {
+        all.add_values(&[*value], &[*share]);
+    }
     all.finish().remove(0)
 }
 

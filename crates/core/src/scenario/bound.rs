@@ -7,10 +7,11 @@ use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Claim about an output of the linear body: from every state at the start and under every input of given ranges, it
-/// stays within its limits. The control loop does not act, and a run does not read it.
+/// Claim that an output of the linear body stays within limits, from every state at the start and under every input
+/// of given ranges. The control loop does not act in it, and a run does not read it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "Bound")]
 pub struct BoundSpec {
     /// Output of the linear model, such as `rate` about one axis and `yaw_rate` about three.
     pub output: String,

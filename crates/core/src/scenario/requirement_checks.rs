@@ -257,13 +257,13 @@ fn index_window(requirement: &Requirement, period: f64) -> Result<IndexWindow, C
         PointingIndex::Relative if window < 2 => {
             at("window", format!("must contain at least two samples, which are {period} s apart"))
         }
-        PointingIndex::Relative => match requirement.convention {
-            Some(convention) => Ok(IndexWindow::Relative { window, convention }),
-            None => {
+        PointingIndex::Relative => {
+            let Some(convention) = requirement.convention else {
                 let why = "is missing: RPE depends on the position of the instant in its window, `uniform`, `end` or `middle`";
-                at("convention", why.to_owned())
-            }
-        },
+                return at("convention", why.to_owned());
+            };
+            Ok(IndexWindow::Relative { window, convention })
+        }
         PointingIndex::Drift | PointingIndex::Reproducibility => {
             let shift = samples("shift", requirement.shift)?;
             if shift < window {

@@ -188,7 +188,9 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> bool:
     """Whether rates are differences of measured angles."""
     sensor = keys["sensor"]
     if isinstance(sensor, list):
-        if len(sensor) > 1:
+        # Others measure nothing of the motion.
+        motion = [kind_of(each)[0] not in ("accelerometer", "tachometer") for each in sensor]
+        if sum(motion) > 1 or not motion[0]:
             raise refused(name, "several sensors are not supported in linear loops: use one")
         sensor = sensor[0]
     kind, own = kind_of(sensor)

@@ -40,12 +40,12 @@ class Witness:
     inputs: dict[str, tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]]
     """Times (s) from which each value of an input acts, and the values, by the name of the input."""
     scenario: Scenario | None
-    """The body from this state, under these inputs as disturbances; None if no scenario file can have them."""
+    """The body from this state, under these inputs as disturbances; None if no file can have them."""
 
 
 @dataclass(frozen=True)
 class OutputBound:
-    """Guaranteed range of an output over sets of states, inputs and parameters, and the verdict about its limits.
+    """Guaranteed range of an output over sets of states, inputs and parameters, and the verdict.
 
     >>> bound = flexsc.Scenario.example("bounded-jitter").bound()[0]
     >>> bound.output, bound.verdict

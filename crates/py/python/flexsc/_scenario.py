@@ -309,16 +309,16 @@ class Scenario(ScenarioFile):
     def bound(self) -> list[OutputBound]:
         """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
 
-        Each is over all states at the start, inputs in time, frequencies and damping ratios of the claim, with
-        the verdict about its limits.
+        Each is over all states at the start, inputs in time, frequencies and damping ratios of the claim. It
+        has the verdict about its limits.
 
         >>> import flexsc
         >>> [bound.verdict for bound in flexsc.Scenario.example("bounded-jitter").bound()]
         ['proved', 'proved']
 
         Raises:
-            ScenarioError: The scenario has no claims, or its body or a claim is not accepted: the key, and the
-                reason.
+            ScenarioError: The scenario has no claims, or its body or a claim is not accepted: the key, and
+                the reason.
         """
         from flexsc._output_bounds import output_bounds
 

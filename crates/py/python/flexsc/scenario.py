@@ -49,6 +49,7 @@ __all__ = [
     "BangBang",
     "Biquad",
     "BodyKind",
+    "Bound",
     "Burn",
     "Choice",
     "ClampedMode",
@@ -729,6 +730,46 @@ class Biquad(Part):
     """b0, b1, b2."""
     a: Vector
     """a1, a2."""
+
+
+class Bound(Part):
+    """Claim that an output of the linear body stays within limits, from every state at the start and under
+    every input of given ranges. The control loop does not act in it, and a run does not read it.
+
+    Args:
+        output: Output of the linear model, such as `rate` about one axis and `yaw_rate` about three.
+        elastic: True if the output is without the rigid motion. Default: false.
+        limits: Limits [low, high] of the output, in its unit; default: none, and the range is computed
+            alone.
+        until: End of the interval of time from the start (s); default: the `duration`.
+        start: Range [low, high] of states at the start, by the names of the linear model, in their units;
+            `displacements` and `rates` stand for all modes. Other states are 0.
+        constant_inputs: Range [low, high] of inputs that are constant in time, such as `torque_yaw`.
+        varying_inputs: Range [low, high] within which inputs vary in time in any way, such as `torque_yaw`.
+        frequency_error: Largest deviation of each natural frequency, as a part of its value. Default: 0.0.
+        damping_error: Largest deviation of each damping ratio, as a part of its value. Default: 0.0.
+    """
+
+    output: str
+    """Output of the linear model, such as `rate` about one axis and `yaw_rate` about three."""
+    elastic: bool | None = None
+    """True if the output is without the rigid motion. Default: false."""
+    limits: Vector | None = None
+    """Limits [low, high] of the output, in its unit; default: none, and the range is computed alone."""
+    until: float | None = None
+    """End of the interval of time from the start (s); default: the `duration`."""
+    start: Mapping[str, Vector] | None = None
+    """Range [low, high] of states at the start, by the names of the linear model, in their units;
+    `displacements` and `rates` stand for all modes. Other states are 0.
+    """
+    constant_inputs: Mapping[str, Vector] | None = None
+    """Range [low, high] of inputs that are constant in time, such as `torque_yaw`."""
+    varying_inputs: Mapping[str, Vector] | None = None
+    """Range [low, high] within which inputs vary in time in any way, such as `torque_yaw`."""
+    frequency_error: float | None = None
+    """Largest deviation of each natural frequency, as a part of its value. Default: 0.0."""
+    damping_error: float | None = None
+    """Largest deviation of each damping ratio, as a part of its value. Default: 0.0."""
 
 
 class Burn(Part):
@@ -3984,6 +4025,9 @@ class Keys(TypedDict, total=False):
 
     line_of_sight: Sequence[LineOfSight]
     """Lines of sight of instruments on a body with three axes, which are recorded and assessed."""
+
+    bound: Sequence[Bound]
+    """Claims about outputs of the linear body, for `flexsc bound`."""
 
     reference: Reference
     """Reference values for the metrics."""

@@ -7,7 +7,7 @@
 use flexsc_numerics::enclosure::Enclosure;
 
 use super::modal_form::{ModalForm, StatePair};
-use super::reach::{Instant, Tube};
+use super::reach::{Tube, TubeInstant};
 use super::response::SUMMATION;
 use super::sets::{InputSets, middle, products};
 
@@ -39,7 +39,7 @@ struct Enclosures {
 
 /// Largest magnitude of the impulse response to each input, its integral, and the bound of its second derivative.
 #[derive(Clone, Debug)]
-pub struct Integrals(Vec<[f64; 3]>);
+pub struct BoxIntegrals(Vec<[f64; 3]>);
 
 impl<'a> BoxTube<'a> {
     /// Creates the range for boxes of the given relative half-widths about a body.
@@ -80,7 +80,7 @@ impl<'a> BoxTube<'a> {
         })
     }
 
-    fn instant(&self, t: f64, before: Option<&Instant<Integrals>>) -> Instant<Integrals> {
+    fn instant(&self, t: f64, before: Option<&TubeInstant<BoxIntegrals>>) -> TubeInstant<BoxIntegrals> {
         let responses: Vec<Enclosures> = self.pairs.iter().map(|pair| pair.responses(t)).collect();
         let (mut sum, mut sizes) = (Enclosure::default(), 0.0);
         let mut add = |[low, high]: [f64; 2]| {
@@ -107,13 +107,13 @@ impl<'a> BoxTube<'a> {
         }
         let size = SUMMATION * sizes;
         let curvature = self.pairs.iter().map(|pair| pair.curvature * pair.decayed(t)).sum::<f64>();
-        Instant {
+        TubeInstant {
             t,
             bounds: [sum.low - size, sum.high + size],
             // No body of the box is known to attain them.
             attained: [f64::INFINITY, f64::NEG_INFINITY],
             curvature: curvature * (1.0 + SUMMATION),
-            state: Integrals(integrals),
+            state: BoxIntegrals(integrals),
         }
     }
 
@@ -123,7 +123,7 @@ impl<'a> BoxTube<'a> {
         responses: &[Enclosures],
         input: usize,
         t: f64,
-        before: Option<&Instant<Integrals>>,
+        before: Option<&TubeInstant<BoxIntegrals>>,
     ) -> [f64; 3] {
         let magnitude = self.to_input(responses, input, |of| of.rate).magnitude();
         let bends = self.pairs.iter().map(|pair| pair.bend(input) * pair.decayed(t));
@@ -206,13 +206,13 @@ impl BoxPair<'_> {
 }
 
 impl Tube for BoxTube<'_> {
-    type State = Integrals;
+    type State = BoxIntegrals;
 
-    fn start(&self) -> Instant<Integrals> {
+    fn start(&self) -> TubeInstant<BoxIntegrals> {
         self.instant(0.0, None)
     }
 
-    fn later(&self, before: &Instant<Integrals>, t: f64) -> Instant<Integrals> {
+    fn later(&self, before: &TubeInstant<BoxIntegrals>, t: f64) -> TubeInstant<BoxIntegrals> {
         self.instant(t, Some(before))
     }
 }

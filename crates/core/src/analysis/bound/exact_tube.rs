@@ -7,8 +7,8 @@
 use flexsc_numerics::enclosure::Enclosure;
 
 use super::modal_form::ModalForm;
-use super::reach::{Instant, Tube};
-use super::response::{PairResponses, Phasors, Pole, Response, SUMMATION, weighted_sum};
+use super::reach::{Tube, TubeInstant};
+use super::response::{ModePole, PairResponses, Phasors, Response, SUMMATION, weighted_sum};
 use super::sets::{InputSets, middle, products};
 use super::variation::{Impulse, SignChanges, Variation};
 
@@ -26,7 +26,7 @@ struct InputResponse {
 
 /// Range of an output of one body.
 pub struct ExactTube {
-    poles: Vec<Pole>,
+    poles: Vec<ModePole>,
     start: Vec<(Response, Enclosure)>,
     inputs: Vec<InputResponse>,
     /// Bound of the second derivative of the range: part of each pole, and of the rigid motion.
@@ -38,12 +38,12 @@ pub struct ExactTube {
 
 /// Integrals of an instant, of each input that varies, and its impulse response.
 #[derive(Clone, Debug)]
-pub struct Integrals(Vec<(Impulse, Variation)>);
+pub struct ExactIntegrals(Vec<(Impulse, Variation)>);
 
 impl ExactTube {
     /// Creates the range for sets of initial states and inputs, up to the time `until` (s).
     pub fn new(body: &ModalForm, sets: &InputSets, until: f64) -> Self {
-        let poles: Vec<Pole> = body.pairs.iter().map(Pole::new).collect();
+        let poles: Vec<ModePole> = body.pairs.iter().map(ModePole::new).collect();
         let responses = body.pairs.iter().enumerate();
         let responses: Vec<PairResponses> =
             responses.map(|(index, pair)| PairResponses::new(pair, index, &poles)).collect();
@@ -129,7 +129,7 @@ impl ExactTube {
     }
 
     /// Returns the range at an instant, of the integrals there.
-    fn instant(&self, t: f64, phasors: &Phasors, integrals: Integrals) -> Instant<Integrals> {
+    fn instant(&self, t: f64, phasors: &Phasors, integrals: ExactIntegrals) -> TubeInstant<ExactIntegrals> {
         // Ends of the range, sum of all magnitudes, and error.
         let (mut ends, mut sizes, mut error) = ([0.0; 2], 0.0, 0.0);
         let mut add = |[low, high]: [f64; 2], inaccuracy: f64| {
@@ -154,7 +154,7 @@ impl ExactTube {
         }
         let error = error + SUMMATION * sizes;
         let (parts, rigid) = &self.curvature;
-        Instant {
+        TubeInstant {
             t,
             bounds: [ends[0] - error - gaps, ends[1] + error + gaps],
             attained: [ends[0] + error, ends[1] - error],
@@ -196,16 +196,16 @@ impl ExactTube {
 }
 
 impl Tube for ExactTube {
-    type State = Integrals;
+    type State = ExactIntegrals;
 
-    fn start(&self) -> Instant<Integrals> {
+    fn start(&self) -> TubeInstant<ExactIntegrals> {
         let phasors = self.phasors(0.0);
         let integrals =
             self.inputs.iter().map(|input| (Self::impulse(input, 0.0, &phasors), Variation::default()));
-        self.instant(0.0, &phasors, Integrals(integrals.collect()))
+        self.instant(0.0, &phasors, ExactIntegrals(integrals.collect()))
     }
 
-    fn later(&self, before: &Instant<Integrals>, t: f64) -> Instant<Integrals> {
+    fn later(&self, before: &TubeInstant<ExactIntegrals>, t: f64) -> TubeInstant<ExactIntegrals> {
         let phasors = self.phasors(t);
         let integrals = self.inputs.iter().enumerate().map(|(index, input)| {
             let impulse = Self::impulse(input, t, &phasors);
@@ -218,7 +218,7 @@ impl Tube for ExactTube {
             }
             (impulse, variation)
         });
-        let integrals = Integrals(integrals.collect());
+        let integrals = ExactIntegrals(integrals.collect());
         self.instant(t, &phasors, integrals)
     }
 }

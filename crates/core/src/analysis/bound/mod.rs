@@ -26,7 +26,7 @@ use crate::scenario::{BoundSpec, Scenario};
 use box_tube::BoxTube;
 use exact_tube::ExactTube;
 use modal_form::ModalForm;
-use reach::{Crossing, Extreme, Reach, Side, Tube};
+use reach::{Extreme, LimitCrossing, Reach, Side, Tube};
 use sets::InputSets;
 pub use witness::{InputHistory, Witness};
 
@@ -36,6 +36,8 @@ const IN_EACH: f64 = 2.0;
 const IN_EACH_OF_BOX: f64 = 16.0;
 /// Largest number of responses that are evaluated on a grid.
 const MOST_RESPONSES: f64 = 2e8;
+/// Largest number of instants of a grid, which are kept.
+const MOST_INSTANTS: f64 = 1e6;
 /// Largest number of rows of the range over time.
 const MOST_ROWS: usize = 2000;
 
@@ -136,11 +138,10 @@ impl OutputBound {
         }
         let nominal = ExactTube::new(&body, &sets, until);
         let count = nominal.grid_count(until, if is_box { IN_EACH_OF_BOX } else { IN_EACH });
-        let responses = count * model.states.len() as f64;
-        if responses > MOST_RESPONSES {
+        let most = (MOST_RESPONSES / model.states.len() as f64).min(MOST_INSTANTS);
+        if count > most {
             let why = format!(
-                "must be shorter: {count:.0} instants of {} states are more than {MOST_RESPONSES:e} responses",
-                model.states.len()
+                "must be shorter: it needs {count:.0} instants, and {most:.0} are possible, got {until} s"
             );
             return Err(ConfigError::new("until", why));
         }
@@ -183,7 +184,7 @@ impl OutputBound {
         let step = reach.grid().len().div_ceil(MOST_ROWS).max(1);
         let last = reach.grid().len() - 1;
         let rows = reach.grid().iter().enumerate().filter(|(index, _)| index % step == 0 || *index == last);
-        let row = |instant: &reach::Instant<T::State>| RangeRow {
+        let row = |instant: &reach::TubeInstant<T::State>| RangeRow {
             time_s: instant.t,
             low: instant.bounds[0],
             high: instant.bounds[1],
@@ -197,7 +198,8 @@ impl OutputBound {
             range: [low.bound, high.bound],
             attained: [low.attained, high.attained],
             attained_at_s: [low.time, high.time],
-            safe_until_s: limits.map(|_| crossing.map_or(until, |crossing: Crossing| crossing.safe_until)),
+            safe_until_s: limits
+                .map(|_| crossing.map_or(until, |crossing: LimitCrossing| crossing.safe_until)),
             violated_at_s: crossing.and_then(|crossing| crossing.passed_at),
             gap: None,
             witness: None,
@@ -264,6 +266,7 @@ impl OutputBound {
         let names: Vec<String> = self.model.inputs.iter().map(|signal| signal.name.clone()).collect();
         let mut witness = witness::extreme_inputs((&tube, &body), sets, &names, (side, time, value), count);
         (witness.frequency_factor, witness.damping_factor) = (frequency, damping);
+        witness.states = self.model.states.iter().map(|signal| signal.name.clone()).collect();
         let run = witness_run::scenario(scenario, &self.model, &witness);
         let state = run.and_then(|run| witness_run::final_state(&run, &self.model));
         witness.simulated = state.map(|state| {

@@ -7,7 +7,7 @@
 
 /// Range of an output at an instant.
 #[derive(Clone, Debug)]
-pub struct Instant<S> {
+pub struct TubeInstant<S> {
     /// Time (s).
     pub t: f64,
     /// Guaranteed range: lower and upper bound.
@@ -26,10 +26,10 @@ pub trait Tube {
     type State: Clone;
 
     /// Returns the range at the start.
-    fn start(&self) -> Instant<Self::State>;
+    fn start(&self) -> TubeInstant<Self::State>;
 
     /// Returns the range at a later time than that of `before`.
-    fn later(&self, before: &Instant<Self::State>, t: f64) -> Instant<Self::State>;
+    fn later(&self, before: &TubeInstant<Self::State>, t: f64) -> TubeInstant<Self::State>;
 }
 
 /// End of the range.
@@ -69,7 +69,7 @@ pub struct Extreme {
 
 /// First instant at which limits are passed.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Crossing {
+pub struct LimitCrossing {
     /// Time (s) before which no limit is passed.
     pub safe_until: f64,
     /// Time (s) at which a limit is passed for some state and input; `None` if this is not decided.
@@ -79,7 +79,7 @@ pub struct Crossing {
 /// Range over time on a grid, and the search between its instants.
 pub struct Reach<'a, T: Tube> {
     tube: &'a T,
-    grid: Vec<Instant<T::State>>,
+    grid: Vec<TubeInstant<T::State>>,
     /// Largest number of evaluations of one search.
     budget: usize,
 }
@@ -102,7 +102,7 @@ impl<'a, T: Tube> Reach<'a, T> {
     }
 
     /// Returns the instants of the grid.
-    pub fn grid(&self) -> &[Instant<T::State>] {
+    pub fn grid(&self) -> &[TubeInstant<T::State>] {
         &self.grid
     }
 
@@ -111,7 +111,7 @@ impl<'a, T: Tube> Reach<'a, T> {
     }
 
     /// Returns the largest value of an end of the range, counted outwards, between two instants: a bound.
-    fn between(side: Side, first: &Instant<T::State>, last: &Instant<T::State>) -> f64 {
+    fn between(side: Side, first: &TubeInstant<T::State>, last: &TubeInstant<T::State>) -> f64 {
         let width = last.t - first.t;
         let ends = side.outwards(first.bounds[side.index()]).max(side.outwards(last.bounds[side.index()]));
         // The factor covers the rounding of these few operations.
@@ -120,7 +120,7 @@ impl<'a, T: Tube> Reach<'a, T> {
 
     /// Returns the extreme of an end of the range.
     pub fn extreme(&self, side: Side) -> Extreme {
-        let attained = |instant: &Instant<T::State>| side.outwards(instant.attained[side.index()]);
+        let attained = |instant: &TubeInstant<T::State>| side.outwards(instant.attained[side.index()]);
         let first = &self.grid[0];
         let mut best = (attained(first), first.t);
         let mut floor = side.outwards(first.bounds[side.index()]);
@@ -174,10 +174,10 @@ impl<'a, T: Tube> Reach<'a, T> {
     }
 
     /// Returns the first instant at which the range may pass limits \[low, high\]; `None` if it stays within.
-    pub fn first_crossing(&self, limits: [f64; 2]) -> Option<Crossing> {
+    pub fn first_crossing(&self, limits: [f64; 2]) -> Option<LimitCrossing> {
         let outside = |range: &[f64; 2]| range[0] < limits[0] || range[1] > limits[1];
         if outside(&self.grid[0].attained) {
-            return Some(Crossing { safe_until: 0.0, passed_at: Some(0.0) });
+            return Some(LimitCrossing { safe_until: 0.0, passed_at: Some(0.0) });
         }
         let mut spent = 0;
         let mut doubted: Option<f64> = None;
@@ -199,10 +199,10 @@ impl<'a, T: Tube> Reach<'a, T> {
                 }
                 let safe_until = *doubted.get_or_insert(from.t);
                 if outside(&to.attained) {
-                    return Some(Crossing { safe_until, passed_at: Some(to.t) });
+                    return Some(LimitCrossing { safe_until, passed_at: Some(to.t) });
                 }
             }
         }
-        doubted.map(|safe_until| Crossing { safe_until, passed_at: None })
+        doubted.map(|safe_until| LimitCrossing { safe_until, passed_at: None })
     }
 }

@@ -9,14 +9,14 @@ const ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Pole -zeta w + i w sqrt(1 - zeta²) of a mode; 0 of a rigid motion.
 #[derive(Copy, Clone, Debug)]
-pub struct Pole {
+pub struct ModePole {
     /// Natural frequency w (rad/s).
     pub frequency: f64,
     /// Pole (1/s).
     pub value: Complex<f64>,
 }
 
-impl Pole {
+impl ModePole {
     /// Returns the pole of a pair.
     pub fn new(pair: &StatePair) -> Self {
         let (w, zeta) = (pair.frequency, pair.damping);
@@ -35,9 +35,9 @@ pub struct Phasors {
 
 impl Phasors {
     /// Returns the values at a time (s).
-    pub fn new(poles: &[Pole], t: f64) -> Self {
+    pub fn new(poles: &[ModePole], t: f64) -> Self {
         let decays: Vec<f64> = poles.iter().map(|pole| libm::exp(pole.value.re * t)).collect();
-        let value = |(pole, decay): (&Pole, &f64)| {
+        let value = |(pole, decay): (&ModePole, &f64)| {
             let (sin, cos) = libm::sincos(pole.value.im * t);
             Complex::new(decay * cos, decay * sin)
         };
@@ -70,7 +70,7 @@ impl Response {
     ///
     /// Each amplitude is known to 16 roundings; the phase w t, the exponent and the functions of libm add 8 w t + 8, the
     /// sum of n terms n. The bound has all of them twice.
-    pub fn new(polynomial: [f64; 3], terms: Vec<(usize, Complex<f64>)>, poles: &[Pole]) -> Self {
+    pub fn new(polynomial: [f64; 3], terms: Vec<(usize, Complex<f64>)>, poles: &[ModePole]) -> Self {
         let count = terms.len() as f64;
         let mut rounding = [0.0; 2];
         for (pole, amplitude) in &terms {
@@ -104,7 +104,7 @@ impl Response {
     }
 
     /// Returns the derivative of the function.
-    pub fn derivative(&self, poles: &[Pole]) -> Self {
+    pub fn derivative(&self, poles: &[ModePole]) -> Self {
         let [_, slope, square] = self.polynomial;
         let terms = self.terms.iter().map(|(pole, amplitude)| (*pole, amplitude * poles[*pole].value));
         Self::new([slope, 2.0 * square, 0.0], terms.collect(), poles)
@@ -112,7 +112,7 @@ impl Response {
 
     /// Adds, for each pole, a factor times the largest magnitude of its part of the derivative of a degree, to `sizes`,
     /// and returns that of the polynomial, if it is constant.
-    pub fn add_derivative(&self, degree: i32, factor: f64, poles: &[Pole], sizes: &mut [f64]) -> f64 {
+    pub fn add_derivative(&self, degree: i32, factor: f64, poles: &[ModePole], sizes: &mut [f64]) -> f64 {
         for (pole, amplitude) in &self.terms {
             let power = poles[*pole].frequency.powi(degree);
             sizes[*pole] += factor * power * amplitude.re.hypot(amplitude.im);
@@ -139,7 +139,7 @@ pub struct PairResponses {
 impl PairResponses {
     /// Returns the responses of a pair of index `index`: with D = exp(-zeta w t), n = w sqrt(1 - zeta²) and s = -zeta w + i
     /// n, a position 1 moves as Re((1 - i zeta w/n) exp(s t)), a rate 1 as Re(-i exp(s t)/n).
-    pub fn new(pair: &StatePair, index: usize, poles: &[Pole]) -> Self {
+    pub fn new(pair: &StatePair, index: usize, poles: &[ModePole]) -> Self {
         let [by_position, by_rate] = pair.weights;
         if !pair.is_elastic() {
             return Self {
@@ -167,7 +167,7 @@ impl PairResponses {
 }
 
 /// Returns the sum of functions with weights.
-pub fn weighted_sum<'a>(parts: impl Iterator<Item = (f64, &'a Response)>, poles: &[Pole]) -> Response {
+pub fn weighted_sum<'a>(parts: impl Iterator<Item = (f64, &'a Response)>, poles: &[ModePole]) -> Response {
     let (mut polynomial, mut terms) = ([0.0; 3], Vec::new());
     for (weight, part) in parts.filter(|(weight, _)| *weight != 0.0) {
         for (sum, coefficient) in polynomial.iter_mut().zip(part.polynomial) {

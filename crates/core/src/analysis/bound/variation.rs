@@ -11,9 +11,9 @@ pub struct Impulse {
     pub t: f64,
     /// Impulse response h.
     pub value: f64,
-    /// Its derivative.
+    /// Derivative of h.
     pub slope: f64,
-    /// Its integral from 0, the step response.
+    /// Integral of h from 0, the step response.
     pub step: f64,
     /// Bound of the second derivative from this time on.
     pub bend: f64,

@@ -1,5 +1,6 @@
 //! Witness of a violation: a state at the start and inputs over time that bring the output beyond its limits.
 
+use flexsc_numerics::enclosure::Enclosure;
 use serde::Serialize;
 
 use super::exact_tube::ExactTube;
@@ -20,7 +21,9 @@ pub struct Witness {
     pub frequency_factor: f64,
     /// Factor on every damping ratio.
     pub damping_factor: f64,
-    /// State at the start, in the order of the linear model.
+    /// Names of the states, in the order of the linear model.
+    pub states: Vec<String>,
+    /// State at the start.
     pub start: Vec<f64>,
     /// Each input over time.
     pub inputs: Vec<InputHistory>,
@@ -48,7 +51,7 @@ pub fn extreme_inputs(
 ) -> Witness {
     let (start, steps) = tube.signs(body, time);
     let is_high = |response: f64| side.outwards(response) > 0.0;
-    let chosen = |range: flexsc_numerics::enclosure::Enclosure, response: f64| {
+    let chosen = |range: Enclosure, response: f64| {
         if is_high(response) { range.high } else { range.low }
     };
     let inputs = names.iter().enumerate().map(|(input, name)| {
@@ -76,6 +79,7 @@ pub fn extreme_inputs(
         simulated: None,
         frequency_factor: 1.0,
         damping_factor: 1.0,
+        states: Vec::new(),
         inputs: inputs.collect(),
         start: start.iter().zip(&sets.start).map(|(response, range)| chosen(*range, *response)).collect(),
     }

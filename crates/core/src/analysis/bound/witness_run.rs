@@ -15,9 +15,13 @@ use crate::sim::Simulation;
 /// Parts of a scenario that a witness keeps.
 const KEPT: [&str; 7] = ["name", "about", "seed", "body", "spacecraft", "appendage", "epoch"];
 
+/// Largest number of disturbances of a witness.
+const MOST_PIECES: usize = 10_000;
+
 /// Returns the scenario of a witness; `None` if its inputs are no torques, or its modes no keys of a scenario.
 pub fn scenario(own: &Scenario, model: &LinearModel, witness: &Witness) -> Option<Scenario> {
-    if !is_driven_by_torques(own) {
+    let pieces: usize = witness.inputs.iter().map(|input| input.values.len()).sum();
+    if !is_driven_by_torques(own) || pieces > MOST_PIECES {
         return None;
     }
     let written: ScenarioSpec = own.self_contained();

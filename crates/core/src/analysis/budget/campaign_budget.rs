@@ -2,8 +2,8 @@
 //! the sources that the runs show.
 
 use super::{ErrorSources, LEVELS};
+use crate::order_statistics::order_statistic;
 use crate::scenario::{AssessedRequirement, Interpretation};
-use crate::statistics::order_statistic;
 
 /// Interpretations of a level, in the order in which they are reported.
 pub const INTERPRETATIONS: [Interpretation; 3] =

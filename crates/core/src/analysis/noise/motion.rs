@@ -20,6 +20,14 @@ pub enum OutputRow {
     Command(usize),
 }
 
+/// Time in a piece, its weight, and the response of outputs then to the states at the start and to the torques.
+struct QuadratureNode {
+    time: f64,
+    weight: f64,
+    flow: DMatrix<f64>,
+    forced: DMatrix<f64>,
+}
+
 /// Motion over a period at all of its times.
 #[derive(Clone, Debug)]
 pub struct Motion {
@@ -63,7 +71,7 @@ impl Motion {
         mut at: impl FnMut(f64, f64, &DMatrix<f64>),
     ) {
         let rate = 2.0 * self.fastest + fastest;
-        let mut known: BTreeMap<[u64; 2], Vec<(f64, f64, [DMatrix<f64>; 2])>> = BTreeMap::new();
+        let mut known: BTreeMap<[u64; 2], Vec<QuadratureNode>> = BTreeMap::new();
         for piece in &self.pieces {
             let start = seconds(piece.from);
             let [first, last] = [from, to].map(|end| (end - start).clamp(0.0, seconds(piece.length)));
@@ -73,11 +81,12 @@ impl Motion {
             let times = known.entry([first.to_bits(), last.to_bits()]).or_insert_with(|| {
                 let node = |(time, weight): (f64, f64)| {
                     let (flow, forced) = held(&self.a, &self.b, first + time);
-                    (first + time, weight, [self.body_rows(outputs, &flow), self.body_rows(outputs, &forced)])
+                    let (flow, forced) = (self.body_rows(outputs, &flow), self.body_rows(outputs, &forced));
+                    QuadratureNode { time: first + time, weight, flow, forced }
                 };
                 nodes(last - first, rate).into_iter().map(node).collect()
             });
-            for (time, weight, [flow, forced]) in times.iter() {
+            for QuadratureNode { time, weight, flow, forced } in times.iter() {
                 let mut rows = flow * &piece.body + forced * &piece.torque;
                 self.fill_commands(outputs, piece, &mut rows);
                 at(start + time, *weight, &rows);

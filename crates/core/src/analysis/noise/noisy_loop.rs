@@ -181,14 +181,14 @@ impl NoisyLoop {
         for first in 0..count {
             let (state, drawn) = rows[first].columns_range_pair(..order, order..);
             // Covariance of the output with the states at the start of its period, and with those that follow.
-            let mut with = &state * &covariance;
+            let mut with = state * &covariance;
             let mut period = 0;
             for (lag, value) in found.iter_mut().enumerate() {
                 let (ahead, sample) = ((first + lag) / count, (first + lag) % count);
                 let (later, later_drawn) = rows[sample].columns_range_pair(..order, order..);
                 while period < ahead {
                     with = if period == 0 {
-                        &with * self.a.transpose() + &drawn * self.g.transpose()
+                        &with * self.a.transpose() + drawn * self.g.transpose()
                     } else {
                         &with * self.a.transpose()
                     };
@@ -196,7 +196,7 @@ impl NoisyLoop {
                 }
                 let mut product = (&with * later.transpose())[(0, 0)];
                 if ahead == 0 {
-                    product += (&drawn * later_drawn.transpose())[(0, 0)];
+                    product += (drawn * later_drawn.transpose())[(0, 0)];
                 }
                 *value += product / count as f64;
             }
@@ -214,7 +214,7 @@ impl NoisyLoop {
     fn add_variances(&self, sums: &mut [Vec<f64>], rows: &DMatrix<f64>, weight: f64) {
         let (state, drawn) = rows.columns_range_pair(..self.a.nrows(), self.a.nrows()..);
         for (source, covariance) in self.covariances.iter().enumerate() {
-            let with = &state * covariance;
+            let with = state * covariance;
             for (row, sum) in sums.iter_mut().enumerate() {
                 sum[source] += weight * with.row(row).dot(&state.row(row));
             }

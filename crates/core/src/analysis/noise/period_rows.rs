@@ -52,7 +52,7 @@ enum ControllerRows {
     /// All at the samples of the law.
     Uniform { controller: Controller, state: DMatrix<f64> },
     /// Attitude filter with sensors of other periods.
-    Filter { filter: AttitudeRows, law: LinearBlock, state: DMatrix<f64> },
+    Filter { filter: Box<AttitudeRows>, law: LinearBlock, state: DMatrix<f64> },
 }
 
 /// State of the loop during a period, as rows.
@@ -91,18 +91,15 @@ impl PeriodRows {
         let schedule = Schedule::new(parts, filter.as_ref(), sources)?;
         let draws = Draws::new(sources, schedule.period);
         let mut start = Vec::new();
-        let controller = match filter {
-            Some(filter) => {
-                start.push(3 * filter.state_patterns().len());
-                let law = parts.law.block.clone();
-                start.push(law.a.nrows());
-                ControllerRows::Filter { filter, law, state: DMatrix::zeros(0, 0) }
-            }
-            None => {
-                let controller = Controller::new(parts)?;
-                start.push(controller.block.a.nrows());
-                ControllerRows::Uniform { controller, state: DMatrix::zeros(0, 0) }
-            }
+        let controller = if let Some(filter) = filter {
+            start.push(3 * filter.state_patterns().len());
+            let law = parts.law.block.clone();
+            start.push(law.a.nrows());
+            ControllerRows::Filter { filter: Box::new(filter), law, state: DMatrix::zeros(0, 0) }
+        } else {
+            let controller = Controller::new(parts)?;
+            start.push(controller.block.a.nrows());
+            ControllerRows::Uniform { controller, state: DMatrix::zeros(0, 0) }
         };
         let known: usize = start.iter().sum();
         let axes = parts.body.inputs.len();
@@ -309,7 +306,7 @@ impl LoopRows {
         let gain = parts.actuators.gain;
         let late = schedule.delay % schedule.step;
         let filter = match &self.controller {
-            ControllerRows::Filter { filter, .. } => Some(filter),
+            ControllerRows::Filter { filter, .. } => Some(&**filter),
             ControllerRows::Uniform { .. } => None,
         };
         let instants = schedule.instants(filter, draws.sources);

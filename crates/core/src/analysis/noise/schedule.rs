@@ -68,16 +68,14 @@ impl Schedule {
         let own = sensors.into_iter().map(|own| (own, "law"));
         let draws = sources.iter().map(|source| (source.period, source.key.as_str()));
         for (own, key) in own.chain(draws) {
-            match common_multiple(period, own).filter(|whole| whole / step <= MOST_SAMPLES) {
-                Some(whole) => period = whole,
-                None => {
-                    let why = format!(
-                        "has a period of {} s: the loop repeats only after more than {MOST_SAMPLES} samples of the law",
-                        seconds(own)
-                    );
-                    return Err(ConfigError::new(key, why));
-                }
-            }
+            let whole = common_multiple(period, own).filter(|whole| whole / step <= MOST_SAMPLES);
+            let why = || {
+                format!(
+                    "has a period of {} s: the loop repeats only after more than {MOST_SAMPLES} samples of the law",
+                    seconds(own)
+                )
+            };
+            period = whole.ok_or_else(|| ConfigError::new(key, why()))?;
         }
         let count = |source: &NoiseSource| source.entry.draws() as i64 * (period / source.period);
         if let Some(source) = sources.iter().find(|source| count(source) > MOST_DRAWS) {

@@ -7,6 +7,7 @@ use flexsc_control::actuator::{ActuatorKind, ActuatorTask};
 use flexsc_control::estimator::attitude::SensorRole;
 use flexsc_control::sensor::{Gyro, Sampled, SensorKind, StarTracker};
 use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
 use flexsc_spacecraft::axes::Axis;
 use nalgebra::DMatrix;
 
@@ -158,7 +159,7 @@ impl SourceList {
     fn add_sampled(&mut self, key: &str, sampled: &Sampled, period: i64) {
         let axes = self.axes;
         let angle = |deviation: f64| diagonal(axes, |_| deviation).map(NoiseEntry::Angle);
-        let rate = sampled.rate_noise.map_or(0.0, |noise| noise.get());
+        let rate = sampled.rate_noise.map_or(0.0, Positive::get);
         self.add(format!("{key}.noise"), period, angle(sampled.noise.get()));
         self.add(format!("{key}.resolution"), period, angle(rounding(sampled.resolution.get())));
         self.add(format!("{key}.rate_noise"), period, diagonal(axes, |_| rate).map(NoiseEntry::Rate));

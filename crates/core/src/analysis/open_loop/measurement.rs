@@ -19,7 +19,8 @@ pub fn sensor_block(
     period: Span,
     prefixes: &[&str],
 ) -> Result<LinearBlock, ConfigError> {
-    if scenario.sensor.len() > 1 {
+    // Sensors that measure nothing of the motion, such as accelerometers, may follow.
+    if scenario.sensor.motion_sensors() > 1 || !scenario.sensor.first().measures_motion() {
         return Err(ConfigError::new("sensor", "is several sensors: a linear loop has one"));
     }
     let wrong = |why: &str| Err(ConfigError::new(scenario.sensor_key(0), why));

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::*;
+use crate::order_statistics::order_statistic;
 use crate::scenario::PointingIndex;
-use crate::statistics::order_statistic;
 
 const SAMPLES: u64 = 600;
 
