@@ -59,6 +59,7 @@ use std::io::Write;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+pub use budget::budget_json;
 pub use campaign::logs::simulate_to_log;
 pub use campaign::part_files::write_statistics_of;
 use error::CliError;

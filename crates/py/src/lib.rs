@@ -77,7 +77,8 @@ mod _native {
     use super::instants::MotionSampler;
     #[pymodule_export]
     use super::linear::{
-        bounds_json, exponential, linear_json, loop_json, margins_json, spectrum_json, tuned_json,
+        bounds_json, budget_json, exponential, linear_json, loop_json, margins_json, spectrum_json,
+        tuned_json,
     };
     #[pymodule_export]
     use super::log::Log;

@@ -111,6 +111,13 @@ pub fn spectrum_json(
     Ok(json!(report).to_string())
 }
 
+/// The pointing budget of a scenario's requirements over some runs, on some threads (0: one per core).
+#[pyfunction]
+pub fn budget_json(py: Python<'_>, scenario: &Scenario, runs: u64, jobs: u16) -> PyResult<String> {
+    let inner = scenario.inner.clone();
+    aside(py, move |_| flexsc_cli::budget_json(inner, runs, jobs))?.map_err(PyValueError::new_err)
+}
+
 /// The guaranteed ranges of the outputs that a scenario claims, with their rows as columns and their witnesses as
 /// scenario files.
 #[pyfunction]

@@ -53,7 +53,7 @@ pub struct BudgetArgs {
 pub struct Budgets {
     name: String,
     runs: u64,
-    budgets: Vec<CampaignBudget>,
+    indices: Vec<CampaignBudget>,
     verdicts: Vec<RequirementVerdict>,
     units: Units,
 }
@@ -74,66 +74,107 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
     requirements::validate([(budgets.name.as_str(), &budgets.verdicts[..])])
 }
 
+/// Returns the budgets of a scenario as JSON, as `--json` prints them.
+///
+/// # Errors
+/// A scenario without a requirement on a pointing index, and a run that fails.
+pub fn budget_json(scenario: Scenario, runs: u64, jobs: u16) -> Result<String, String> {
+    let name = scenario.name.clone();
+    let setup = CampaignSetup { origin: name, runs, jobs, units: Units::Si, consent: None };
+    let budgets = setup.budgets(scenario).map_err(|failure| failure.to_string())?;
+    Ok(budgets.json().remove(0).to_string())
+}
+
 /// Runs the campaign, and computes the budgets.
 pub fn results(scenario: Scenario, args: &BudgetArgs) -> Result<Budgets, CliError> {
-    let name = scenario.name.clone();
-    let samples = |source: &RequirementSource| match source {
-        RequirementSource::Metric(..) => 0,
-        RequirementSource::Error(error) => error.index.values(error.samples),
+    let setup = CampaignSetup {
+        origin: args.scenario.scenario.display().to_string(),
+        runs: args.runs,
+        jobs: args.jobs.unwrap_or(0),
+        units: args.units.units,
+        consent: Some(args.consent),
     };
-    let values: u64 = scenario.study.requirements.iter().map(|of| samples(&of.source)).sum();
-    if values == 0 {
-        let why = "has no [[requirement]] on a pointing index with a value in the run";
-        return Err(CliError::Arguments(format!("{name}: {why}")));
-    }
-    if values.saturating_mul(args.runs) > MOST_VALUES {
-        let why = format!(
-            "--runs: {} with {values} values each are more than {MOST_VALUES}",
-            counted(args.runs, "run")
-        );
-        return Err(CliError::Arguments(format!(
-            "{why}\n\nhint: give fewer runs, or a longer `period` in [[requirement]]"
-        )));
-    }
-    let origin = args.scenario.scenario.display().to_string();
-    let campaign = Arc::new(Campaign::from_design(scenario, &origin, Design::default())?);
-    let cost = campaign.cost(args.runs, None).map_err(|why| CliError::Arguments(format!("--runs {why}")))?;
-    args.consent.check(&cost)?;
-    let kept = Arc::new(Mutex::new(BTreeMap::new()));
-    let work = {
-        let kept = Arc::clone(&kept);
-        move |run: &flexsc_core::campaign::CampaignRun| {
-            let mut record = IndexRecord::new(&run.scenario);
-            let metrics = Campaign::simulate(run, (&mut record, StopRecord))?;
-            kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, record.finish());
-            Ok(metrics)
-        }
-    };
-    let mut runs = RequirementRuns::new(campaign.scenario());
-    campaign.for_each_run(0..args.runs, usize::from(args.jobs.unwrap_or(0)), work, |outcome| {
-        let Some(outcome) = outcome else {
-            return if stop::stop_requested() { Err(CliError::Interrupted(String::new())) } else { Ok(()) };
+    setup.budgets(scenario)
+}
+
+/// Campaign from which budgets are computed.
+struct CampaignSetup {
+    origin: String,
+    runs: u64,
+    /// Number of threads; 0 for one per core.
+    jobs: u16,
+    units: Units,
+    /// Consent to long work; `None` if it is given.
+    consent: Option<CostConfirmation>,
+}
+
+impl CampaignSetup {
+    fn budgets(&self, scenario: Scenario) -> Result<Budgets, CliError> {
+        let name = scenario.name.clone();
+        let samples = |source: &RequirementSource| match source {
+            RequirementSource::Metric(..) => 0,
+            RequirementSource::Error(error) => error.index.values(error.samples),
         };
-        let number = outcome.number;
-        let metrics = outcome.metrics.map_err(|error| CliError::Runs {
-            failed: 1,
-            runs: args.runs,
-            number,
-            why: error.to_string(),
+        let values: u64 = scenario.study.requirements.iter().map(|of| samples(&of.source)).sum();
+        if values == 0 {
+            let why = "has no [[requirement]] on a pointing index with a value in the run";
+            return Err(CliError::Arguments(format!("{name}: {why}")));
+        }
+        if values.saturating_mul(self.runs) > MOST_VALUES {
+            let why = format!(
+                "--runs: {} with {values} values each are more than {MOST_VALUES}",
+                counted(self.runs, "run")
+            );
+            return Err(CliError::Arguments(format!(
+                "{why}\n\nhint: give fewer runs, or a longer `period` in [[requirement]]"
+            )));
+        }
+        let campaign = Arc::new(Campaign::from_design(scenario, &self.origin, Design::default())?);
+        let cost =
+            campaign.cost(self.runs, None).map_err(|why| CliError::Arguments(format!("--runs {why}")))?;
+        if let Some(consent) = self.consent {
+            consent.check(&cost)?;
+        }
+        let kept = Arc::new(Mutex::new(BTreeMap::new()));
+        let work = {
+            let kept = Arc::clone(&kept);
+            move |run: &flexsc_core::campaign::CampaignRun| {
+                let mut record = IndexRecord::new(&run.scenario);
+                let metrics = Campaign::simulate(run, (&mut record, StopRecord))?;
+                kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, record.finish());
+                Ok(metrics)
+            }
+        };
+        let mut runs = RequirementRuns::new(campaign.scenario());
+        campaign.for_each_run(0..self.runs, usize::from(self.jobs), work, |outcome| {
+            let Some(outcome) = outcome else {
+                return if stop::stop_requested() {
+                    Err(CliError::Interrupted(String::new()))
+                } else {
+                    Ok(())
+                };
+            };
+            let number = outcome.number;
+            let metrics = outcome.metrics.map_err(|error| CliError::Runs {
+                failed: 1,
+                runs: self.runs,
+                number,
+                why: error.to_string(),
+            })?;
+            runs.add(Some(&metrics));
+            Ok(())
         })?;
-        runs.add(Some(&metrics));
-        Ok(())
-    })?;
-    let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
-    let scenario = campaign.scenario();
-    let mut budgets = Vec::new();
-    for (index, requirement) in scenario.study.requirements.iter().enumerate() {
-        let RequirementSource::Error(error) = &requirement.source else { continue };
-        let values: Vec<Vec<f64>> = all.values().map(|run| run[index].clone()).collect();
-        let is_signed = error.is_component(scenario.axis_count());
-        budgets.push(CampaignBudget::new(requirement.clone(), &values, is_signed));
+        let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
+        let scenario = campaign.scenario();
+        let mut budgets = Vec::new();
+        for (index, requirement) in scenario.study.requirements.iter().enumerate() {
+            let RequirementSource::Error(error) = &requirement.source else { continue };
+            let values: Vec<Vec<f64>> = all.values().map(|run| run[index].clone()).collect();
+            let is_signed = error.is_component(scenario.axis_count());
+            budgets.push(CampaignBudget::new(requirement.clone(), &values, is_signed));
+        }
+        Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts: runs.finish(), units: self.units })
     }
-    Ok(Budgets { name, runs: args.runs, budgets, verdicts: runs.finish(), units: args.units.units })
 }
 
 impl Results for Budgets {
@@ -167,13 +208,13 @@ impl Results for Budgets {
         vec![json!({
             "scenario": self.name,
             "runs": self.runs,
-            "budgets": self.budgets.iter().map(budget).collect::<Vec<_>>(),
+            "budgets": self.indices.iter().map(budget).collect::<Vec<_>>(),
             "requirements": requirements::json(&self.verdicts),
         })]
     }
 
     fn figures(&self) -> Vec<Named> {
-        self.budgets.iter().map(|budget| figures::named(&self.name, budget)).collect()
+        self.indices.iter().map(|budget| figures::named(&self.name, budget)).collect()
     }
 
     fn table(&self) -> Option<NumberTable> {
@@ -184,7 +225,7 @@ impl Results for Budgets {
             );
         }
         let mut rows = Vec::new();
-        for (index, budget) in self.budgets.iter().enumerate() {
+        for (index, budget) in self.indices.iter().enumerate() {
             for (probability, levels) in LEVELS.iter().zip(&budget.levels) {
                 let cells =
                     levels.iter().flat_map(|level| [Some(level.campaign), level.convolution, level.rule]);
@@ -199,7 +240,7 @@ impl Results for Budgets {
 
     fn print(&self) -> Result<(), CliError> {
         say!("{}   {}", self.name, counted(self.runs, "run"));
-        for budget in &self.budgets {
+        for budget in &self.indices {
             self.print_budget(budget);
         }
         requirements::print(&self.verdicts, self.units);

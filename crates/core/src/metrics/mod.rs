@@ -25,7 +25,6 @@ use crate::scenario::Scenario;
 
 pub use crate::metric_list::ALL;
 
-#[expect(clippy::wildcard_imports, reason = "each file of this folder names those that it reports")]
 use crate::metric_list::*;
 
 pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};

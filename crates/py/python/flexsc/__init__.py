@@ -62,6 +62,7 @@ from flexsc.parts import (
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
+    from flexsc._budget import BudgetLevel, IndexBudget, PointingBudget
     from flexsc._linear import Linear
     from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
@@ -87,10 +88,12 @@ if TYPE_CHECKING:
 __all__ = [
     "Actuator",
     "Adaptation",
+    "BudgetLevel",
     "CompiledLaw",
     "Effort",
     "Estimator",
     "Hold",
+    "IndexBudget",
     "Law",
     "Linear",
     "Log",
@@ -102,6 +105,7 @@ __all__ = [
     "OutputBound",
     "OutputNoise",
     "Plan",
+    "PointingBudget",
     "Quantities",
     "Reading",
     "Result",
@@ -168,19 +172,22 @@ _MODULES = ("parts", "plot", "scenario", "structure")
 # Modules that import a package which NumPy does not bring.
 _EXTRAS = ("dask", "gym")
 _LATER = {
+    "BudgetLevel": "_budget",
+    "IndexBudget": "_budget",
     "Linear": "_linear",
     "LoopMargins": "_loop_margins",
     "Margins": "_margins",
     "NoiseSpectrum": "_noise",
-    "OutputNoise": "_noise",
     "OutputBound": "_output_bounds",
+    "OutputNoise": "_noise",
+    "PointingBudget": "_budget",
     "Sensitivities": "_sensitivity",
     "Signal": "_signal",
     "StabilityMargins": "_loop_margins",
-    "TunedPlant": "_structured_tuning",
-    "TunedScenario": "_structured_tuning",
     "StateSpace": "structure",
     "Structure": "structure",
+    "TunedPlant": "_structured_tuning",
+    "TunedScenario": "_structured_tuning",
     "WheelLines": "_noise",
     "WheelSpectrum": "_noise",
     "Witness": "_output_bounds",

@@ -17,6 +17,7 @@ from flexsc._values import arrays, run_number, toml
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from flexsc._budget import PointingBudget
     from flexsc._linear import Linear
     from flexsc._loop_margins import StabilityMargins
     from flexsc._noise import NoiseSpectrum
@@ -305,6 +306,27 @@ class Scenario(ScenarioFile):
         from flexsc._noise import noise_spectrum
 
         return noise_spectrum(self, signals, window, separation, speeds)
+
+    def budget(self, runs: int = 20, jobs: int = 0) -> PointingBudget:
+        """Return the pointing budget of the scenario's `[[requirement]]` tables: `flexsc budget`.
+
+        Each pointing index has its levels at 68.3, 95.5 and 99.7 %, temporal, ensemble and mixed: by the
+        order statistics of a campaign, by convolution of its error sources, and by the rule of k sigma.
+
+        Args:
+            runs: Number of runs of the campaign over the noise and the uncertain keys.
+            jobs: Number of threads; 0 for one per core.
+
+        >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
+        >>> [index.unit for index in budget.indices]
+        ['rad', 'rad']
+
+        Raises:
+            ValueError: The scenario has no requirement on a pointing index, or a run fails.
+        """
+        from flexsc._budget import pointing_budget
+
+        return pointing_budget(self, runs, jobs)
 
     def bound(self) -> list[OutputBound]:
         """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::enclosure::Enclosure;
-use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::quantity::{Finite, Positive};
 use serde::Serialize;
 
 use crate::analysis::linear_model::{LinearModel, Signal};
@@ -128,7 +128,7 @@ impl OutputBound {
         let output = index_of("output", &claim.output, &model.outputs)?;
         let body = ModalForm::new(model, output, claim.elastic)?;
         let sets = input_sets(claim, model)?;
-        let until = claim.until.map_or_else(|| scenario.duration.seconds(), |until| until.get());
+        let until = claim.until.map_or_else(|| scenario.duration.seconds(), Positive::get);
         let errors = [claim.frequency_error.get(), claim.damping_error.get()];
         let is_box = errors != [0.0; 2];
         let damped = body.pairs.iter().find(|pair| pair.damping * (1.0 + errors[1]) >= 1.0);

@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use super::witness::{InputHistory, Witness};
 use crate::analysis::linear_model::LinearModel;
 use crate::scenario::{Scenario, ScenarioSpec};
-use crate::sim::Simulation;
+use crate::sim::{ObservationField, Simulation};
 
 /// Parts of a scenario that a witness keeps.
 const KEPT: [&str; 7] = ["name", "about", "seed", "body", "spacecraft", "appendage", "epoch"];
@@ -39,11 +39,10 @@ pub fn scenario(own: &Scenario, model: &LinearModel, witness: &Witness) -> Optio
     match &written.body {
         Some(Body::Planar(_)) => started.set_planar(body(&mut table, "planar")?)?,
         Some(Body::Spatial(_)) => started.set_spatial(body(&mut table, "spatial")?)?,
-        Some(_) => return None,
         None if witness.frequency_factor == 1.0 && witness.damping_factor == 1.0 => {
             started.set_rigid(table.get_mut("spacecraft")?.as_table_mut()?)?;
         }
-        None => return None,
+        _ => return None,
     }
     let mut scenario = Scenario::from_document(&Document::from_table(&name, table)).ok()?;
     if written.body.is_none() {
@@ -77,7 +76,7 @@ pub fn final_state(scenario: &Scenario, model: &LinearModel) -> Option<Vec<f64>>
     let end = Instant::START + scenario.duration;
     simulation.run_up_to(end, &mut ()).ok()?;
     let fields = simulation.observation_fields(scenario);
-    let mut row = vec![0.0; fields.iter().map(|field| field.width()).sum()];
+    let mut row = vec![0.0; fields.iter().map(ObservationField::width).sum()];
     simulation.observe(&mut row).ok()?;
     let mut place = 0;
     let mut values = |name: &str| -> Option<Vec<f64>> {

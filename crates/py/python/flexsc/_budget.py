@@ -1,0 +1,93 @@
+"""Pointing budgets: levels of the indices that the requirements of a scenario limit."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    from flexsc._scenario import Scenario
+
+
+@dataclass(frozen=True)
+class BudgetLevel:
+    """Level of an index at a probability, computed in three ways.
+
+    >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
+    >>> budget.indices[0].levels[0.955]["mixed"].campaign > 0.0
+    True
+    """
+
+    campaign: float
+    """Order statistic of the runs."""
+    convolution: float | None
+    """Level of the sum of the error sources by convolution; None for an index without sources."""
+    rule: float | None
+    """Level by the rule of k sigma; None for an index without sources."""
+
+
+@dataclass(frozen=True)
+class IndexBudget:
+    """Budget of one pointing index.
+
+    >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
+    >>> sorted(budget.indices[0].levels)
+    [0.683, 0.955, 0.997]
+    """
+
+    name: str
+    """Name of the requirement."""
+    description: str
+    """Index, quantity and window of the requirement."""
+    unit: str
+    """Unit of the levels and of the limit."""
+    limit: float
+    """Limit of the requirement."""
+    levels: dict[float, dict[str, BudgetLevel]]
+    """Levels by their probability and their interpretation: `temporal`, `ensemble` or `mixed`."""
+    sources: dict[str, Any] | None
+    """Error sources: `biases`, half widths of uniform errors; `amplitudes` of harmonic ones; `noise`, the rms
+    of the random part. None for an index without sources."""
+
+
+@dataclass(frozen=True)
+class PointingBudget:
+    """Budgets of all pointing indices that a scenario limits, and the verdicts of its requirements.
+
+    >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
+    >>> budget.runs, len(budget.indices) <= len(budget.requirements)
+    (2, True)
+    """
+
+    runs: int
+    """Number of runs of the campaign."""
+    indices: tuple[IndexBudget, ...]
+    """Budget of each pointing index, in the order of the requirements."""
+    requirements: tuple[dict[str, Any], ...]
+    """Verdict of each requirement, as `flexsc budget --json` prints it: `name`, `verdict`, `value`, `limit`
+    and the confidence of the campaign."""
+
+
+PointingBudget.__module__ = IndexBudget.__module__ = BudgetLevel.__module__ = "flexsc"
+
+
+def pointing_budget(scenario: Scenario, runs: int, jobs: int) -> PointingBudget:
+    """Return the pointing budget of a scenario's requirements."""
+    if runs < 1:
+        raise ValueError(f"runs must be 1 or more, got {runs}")
+    found = json.loads(engine.budget_json(scenario._native, runs, jobs))
+    return PointingBudget(
+        runs=found["runs"],
+        indices=tuple(_index(each) for each in found["budgets"]),
+        requirements=tuple(found["requirements"]),
+    )
+
+
+def _index(found: dict[str, Any]) -> IndexBudget:
+    words = ("temporal", "ensemble", "mixed")
+    levels = {row["level"]: {word: BudgetLevel(**row[word]) for word in words} for row in found["levels"]}
+    keys = ("name", "description", "unit", "limit", "sources")
+    return IndexBudget(levels=levels, **{key: found[key] for key in keys})
