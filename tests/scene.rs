@@ -252,6 +252,7 @@ fn panels_visibly_bend() {
             "sun-tracking",
             "panel-deployment",
             "adaptive-bandwidth",
+            "bounded-jitter",
             "orbit-correction",
         ];
         if straight.contains(&name.as_str()) {

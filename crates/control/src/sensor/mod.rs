@@ -8,6 +8,7 @@ mod gyro;
 mod ideal;
 mod latency_queue;
 mod linear_measurement;
+pub mod linear_noise;
 mod magnetometer;
 mod rate_integrator;
 mod reference;

@@ -46,6 +46,9 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
     }
+    if matrix.is_empty() {
+        return Some(Vec::new());
+    }
     let mut balanced = matrix.clone();
     balance_parlett_reinsch(&mut balanced);
     let schur = Schur::try_new(balanced, f64::EPSILON, SWEEPS)?;
