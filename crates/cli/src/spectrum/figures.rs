@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, WheelSpectrum};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour, palette};
+use flexsc_figure::{
+    Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour, name_and_unit, palette,
+};
 
 use super::welch::WelchEstimate;
 
@@ -48,8 +50,8 @@ fn density_figure(
     }
     let all = if report.sources.len() > 1 { "all" } else { &report.sources[0] };
     layers.push(line(all, colour::BLACK, 1.5, &output.density));
-    let rms =
-        FigureAxis::from_zero(&format!("rms up to it ({unit})"), "", output.cumulative_rms.iter().copied());
+    let (name_of_rms, unit_of_rms) = name_and_unit("rms up to the frequency", unit);
+    let rms = FigureAxis::from_zero(&name_of_rms, unit_of_rms, output.cumulative_rms.iter().copied());
     let cumulative = line("", colour::BLACK, 1.5, &output.cumulative_rms);
     let panels = vec![Panel::new(x.clone(), y, layers), Panel::new(x, rms, vec![cumulative])];
     Figure { title: format!("{name}: noise of {}", output.output), panels, panel_height: 240 }

@@ -169,6 +169,14 @@ impl Default for ActuatorKind {
 }
 
 impl ActuatorKind {
+    /// Returns the wheels if they are unbalanced.
+    pub fn unbalanced_wheels(&self) -> Option<&Wheels> {
+        match self {
+            Self::Wheels(wheels) if wheels.imbalance.is_some() => Some(wheels),
+            _ => None,
+        }
+    }
+
     /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {

@@ -1,6 +1,6 @@
 //! Imbalance of the wheels as loads on the body that turn: lines over the speed of the wheels.
 
-use flexsc_control::actuator::{ActuatorKind, Wheels};
+use flexsc_control::actuator::Wheels;
 use flexsc_dynamics::three_axis::HarmonicLine;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
@@ -64,10 +64,7 @@ impl WheelImbalance {
         let Some(body) = scenario.model.three_axis() else { return Ok(None) };
         let members: Vec<_> = scenario.actuator.members().into_iter().collect();
         for member in &members {
-            let ActuatorKind::Wheels(wheels) = &*member.kind else { continue };
-            if wheels.imbalance.is_none() {
-                continue;
-            }
+            let Some(wheels) = member.kind.unbalanced_wheels() else { continue };
             let bearings = wheels.bearings(body).map_err(|fault| fault.within(&member.key))?;
             let mut harmonics = Vec::new();
             for (wheel, bearing) in bearings.iter().enumerate() {
