@@ -247,15 +247,9 @@ fn panels_visibly_bend() {
     for name in names {
         // A rigid body has nothing to bend, drives and hinges turn wings by far more than they bend, 1e-4 N m bend
         // nothing beside what wheels could, and a force bends two wings alike, which turns no hub to draw them against.
-        let straight = [
-            "detumble-and-point",
-            "sun-tracking",
-            "panel-deployment",
-            "adaptive-bandwidth",
-            "bounded-jitter",
-            "orbit-correction",
-        ];
-        if straight.contains(&name.as_str()) {
+        let straight = "detumble-and-point sun-tracking panel-deployment adaptive-bandwidth bounded-jitter \
+                        orbit-correction";
+        if straight.split(' ').any(|straight| straight == name) {
             continue;
         }
         let dir = Dir::with(&[&name]);

@@ -141,6 +141,7 @@ __all__ = [
     "RelativeNormal",
     "RelativeUniform",
     "Relay",
+    "Requirement",
     "RigidRate",
     "Robustness",
     "Rotor",
@@ -2734,6 +2735,73 @@ class Relay(Part):
     """Which boundaries of the dead zone push back. Default: "two"."""
 
 
+class Requirement(Part):
+    """Requirement: the largest accepted value of a quantity.
+
+    Args:
+        name: Name of the requirement.
+        quantity: Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as
+            `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its largest element.
+        limit: Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as
+            "2 arcsec".
+        point: Point of the line of sight, which is a `[[line_of_sight]]` of the scenario.
+        axis: Component of the error about an axis of the body; default: the norm of all components.
+        index: Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none.
+        window: Length of the index' window (s), a whole number of sampling periods; all indices but APE
+            have one.
+        convention: Position of the instant in its window, for RPE.
+        shift: Time from the start of one window to that of the other (s), at least the window, for PDE and
+            PRE.
+        period: Sampling period of the error (s). Default: the period of the law, else of the sensor, else 1
+            s. A line of sight is sampled with its own period.
+        from_: Start of the part of the run that counts (s); default: 0.
+        to: End of the part of the run that counts (s); default: the end of the run.
+        level: Probability at which the value is at most the limit; default: 1, always and in every run.
+        interpretation: Statistical interpretation of the level; an error with a level below 1 needs one.
+        confidence: Confidence at which a campaign shows the level, for the ensemble interpretation;
+            default: none is asked for.
+    """
+
+    name: str
+    """Name of the requirement."""
+    quantity: str
+    """Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
+    `fuel_axes_kg[2]`; of a list without an index, its largest element.
+    """
+    limit: float | str
+    """Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2
+    arcsec".
+    """
+    point: str | None = None
+    """Point of the line of sight, which is a `[[line_of_sight]]` of the scenario."""
+    axis: Literal["x", "y", "z"] | None = None
+    """Component of the error about an axis of the body; default: the norm of all components."""
+    index: Literal["APE", "MPE", "RPE", "PDE", "PRE"] | None = None
+    """Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none."""
+    window: float | None = None
+    """Length of the index' window (s), a whole number of sampling periods; all indices but APE have one."""
+    convention: Literal["uniform", "end", "middle"] | None = None
+    """Position of the instant in its window, for RPE."""
+    shift: float | None = None
+    """Time from the start of one window to that of the other (s), at least the window, for PDE and PRE."""
+    period: float | None = None
+    """Sampling period of the error (s). Default: the period of the law, else of the sensor, else 1 s. A
+    line of sight is sampled with its own period.
+    """
+    from_: float | None = None
+    """Start of the part of the run that counts (s); default: 0."""
+    to: float | None = None
+    """End of the part of the run that counts (s); default: the end of the run."""
+    level: float | None = None
+    """Probability at which the value is at most the limit; default: 1, always and in every run."""
+    interpretation: Literal["temporal", "ensemble", "mixed"] | None = None
+    """Statistical interpretation of the level; an error with a level below 1 needs one."""
+    confidence: float | None = None
+    """Confidence at which a campaign shows the level, for the ensemble interpretation; default: none is
+    asked for.
+    """
+
+
 class RigidRate(Part):
     """The rigid rates of a spatial body.
 
@@ -4031,6 +4099,9 @@ class Keys(TypedDict, total=False):
 
     reference: Reference
     """Reference values for the metrics."""
+
+    requirement: Sequence[Requirement]
+    """Requirements, each a limit on a pointing index or on a metric."""
 
     uncertain: Mapping[str, DistributionKind]
     """Distributions of keys from which a campaign draws a value for each run."""
