@@ -27,29 +27,69 @@ class LoopMargins:
 
     gain_crossings: dict[str, npt.NDArray[np.float64]]
     """Where the loop gain is 1, columns of shape (crossings,): `frequency` (rad/s), `phase` (rad), the phase
-    margin from -pi to pi, negative for a lead; `delay` (s), NaN for several samples in a period."""
+    margin from -pi to pi, negative for a lead; `delay` (s), NaN for several samples in a period.
+
+    >>> list(margins.gain_crossings)
+    ['frequency', 'phase', 'delay']
+    """
     phase_crossings: dict[str, npt.NDArray[np.float64]]
     """Where the loop transfer is real and negative, columns of shape (crossings,): `frequency` (rad/s) and
-    `factor`, the gain margin."""
+    `factor`, the gain margin.
+
+    >>> list(margins.phase_crossings)
+    ['frequency', 'factor']
+    """
     gain_below: float
     """Largest factor below 1 on the loop gain at which the loop is at the limit of stability; 0 if there is
-    none."""
+    none.
+
+    >>> margins.gain_below
+    0.0
+    """
     gain_above: float
-    """Smallest factor above 1 at which the loop is at the limit of stability; infinite if there is none."""
+    """Smallest factor above 1 at which the loop is at the limit of stability; infinite if there is none.
+
+    >>> round(margins.gain_above, 2)
+    43.75
+    """
     phase: float
-    """Smallest phase (rad), of either sign, that makes the loop unstable; pi if there is none."""
+    """Smallest phase (rad), of either sign, that makes the loop unstable; pi if there is none.
+
+    >>> round(margins.phase, 4)
+    0.5871
+    """
     delay: float
     """Smallest delay (s) that makes the loop unstable; infinite if there is none, NaN for several samples of
-    the law in a period."""
+    the law in a period.
+
+    >>> round(margins.delay, 4)
+    0.817
+    """
     modulus: float
-    """Modulus margin: smallest distance of the loop transfer from -1."""
+    """Modulus margin: smallest distance of the loop transfer from -1.
+
+    >>> round(margins.modulus, 4)
+    0.5764
+    """
     modulus_frequency: float
-    """Frequency (rad/s) at which the modulus margin is attained."""
+    """Frequency (rad/s) at which the modulus margin is attained.
+
+    >>> round(margins.modulus_frequency, 5)
+    0.06357
+    """
     disk: float
     """Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2),
-    at once."""
+    at once.
+
+    >>> round(margins.disk, 4)
+    0.5888
+    """
     disk_frequency: float
-    """Frequency (rad/s) at which the disk margin is attained."""
+    """Frequency (rad/s) at which the disk margin is attained.
+
+    >>> round(margins.disk_frequency, 5)
+    0.05805
+    """
 
 
 @dataclass(frozen=True)
@@ -62,23 +102,59 @@ class StabilityMargins:
     """
 
     loop: Break
-    """The point at which the loop is opened."""
+    """The point at which the loop is opened.
+
+    >>> margins.loop
+    'torque'
+    """
     period: float
-    """Period (s) after which the loop repeats."""
+    """Period (s) after which the loop repeats.
+
+    >>> round(margins.period, 4)
+    0.2
+    """
     samples: int
-    """Samples of the law in a period."""
+    """Samples of the law in a period.
+
+    >>> margins.samples
+    1
+    """
     spectral_radius: float
-    """Largest magnitude of a pole of the closed loop."""
+    """Largest magnitude of a pole of the closed loop.
+
+    >>> round(margins.spectral_radius, 4)
+    0.9986
+    """
     loops: dict[str, LoopMargins]
-    """Margins of each signal at the break, with the loops of the others closed."""
+    """Margins of each signal at the break, with the loops of the others closed.
+
+    >>> list(margins.loops)
+    ['torque_roll', 'torque_pitch', 'torque_yaw']
+    """
     modulus: float
-    """Modulus margin of all signals together: the inverse of the largest gain of the sensitivity."""
+    """Modulus margin of all signals together: the inverse of the largest gain of the sensitivity.
+
+    >>> round(margins.modulus, 4)
+    0.9596
+    """
     modulus_frequency: float
-    """Frequency (rad/s) at which the modulus margin is attained."""
+    """Frequency (rad/s) at which the modulus margin is attained.
+
+    >>> round(margins.modulus_frequency, 3)
+    2.841
+    """
     disk: float
-    """Disk margin alpha of all signals together, for errors of the loops that are coupled in any way."""
+    """Disk margin alpha of all signals together, for errors of the loops that are coupled in any way.
+
+    >>> round(margins.disk, 3)
+    1.114
+    """
     disk_frequency: float
-    """Frequency (rad/s) at which the disk margin is attained."""
+    """Frequency (rad/s) at which the disk margin is attained.
+
+    >>> round(margins.disk_frequency, 4)
+    0.2117
+    """
 
 
 StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"

@@ -29,24 +29,56 @@ class OutputNoise:
     """
 
     unit: str
-    """Unit of the output."""
+    """Unit of the output.
+
+    >>> noise.unit
+    'rad'
+    """
     rms: float
-    """Rms over time."""
+    """Rms over time.
+
+    >>> round(noise.rms, 8)
+    2.525e-05
+    """
     sample_rms: float
-    """Rms at the samples of the law."""
+    """Rms at the samples of the law.
+
+    >>> round(noise.sample_rms, 8)
+    2.525e-05
+    """
     rms_by_source: dict[str, float]
-    """Rms over time from each source: a key of the scenario."""
+    """Rms over time from each source: a key of the scenario.
+
+    >>> list(noise.rms_by_source)
+    ['sensor.sampled.noise', 'sensor.sampled.rate_noise']
+    """
     density: Values
-    """One-sided power spectral density at the samples (unit² per Hz), of shape (frequencies,)."""
+    """One-sided power spectral density at the samples (unit² per Hz), of shape (frequencies,).
+
+    >>> noise.density.shape
+    (2044,)
+    """
     density_by_source: dict[str, Values]
-    """Density from each source (unit² per Hz), each of shape (frequencies,)."""
+    """Density from each source (unit² per Hz), each of shape (frequencies,).
+
+    >>> list(noise.density_by_source)
+    ['sensor.sampled.noise', 'sensor.sampled.rate_noise']
+    """
     cumulative_rms: Values
-    """Rms up to each frequency, of shape (frequencies,)."""
+    """Rms up to each frequency, of shape (frequencies,).
+
+    >>> noise.cumulative_rms.shape
+    (2044,)
+    """
     window: dict[str, float] | None
     """Rms over windows that begin at a sample of the law, if a window is given: `mpe`, of the mean over the
     window, the displacement of an exposure; `rpe_uniform`, `rpe_end` and `rpe_middle`, of the output less
     the mean at any time, at the end and in the middle; `smear`, of the straight line about its mean;
-    `beyond_smear`, of the rest; `pde`, of the difference of the means of two windows."""
+    `beyond_smear`, of the rest; `pde`, of the difference of the means of two windows.
+
+    >>> noise.window is None
+    True
+    """
 
 
 @dataclass(frozen=True)
@@ -59,17 +91,41 @@ class WheelLines:
     """
 
     wheel: int
-    """Number of the wheel, from 1."""
+    """Number of the wheel, from 1.
+
+    >>> found.wheel
+    1
+    """
     order: float
-    """Order of the harmonic: periods per turn."""
+    """Order of the harmonic: periods per turn.
+
+    >>> round(found.order, 3)
+    1.0
+    """
     frequency: Values
-    """Frequency of the harmonic (rad/s), of shape (speeds,)."""
+    """Frequency of the harmonic (rad/s), of shape (speeds,).
+
+    >>> found.frequency.shape
+    (2,)
+    """
     amplitude: dict[str, Values]
-    """Amplitude of each output at that frequency, in its unit, of shape (speeds,)."""
+    """Amplitude of each output at that frequency, in its unit, of shape (speeds,).
+
+    >>> list(found.amplitude)
+    ['roll', 'pitch', 'yaw', 'line_of_sight0_y', 'line_of_sight0_z']
+    """
     alias_frequency: dict[str, Values]
-    """Frequency (rad/s) of the largest line that sampling makes of it, of each output, of shape (speeds,)."""
+    """Frequency (rad/s) of the largest line that sampling makes of it, of each output, of shape (speeds,).
+
+    >>> list(found.alias_frequency)
+    ['roll', 'pitch', 'yaw', 'line_of_sight0_y', 'line_of_sight0_z']
+    """
     alias_amplitude: dict[str, Values]
-    """Amplitude of that line, in the unit of the output, of shape (speeds,)."""
+    """Amplitude of that line, in the unit of the output, of shape (speeds,).
+
+    >>> list(found.alias_amplitude)
+    ['roll', 'pitch', 'yaw', 'line_of_sight0_y', 'line_of_sight0_z']
+    """
 
 
 @dataclass(frozen=True)
@@ -82,11 +138,23 @@ class WheelSpectrum:
     """
 
     speed: Values
-    """Speeds (rad/s), of shape (speeds,)."""
+    """Speeds (rad/s), of shape (speeds,).
+
+    >>> wheels.speed.shape
+    (2,)
+    """
     rms: dict[str, Values]
-    """Rms of each output, of all lines of all wheels, in its unit, of shape (speeds,)."""
+    """Rms of each output, of all lines of all wheels, in its unit, of shape (speeds,).
+
+    >>> list(wheels.rms)
+    ['roll', 'pitch', 'yaw', 'line_of_sight0_y', 'line_of_sight0_z']
+    """
     harmonics: tuple[WheelLines, ...]
-    """Lines under each harmonic of each wheel."""
+    """Lines under each harmonic of each wheel.
+
+    >>> len(wheels.harmonics)
+    8
+    """
 
 
 @dataclass(frozen=True)
@@ -100,19 +168,47 @@ class NoiseSpectrum:
     """
 
     frequency: Values
-    """Frequencies of the densities (Hz), up to the Nyquist frequency, of shape (frequencies,)."""
+    """Frequencies of the densities (Hz), up to the Nyquist frequency, of shape (frequencies,).
+
+    >>> spectrum.frequency.shape
+    (2044,)
+    """
     sources: tuple[str, ...]
-    """Sources of noise: keys of the scenario."""
+    """Sources of noise: keys of the scenario.
+
+    >>> spectrum.sources
+    ('sensor.sampled.noise', 'sensor.sampled.rate_noise')
+    """
     outputs: dict[str, OutputNoise]
-    """Noise of each output."""
+    """Noise of each output.
+
+    >>> list(spectrum.outputs)
+    ['pitch']
+    """
     wheels: WheelSpectrum | None
-    """Lines of the imbalance of the wheels; None without imbalance."""
+    """Lines of the imbalance of the wheels; None without imbalance.
+
+    >>> spectrum.wheels is None
+    True
+    """
     period: float
-    """Period (s) after which the loop repeats."""
+    """Period (s) after which the loop repeats.
+
+    >>> round(spectrum.period, 4)
+    0.2
+    """
     samples: int
-    """Samples of the law in a period."""
+    """Samples of the law in a period.
+
+    >>> spectrum.samples
+    1
+    """
     spectral_radius: float
-    """Largest magnitude of a pole of the closed loop over a period."""
+    """Largest magnitude of a pole of the closed loop over a period.
+
+    >>> round(spectrum.spectral_radius, 4)
+    0.9986
+    """
 
     def plot(self, output: str | None = None, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
         """Draw the density of an output by source, and its cumulative rms.

@@ -26,21 +26,53 @@ class Witness:
     """
 
     time: float
-    """Time (s) at which the output has this value."""
+    """Time (s) at which the output has this value.
+
+    >>> round(witness.time, 2)
+    59.98
+    """
     value: float
-    """Value of the output, in its unit."""
+    """Value of the output, in its unit.
+
+    >>> round(witness.value, 9)
+    -7.103e-06
+    """
     simulated: float
-    """Value in a run of the engine from this state under these inputs; NaN if there is no such run."""
+    """Value in a run of the engine from this state under these inputs; NaN if there is no such run.
+
+    >>> round(witness.simulated, 9)
+    -7.103e-06
+    """
     frequency_factor: float
-    """Factor on every natural frequency of the scenario."""
+    """Factor on every natural frequency of the scenario.
+
+    >>> round(witness.frequency_factor, 3)
+    1.0
+    """
     damping_factor: float
-    """Factor on every damping ratio."""
+    """Factor on every damping ratio.
+
+    >>> round(witness.damping_factor, 3)
+    1.0
+    """
     start: npt.NDArray[np.float64]
-    """State at the start, of shape (states,), in the order of `linearise().states`."""
+    """State at the start, of shape (states,), in the order of `linearise().states`.
+
+    >>> witness.start.shape
+    (12,)
+    """
     inputs: dict[str, tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]]
-    """Times (s) from which each value of an input acts, and the values, by the name of the input."""
+    """Times (s) from which each value of an input acts, and the values, by the name of the input.
+
+    >>> list(witness.inputs)
+    ['torque_roll', 'torque_pitch', 'torque_yaw']
+    """
     scenario: Scenario | None
-    """The body from this state, under these inputs as disturbances; None if no file can have them."""
+    """The body from this state, under these inputs as disturbances; None if no file can have them.
+
+    >>> witness.scenario.name
+    'bounded-jitter-witness'
+    """
 
 
 @dataclass(frozen=True)
@@ -55,34 +87,90 @@ class OutputBound:
     """
 
     output: str
-    """Name of the output."""
+    """Name of the output.
+
+    >>> bound.output
+    'roll'
+    """
     unit: str
-    """Unit of the output."""
+    """Unit of the output.
+
+    >>> bound.unit
+    'rad'
+    """
     elastic: bool
-    """True if the output is without the rigid motion."""
+    """True if the output is without the rigid motion.
+
+    >>> bound.elastic
+    True
+    """
     limits: tuple[float, float] | None
-    """Limits of the claim; None if there are none."""
+    """Limits of the claim; None if there are none.
+
+    >>> [round(value, 9) for value in bound.limits]
+    [-8e-06, 8e-06]
+    """
     until: float
-    """End of the interval of time (s)."""
+    """End of the interval of time (s).
+
+    >>> round(bound.until, 2)
+    60.0
+    """
     verdict: Literal["proved", "violated", "undecided", "unlimited"]
-    """Outcome; `unlimited` without limits."""
+    """Outcome; `unlimited` without limits.
+
+    >>> bound.verdict
+    'proved'
+    """
     range: tuple[float, float]
-    """Guaranteed range over the whole interval, rounded outwards."""
+    """Guaranteed range over the whole interval, rounded outwards.
+
+    >>> [round(value, 9) for value in bound.range]
+    [-7.103e-06, 7.064e-06]
+    """
     attained: tuple[float, float]
-    """Range that is attained by states and inputs that are known."""
+    """Range that is attained by states and inputs that are known.
+
+    >>> [round(value, 9) for value in bound.attained]
+    [-7.103e-06, 7.064e-06]
+    """
     attained_at: tuple[float, float]
-    """Times (s) at which the range is attained."""
+    """Times (s) at which the range is attained.
+
+    >>> [round(value, 2) for value in bound.attained_at]
+    [59.98, 59.99]
+    """
     safe_until: float
-    """Time (s) before which no limit is passed; NaN without limits."""
+    """Time (s) before which no limit is passed; NaN without limits.
+
+    >>> round(bound.safe_until, 2)
+    60.0
+    """
     violated_at: float
-    """First time (s) at which a limit is passed for a state and inputs of the sets; NaN if none is known."""
+    """First time (s) at which a limit is passed for a state and inputs of the sets; NaN if none is known.
+
+    >>> bound.violated_at
+    nan
+    """
     gap: float
-    """Largest excess of the guaranteed range over the limits, if the claim is undecided; otherwise NaN."""
+    """Largest excess of the guaranteed range over the limits, if the claim is undecided; otherwise NaN.
+
+    >>> bound.gap
+    nan
+    """
     witness: Witness | None
-    """State and inputs that violate the claim the most; None if it is not violated."""
+    """State and inputs that violate the claim the most; None if it is not violated.
+
+    >>> bound.witness is None
+    True
+    """
     rows: dict[str, npt.NDArray[np.float64]]
     """Range at instants, columns of shape (instants,): `time` (s), `low` and `high`. The output may leave it
-    between two instants, but not `range`."""
+    between two instants, but not `range`.
+
+    >>> list(bound.rows)
+    ['time', 'low', 'high']
+    """
 
 
 OutputBound.__module__ = Witness.__module__ = "flexsc"
