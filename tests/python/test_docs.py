@@ -74,7 +74,9 @@ def test_what_a_page_says_runs(page: Path, tmp_path: Path) -> None:
     for line in commands(page):
         short = re.sub(r"--row \d{2,}", "--row 7", re.sub(r"--runs \d{3,}", "--runs 8", line))
         done = run(command_path(), *shlex.split(short)[1:])
-        assert done.returncode == 0, f"{line}\n{done.stderr}"
+        # With fewer runs or as the page says, a requirement may be missed.
+        expected = (0, 3) if "requirement" in done.stderr else (0,)
+        assert done.returncode in expected, f"{line}\n{done.stderr}"
     script = f"BLOCKS = {code(page)!r}\nOPTIONAL = {OPTIONAL!r}\n{RUN}"
     done = run(sys.executable, "-W", "error", "-c", script)
     assert done.returncode == 0, done.stderr

@@ -99,7 +99,7 @@ class Sliding(flexsc.Law):
 
     def decide(self, event: Event) -> flexsc.Hold:
         self.s = event.rate + 0.2 * event.angle
-        self.mode = "SLIDE" if abs(self.s) < 1e-4 else "REACH"
+        self.mode = "SLIDE" if abs(self.s) < 3e-4 else "REACH"
         return flexsc.Hold(-30.0 * self.s)
 
 
@@ -107,7 +107,7 @@ class Sliding(flexsc.Law):
 def test_words_are_columns_of_a_log(tmp_path: Path, text: str) -> None:
     run = own(text, law=Sliding()).simulate(log="full")
     rows = run["own_law"]
-    expected = np.where(np.abs(rows["s"]) < 1e-4, "SLIDE", "REACH")
+    expected = np.where(np.abs(rows["s"]) < 3e-4, "SLIDE", "REACH")
     assert set(expected) == {"REACH", "SLIDE"}
     assert rows["mode"].tolist() == expected.tolist()
     path = tmp_path / "run.mcap"
