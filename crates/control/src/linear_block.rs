@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Linear system x[k+1] = a x + b u, y = c x + d u.
+/// Linear system `x[k+1] = a x + b u`, `y = c x + d u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearBlock {
     /// State matrix, of shape (states, states).

@@ -1,8 +1,8 @@
 //! Guaranteed ranges of outputs of the linear body, over sets of initial states, of inputs and of parameters.
 //!
-//! The range at each instant is a support function in closed form ([`exact_tube`], [`box_tube`]); second derivatives
-//! bound it between instants ([`reach`]); every sum is rounded outwards. A claim that fails has a witness, which a run of
-//! the engine repeats ([`witness`]).
+//! The range at each instant is a support function in closed form (`exact_tube`, `box_tube`); second derivatives
+//! bound it between instants (`reach`); every sum is rounded outwards. A claim that fails has a witness, which a run of
+//! the engine repeats (`witness`).
 
 mod box_tube;
 mod exact_tube;

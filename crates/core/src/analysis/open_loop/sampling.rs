@@ -30,7 +30,7 @@ impl Lateness {
     }
 }
 
-/// System x[k+1] = a x[k] + b u[k], whose last states are the inputs of earlier samples, the latest first.
+/// System `x[k+1] = a x[k] + b u[k]`, whose last states are the inputs of earlier samples, the latest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledSystem {
     /// State matrix.

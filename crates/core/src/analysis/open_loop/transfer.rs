@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-/// Transfer x[k+1] = a x[k] + b u[k], y[k] = c x[k] + d u[k].
+/// Transfer `x[k+1] = a x[k] + b u[k]`, `y[k] = c x[k] + d u[k]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransferMatrices {
     /// State matrix, of shape (states, states).
