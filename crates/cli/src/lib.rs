@@ -108,7 +108,7 @@ enum Verb {
     ///
     /// Spacecraft, margins, a run and a campaign with their figures on one HTML page, with the command that repeats each.
     Report(report::ReportArgs),
-    /// Print the noise of a loop: rms, spectral density, pointing indices
+    /// Print the noise of a loop: rms, density, pointing indices
     ///
     /// Exact from the closed loop, without a simulation: by source, over frequency, over windows, and the lines of unbalanced wheels over their speed.
     Spectrum(spectrum::SpectrumArgs),
