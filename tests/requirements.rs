@@ -290,3 +290,41 @@ fn a_budget_has_levels_of_all_runs_by_campaign_convolution_and_rule() {
     dir.write("none.toml", HOLD);
     dir.run("budget none.toml").exits(2).says(&["has no [[requirement]] on a pointing index"]);
 }
+
+/// The loop of `HOLD` settles within 30 s: the runs from then on have its stationary noise, whose rms is that of
+/// `flexsc spectrum`, and which SciPy has for other loops (`tests/spectra.rs`).
+#[test]
+fn the_linear_noise_of_a_budget_is_that_of_its_runs() {
+    let requirement = |name: &str, rest: &str| {
+        format!(
+            "\n[[requirement]]\nname = \"{name}\"\nquantity = \"pointing_error\"\naxis = \"x\"\nfrom = 30.0\nlimit = 1.0\n\
+             period = 0.1\n{rest}\n"
+        )
+    };
+    let windows = [
+        ("absolute", "", "rms"),
+        ("mean", "index = \"MPE\"\nwindow = 2.0", "mpe"),
+        ("relative", "index = \"RPE\"\nwindow = 2.0\nconvention = \"uniform\"", "rpe_uniform"),
+        ("end", "index = \"RPE\"\nwindow = 2.0\nconvention = \"end\"", "rpe_end"),
+        ("drift", "index = \"PDE\"\nwindow = 2.0\nshift = 5.0", "pde"),
+    ];
+    let tables: String = windows.iter().map(|(name, rest, _)| requirement(name, rest)).collect();
+    let dir = Dir::holding("hold.toml", format!("{HOLD}{tables}"));
+    let budget = dir.run("budget hold.toml --runs 40 --json").exits(0).json();
+    let spectrum = dir.run("spectrum hold.toml --window 2 --separation 5 --json").exits(0).json();
+    let output = &spectrum["outputs"][0];
+    for (index, (name, _, field)) in windows.into_iter().enumerate() {
+        let found = &budget["budgets"][index];
+        assert_eq!(found["name"], name);
+        let exact = if field == "rms" { &output["rms"] } else { &output["window"][field] };
+        let (noise, exact) =
+            (found["linear_noise"].as_f64().expect("linear"), exact.as_f64().expect("a number"));
+        assert!((noise / exact - 1.0).abs() < 1e-12, "{name}: {noise} {exact}");
+        // The bias of 40 runs of 30 s is what their noise leaves.
+        let (bias, within) = (&found["sources"]["biases"][0], &found["sources"]["noise"]);
+        let (bias, within) = (bias.as_f64().expect("a number"), within.as_f64().expect("a number"));
+        let runs = f64::sqrt(bias * bias / 3.0 + within * within);
+        assert!((runs / noise - 1.0).abs() < 0.1, "{name}: {runs} in the runs, {noise} by the loop");
+    }
+    dir.run("budget hold.toml --runs 2").exits(0).says(&["noise of the linear loop at rest"]);
+}

@@ -344,7 +344,7 @@ pub fn object(
     match metrics {
         Ok(metrics) => {
             object["metrics"] = metrics.to_json();
-            let verdicts = requirement_verdict::of_run(campaign.scenario(), metrics);
+            let verdicts = requirement_verdict::run_verdicts(campaign.scenario(), metrics);
             if !verdicts.is_empty() {
                 object["requirements"] = requirements::json(&verdicts);
             }

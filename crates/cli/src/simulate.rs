@@ -336,7 +336,7 @@ fn single(
     if let Some(live) = live {
         live.finish(&metrics);
     }
-    Ok(requirement_verdict::of_run(&run.scenario, &metrics))
+    Ok(requirement_verdict::run_verdicts(&run.scenario, &metrics))
 }
 
 fn interrupted(log: Option<Detail>, path: &Path) -> String {

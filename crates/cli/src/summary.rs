@@ -32,7 +32,7 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {}", scenario.name, counted(modes, "mode"));
     let took = format!("{:.1} ms", took * 1e3);
-    let requirements = requirement_verdict::of_run(scenario, metrics);
+    let requirements = requirement_verdict::run_verdicts(scenario, metrics);
     let summary = Summary { scenario, metrics, requirements, units };
     if scenario.axis_count() == 3 {
         say!("{head}, {took}");

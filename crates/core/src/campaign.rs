@@ -43,7 +43,7 @@ pub use merge::Merge;
 pub use motion_sampler::MotionSampler;
 pub use parquet::parquet_is_built_in;
 pub use row_maker::RowMaker;
-pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED, list_element};
+pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED};
 pub use sampling::Sampling;
 pub use summary::CampaignSummary;
 

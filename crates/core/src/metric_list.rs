@@ -201,6 +201,12 @@ pub(crate) const CYCLE_REDUCED_IMPULSE: MetricDescription = reduced(CYCLE_IMPULS
 /// Metrics that are words, and no numbers.
 const WORDS: [&str; 4] = [GOAL.name, REQUIREMENT.name, CYCLE_KIND.name, ACTUATOR_END.name];
 
+/// Returns the name of a list and the index in it of a name `NAME[i]`.
+pub fn list_element(name: &str) -> Option<(&str, usize)> {
+    let (list, index) = name.strip_suffix(']')?.rsplit_once('[')?;
+    Some((list, index.parse().ok()?))
+}
+
 /// Returns true if the value of a metric is a word.
 pub fn is_word(name: &str) -> bool {
     WORDS.contains(&name)

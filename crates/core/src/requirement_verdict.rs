@@ -115,7 +115,7 @@ impl RequirementRuns {
 }
 
 /// Returns the verdicts on one run, of which no confidence is asked for.
-pub fn of_run(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVerdict> {
+pub fn run_verdicts(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVerdict> {
     let mut runs = RequirementRuns::new(scenario);
     runs.requirements.iter_mut().for_each(|requirement| requirement.confidence = None);
     runs.add(Some(metrics));

@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use flexsc_core::analysis::budget::{CampaignBudget, INTERPRETATIONS, LEVELS};
+use flexsc_core::analysis::budget::{CampaignBudget, INTERPRETATIONS, LEVELS, linear_noise};
+use flexsc_core::analysis::noise::NoisyLoop;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::IndexRecord;
@@ -166,12 +167,17 @@ impl CampaignSetup {
         })?;
         let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
         let scenario = campaign.scenario();
+        // A loop that is not linear has the runs alone.
+        let noisy = NoisyLoop::from_scenario(scenario).ok();
         let mut budgets = Vec::new();
         for (index, requirement) in scenario.study.requirements.iter().enumerate() {
             let RequirementSource::Error(error) = &requirement.source else { continue };
             let values: Vec<Vec<f64>> = all.values().map(|run| run[index].clone()).collect();
             let is_signed = error.is_component(scenario.axis_count());
-            budgets.push(CampaignBudget::new(requirement.clone(), &values, is_signed));
+            budgets.push(CampaignBudget {
+                linear_noise: noisy.as_ref().and_then(|noisy| linear_noise(noisy, error)),
+                ..CampaignBudget::new(requirement.clone(), &values, is_signed)
+            });
         }
         Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts: runs.finish(), units: self.units })
     }
@@ -202,6 +208,7 @@ impl Results for Budgets {
                 "unit": budget.requirement.unit,
                 "limit": budget.requirement.limit,
                 "sources": sources,
+                "linear_noise": budget.linear_noise,
                 "levels": LEVELS.iter().zip(&budget.levels).map(level).collect::<Vec<_>>(),
             })
         };
@@ -259,6 +266,9 @@ impl Budgets {
             let bias = sources.biases.iter().sum::<f64>();
             let [bias, noise] = [bias, sources.noise].map(|value| digits(value * factor));
             say!("  sources by the runs: bias within ±{bias}, random part of {noise} rms");
+        }
+        if let Some(noise) = budget.linear_noise {
+            say!("  noise of the linear loop at rest: {} rms", digits(noise * factor));
         }
         let mut rows = vec![
             ["level", "temporal", "", "", "ensemble", "", "", "mixed", "", ""].map(str::to_owned).to_vec(),

@@ -14,7 +14,7 @@ use flexsc_core::Scenario;
 use crate::error::CliError;
 use crate::{files, out, say, scenario, stop};
 use scratch::ScratchDirectory;
-use section::{Section, SectionRunner};
+use section::{ReportRunner, ReportSection};
 
 /// Largest number of runs of the report's campaign.
 const MOST_RUNS: u64 = 100_000;
@@ -48,7 +48,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     }
     let scenario = scenario::load(&args.scenario, &args.set, None)?;
     let scratch = ScratchDirectory::new()?;
-    let runner = SectionRunner::new(&args.scenario, &args.set, scratch.path());
+    let runner = ReportRunner::new(&args.scenario, &args.set, scratch.path());
     let mut sections = Vec::new();
     for make in makers(&scenario, args.runs) {
         if stop::stop_requested() {
@@ -59,10 +59,10 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     let text = fs::read_to_string(&args.scenario).unwrap_or_default();
     let page = page::html(&scenario, &args.set, &text, &sections);
     files::write(&args.out, page.as_bytes(), true)?;
-    let titles = |selected: fn(&Section) -> bool| -> Vec<&str> {
+    let titles = |selected: fn(&ReportSection) -> bool| -> Vec<&str> {
         sections.iter().filter(|section| selected(section)).map(|section| section.title).collect()
     };
-    let (failed, unmet) = (titles(Section::is_refused), titles(Section::is_unmet));
+    let (failed, unmet) = (titles(ReportSection::is_refused), titles(ReportSection::is_unmet));
     say!("{} ({:.0} kB)", args.out.display(), page.len() as f64 / 1e3);
     if !failed.is_empty() {
         say!("  without numbers, with the reason on the page: {}", failed.join(", "));
@@ -74,7 +74,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
 }
 
 /// Function that makes a section.
-type Maker = Box<dyn Fn(&SectionRunner<'_>) -> Result<Section, CliError>>;
+type Maker = Box<dyn Fn(&ReportRunner<'_>) -> Result<ReportSection, CliError>>;
 
 /// Returns the makers of the sections of a scenario.
 fn makers(scenario: &Scenario, runs: u64) -> Vec<Maker> {

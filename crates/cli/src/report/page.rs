@@ -4,13 +4,13 @@ use std::fmt::Write;
 
 use flexsc_core::Scenario;
 
-use super::section::{Section, SectionPart};
+use super::section::{ReportBlock, ReportSection};
 
 /// Style of the page, on screens and on paper.
 const STYLE: &str = include_str!("page.css");
 
 /// Returns the page of a scenario with these sections; `text` is that of the scenario's file.
-pub fn html(scenario: &Scenario, set: &[String], text: &str, sections: &[Section]) -> String {
+pub fn html(scenario: &Scenario, set: &[String], text: &str, sections: &[ReportSection]) -> String {
     let name = escaped(&scenario.name);
     let mut page = String::new();
     // Writing to a string cannot fail.
@@ -35,7 +35,7 @@ pub fn html(scenario: &Scenario, set: &[String], text: &str, sections: &[Section
     for (index, section) in sections.iter().enumerate() {
         let _ = writeln!(page, "<section id=\"part-{}\">\n<h2>{}</h2>", index + 1, escaped(section.title));
         let _ = writeln!(page, "<p>{}</p>", escaped(&section.intro));
-        section.parts.iter().for_each(|part| add_part(&mut page, part));
+        section.blocks.iter().for_each(|block| add_block(&mut page, block));
         page.push_str("</section>\n");
     }
     page.push_str("<section id=\"scenario\">\n<h2>Scenario</h2>\n");
@@ -47,21 +47,21 @@ pub fn html(scenario: &Scenario, set: &[String], text: &str, sections: &[Section
     page
 }
 
-fn add_part(page: &mut String, part: &SectionPart) {
-    if !part.text.is_empty() {
-        let class = if part.is_refused { " class=\"refused\"" } else { "" };
-        let _ = writeln!(page, "<pre{class}>{}</pre>", escaped(&part.text));
+fn add_block(page: &mut String, block: &ReportBlock) {
+    if !block.text.is_empty() {
+        let class = if block.is_refused { " class=\"refused\"" } else { "" };
+        let _ = writeln!(page, "<pre{class}>{}</pre>", escaped(&block.text));
     }
-    if !part.figures.is_empty() {
+    if !block.figures.is_empty() {
         page.push_str("<div class=\"figures\">\n");
-        for figure in &part.figures {
+        for figure in &block.figures {
             // The figure begins with its element.
             let from = figure.find("<svg").unwrap_or(0);
             let _ = writeln!(page, "<figure>{}</figure>", figure[from..].trim_end());
         }
         page.push_str("</div>\n");
     }
-    let _ = writeln!(page, "<p class=\"command\"><code>{}</code></p>", escaped(&part.command));
+    let _ = writeln!(page, "<p class=\"command\"><code>{}</code></p>", escaped(&block.command));
 }
 
 /// Returns a text for HTML.

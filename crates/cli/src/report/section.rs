@@ -9,18 +9,18 @@ use std::{env, fs};
 use crate::error::CliError;
 use crate::say;
 
-/// Section of a report.
-pub struct Section {
+/// ReportSection of a report.
+pub struct ReportSection {
     /// Title of the section.
     pub title: &'static str,
     /// Paragraph under the title.
     pub intro: String,
     /// Output of a command and the figures that it drew.
-    pub parts: Vec<SectionPart>,
+    pub blocks: Vec<ReportBlock>,
 }
 
 /// Output of a command.
-pub struct SectionPart {
+pub struct ReportBlock {
     /// The command as a user types it.
     pub command: String,
     /// The text that it printed.
@@ -34,26 +34,26 @@ pub struct SectionPart {
 }
 
 /// Runner of the commands of a report.
-pub struct SectionRunner<'a> {
+pub struct ReportRunner<'a> {
     program: Vec<OsString>,
     scenario: &'a Path,
     set: &'a [String],
     scratch: &'a Path,
 }
 
-impl Section {
+impl ReportSection {
     /// Returns true if a command of the section found a requirement that is not met, or a claim that is not proved.
     pub fn is_unmet(&self) -> bool {
-        self.parts.iter().any(|part| part.is_unmet)
+        self.blocks.iter().any(|block| block.is_unmet)
     }
 
     /// Returns true if a command of the section ended with an error.
     pub fn is_refused(&self) -> bool {
-        self.parts.iter().any(|part| part.is_refused)
+        self.blocks.iter().any(|block| block.is_refused)
     }
 }
 
-impl<'a> SectionRunner<'a> {
+impl<'a> ReportRunner<'a> {
     /// Creates the runner for a scenario with keys set; commands write into a scratch directory.
     pub fn new(scenario: &'a Path, set: &'a [String], scratch: &'a Path) -> Self {
         // In a wheel, the program is a module of Python.
@@ -71,61 +71,61 @@ impl<'a> SectionRunner<'a> {
         intro: &str,
         verb: &[&str],
         figures: Option<&str>,
-    ) -> Result<Section, CliError> {
-        let part = self.analysis(verb, figures)?;
-        Ok(Section { title, intro: intro.to_owned(), parts: vec![part] })
+    ) -> Result<ReportSection, CliError> {
+        let block = self.analysis(verb, figures)?;
+        Ok(ReportSection { title, intro: intro.to_owned(), blocks: vec![block] })
     }
 
     /// Returns the section of one run, with its figures.
-    pub fn simulated(&self, title: &'static str, intro: &str) -> Result<Section, CliError> {
+    pub fn simulated(&self, title: &'static str, intro: &str) -> Result<ReportSection, CliError> {
         let log = self.scratch.join("run.mcap");
-        let mut part = self.part(&["simulate"], &[], &[("-o", &log)], "-o run.mcap")?;
-        part.text = without_times(&part.text, "run.mcap");
-        let mut parts = vec![part];
+        let mut block = self.block(&["simulate"], &[], &[("-o", &log)], "-o run.mcap")?;
+        block.text = without_times(&block.text, "run.mcap");
+        let mut blocks = vec![block];
         if log.exists() {
-            parts.push(self.figures_of(&log, "run.mcap", "run")?);
+            blocks.push(self.figures_of(&log, "run.mcap", "run")?);
         }
-        Ok(Section { title, intro: intro.to_owned(), parts })
+        Ok(ReportSection { title, intro: intro.to_owned(), blocks })
     }
 
     /// Returns the section of a campaign, with its figures.
-    pub fn campaign(&self, title: &'static str, intro: &str, runs: u64) -> Result<Section, CliError> {
+    pub fn campaign(&self, title: &'static str, intro: &str, runs: u64) -> Result<ReportSection, CliError> {
         let directory = self.scratch.join("campaign");
         let count = runs.to_string();
         let shown = format!("--runs {runs} -o campaign");
         let hidden = ["--runs", &count];
-        let mut part = self.part(&["simulate"], &hidden, &[("-o", &directory)], &shown)?;
-        part.text = without_times(&part.text, "campaign");
-        let mut parts = vec![part];
+        let mut block = self.block(&["simulate"], &hidden, &[("-o", &directory)], &shown)?;
+        block.text = without_times(&block.text, "campaign");
+        let mut blocks = vec![block];
         if directory.exists() {
             let mut figures = self.figures_of(&directory, "campaign", "spread")?;
             // The worst runs are listed with commands on files that the page does not have.
             figures.text = String::new();
-            parts.push(figures);
+            blocks.push(figures);
         }
-        Ok(Section { title, intro: intro.to_owned(), parts })
+        Ok(ReportSection { title, intro: intro.to_owned(), blocks })
     }
 
-    fn analysis(&self, verb: &[&str], figures: Option<&str>) -> Result<SectionPart, CliError> {
-        let Some(name) = figures else { return self.part(verb, &[], &[], "") };
+    fn analysis(&self, verb: &[&str], figures: Option<&str>) -> Result<ReportBlock, CliError> {
+        let Some(name) = figures else { return self.block(verb, &[], &[], "") };
         let directory = self.scratch.join(name);
         let shown = format!("-o {name}");
-        let mut part = self.part(verb, &["--format", "svg"], &[("-o", &directory)], &shown)?;
-        part.figures = drawn(&directory);
+        let mut block = self.block(verb, &["--format", "svg"], &[("-o", &directory)], &shown)?;
+        block.figures = drawn(&directory);
         let is_file_line = |line: &&str| !line.contains(&directory.display().to_string());
-        part.text = part.text.lines().filter(is_file_line).collect::<Vec<_>>().join("\n");
-        Ok(part)
+        block.text = block.text.lines().filter(is_file_line).collect::<Vec<_>>().join("\n");
+        Ok(block)
     }
 
     /// Returns the figures of a log or a campaign.
-    fn figures_of(&self, source: &Path, shown: &str, name: &str) -> Result<SectionPart, CliError> {
+    fn figures_of(&self, source: &Path, shown: &str, name: &str) -> Result<ReportBlock, CliError> {
         let directory = self.scratch.join(name);
         let mut command = self.command();
         command.arg("plot").arg(source).arg("-o").arg(&directory).args(["--format", "svg"]);
         let output = self.output(command)?;
         let is_refused = !output.status.success();
         let text = if is_refused { text_of(&output) } else { String::new() };
-        Ok(SectionPart {
+        Ok(ReportBlock {
             command: format!("flexsc plot {shown} -o {name}"),
             text: text.replace(&source.display().to_string(), shown),
             figures: drawn(&directory),
@@ -135,13 +135,13 @@ impl<'a> SectionRunner<'a> {
     }
 
     /// Runs a verb on the scenario with further arguments, of which the page shows `shown`.
-    fn part(
+    fn block(
         &self,
         verb: &[&str],
         hidden: &[&str],
         paths: &[(&str, &Path)],
         shown: &str,
-    ) -> Result<SectionPart, CliError> {
+    ) -> Result<ReportBlock, CliError> {
         let mut command = self.command();
         command.arg(verb[0]).arg(self.scenario).args(&verb[1..]).args(hidden);
         for (option, path) in paths {
@@ -160,7 +160,7 @@ impl<'a> SectionRunner<'a> {
         let output = self.output(command)?;
         // A requirement that is missed has an exit code of its own.
         let code = output.status.code();
-        Ok(SectionPart {
+        Ok(ReportBlock {
             command: words.join(" "),
             text: text_of(&output),
             figures: Vec::new(),

@@ -106,7 +106,7 @@ fn gyro_noise(gyro: &Gyro, axes: usize, period: f64) -> Vec<KeyNoise> {
     let rate = |deviation: &dyn Fn(usize) -> f64| diagonal(axes, deviation).map(SensorNoise::Rate);
     let walk = diagonal(axes, |axis| gyro.rate_random_walk.about(axis).get()).map(|walk| {
         let (change, white) = (&walk * f64::sqrt(period), walk * f64::sqrt(period / 12.0));
-        SensorNoise::Walk { change: beside(&change, false), white: beside(&white, true) }
+        SensorNoise::Walk { change: padded(&change, Side::Left), white: padded(&white, Side::Right) }
     });
     let quantum = diagonal(axes, |axis| rounding(gyro.quantum.about(axis).get()) / period);
     let wander = diagonal(axes, |axis| gyro.bias_instability(axis).map_or(0.0, |(deviation, _)| deviation));
@@ -123,11 +123,19 @@ fn gyro_noise(gyro: &Gyro, axes: usize, period: f64) -> Vec<KeyNoise> {
     ])
 }
 
-/// Returns a matrix beside zeros of its own shape, on the right or on the left.
-fn beside(matrix: &DMatrix<f64>, is_right: bool) -> DMatrix<f64> {
+/// Place of a matrix beside zeros.
+#[derive(Copy, Clone, PartialEq)]
+enum Side {
+    Left,
+    Right,
+}
+
+/// Returns a matrix with as many columns of zeros beside it.
+fn padded(matrix: &DMatrix<f64>, side: Side) -> DMatrix<f64> {
     let (rows, columns) = matrix.shape();
     let mut whole = DMatrix::zeros(rows, 2 * columns);
-    whole.view_mut((0, if is_right { columns } else { 0 }), (rows, columns)).copy_from(matrix);
+    let first = if side == Side::Right { columns } else { 0 };
+    whole.view_mut((0, first), (rows, columns)).copy_from(matrix);
     whole
 }
 
@@ -150,5 +158,10 @@ fn wander_noise(deviation: &DMatrix<f64>, ratio: f64, integrates: bool) -> Senso
         (1.0, 0.0)
     };
     let white = deviation * white;
-    SensorNoise::Wander { decay, change: beside(&change, false), own_share, white: beside(&white, true) }
+    SensorNoise::Wander {
+        decay,
+        change: padded(&change, Side::Left),
+        own_share,
+        white: padded(&white, Side::Right),
+    }
 }

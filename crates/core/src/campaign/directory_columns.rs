@@ -5,7 +5,8 @@ use std::ops::Range;
 use super::directory::{AGAIN, Directory, damaged};
 use super::error::{DirectoryError, invalid_file};
 use super::parquet::ParquetFile;
-use super::rows::{ColumnCells, ColumnKind, list_element};
+use super::rows::{ColumnCells, ColumnKind};
+use crate::metrics::list_element;
 
 impl Directory {
     /// Returns a column of all existing rows, in the order of their runs; `None` if the campaign has no such column.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use toml::Value as Drawn;
 
 use super::{Campaign, RunOutcome};
-use crate::metrics::{MetricValue, Metrics, MetricsCollector, Selection};
+use crate::metrics::{MetricValue, Metrics, MetricsCollector, Selection, list_element};
 
 /// Name of the column with the numbers of the runs, the first of every table.
 pub const RUN: &str = "run";
@@ -118,12 +118,6 @@ impl Campaign {
             () => ColumnKind::Words,
         }
     }
-}
-
-/// Returns the name of a list and the index in it of a name `NAME[i]`.
-pub fn list_element(name: &str) -> Option<(&str, usize)> {
-    let (list, index) = name.strip_suffix(']')?.rsplit_once('[')?;
-    Some((list, index.parse().ok()?))
 }
 
 /// Returns a number as a float; NaN for a value of another type.

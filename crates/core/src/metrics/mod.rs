@@ -23,7 +23,7 @@ use flexsc_spacecraft::body::BodyAxes;
 use crate::metric_list;
 use crate::scenario::Scenario;
 
-pub use crate::metric_list::ALL;
+pub use crate::metric_list::{ALL, list_element};
 
 use crate::metric_list::*;
 
@@ -85,7 +85,7 @@ impl MetricsCollector {
     /// Creates an empty collector of the selected metrics; values that no selected metric needs are not computed.
     pub fn for_selection(scenario: &Scenario, selection: &Selection) -> Self {
         let requirements = RequirementMetrics::new(scenario);
-        let selection = &selection.with(requirements.metrics());
+        let selection = &selection.with(requirements.required_metrics());
         let kind = match scenario.model.axes() {
             BodyAxes::Three(_) => RunKind::ThreeAxis(Box::new(ThreeAxisMetrics::new(scenario))),
             BodyAxes::One(body) if scenario.law.is_switching() => {

@@ -127,7 +127,7 @@ impl RequirementMetrics {
     }
 
     /// Returns the metrics that are required.
-    pub fn metrics(&self) -> impl Iterator<Item = &'static str> {
+    pub fn required_metrics(&self) -> impl Iterator<Item = &'static str> {
         let names = self.0.iter().filter_map(|values| match &values.source {
             ValueSource::Metric(name, _) => Some(name.as_str()),
             ValueSource::Index(_) => None,
@@ -166,7 +166,7 @@ impl RequirementMetrics {
         for RequirementValues { unit, limit, source } in self.0 {
             let (value, share) = match source {
                 ValueSource::Metric(name, element) => {
-                    let value = metric(metrics, &name, element);
+                    let value = metric_value(metrics, &name, element);
                     let share = if value.is_nan() { f64::NAN } else { f64::from(u8::from(value <= limit)) };
                     (value, share)
                 }
@@ -190,7 +190,7 @@ impl RequirementMetrics {
 }
 
 /// Returns a metric, an element of a list, or its largest element; NaN if there is none.
-fn metric(metrics: &Metrics, name: &str, element: Option<usize>) -> f64 {
+fn metric_value(metrics: &Metrics, name: &str, element: Option<usize>) -> f64 {
     match (metrics.get(name), element) {
         (Some(MetricValue::Count(count)), None) => *count as f64,
         (Some(MetricValue::Number(number)), None) => *number,

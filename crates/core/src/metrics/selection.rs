@@ -2,7 +2,9 @@
 
 use flexsc_formats::document::nearest;
 
-use super::{ALL, MetricDescription, Metrics, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES};
+use super::{
+    ALL, MetricDescription, Metrics, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES, list_element,
+};
 
 /// Metrics of requirements, which are never left out.
 const OF_REQUIREMENTS: [&str; 3] = [REQUIREMENT.name, REQUIREMENT_VALUES.name, REQUIREMENT_SHARES.name];
@@ -15,7 +17,7 @@ impl Selection {
     /// Selection of all metrics.
     pub const ALL: Self = Self(None);
 
-    /// Returns the selection of metrics by their names.
+    /// Returns the selection of metrics by their names; an element `NAME[i]` of a list selects the list.
     ///
     /// # Errors
     /// A name that is not a metric's.
@@ -23,7 +25,8 @@ impl Selection {
         let mut selected = Vec::new();
         for name in names {
             let name = name.as_ref().trim();
-            let Some(meaning) = ALL.iter().find(|meaning| meaning.name == name) else {
+            let whole = list_element(name).map_or(name, |(list, _)| list);
+            let Some(meaning) = ALL.iter().find(|meaning| meaning.name == whole) else {
                 let names: Vec<&str> = ALL.iter().map(|meaning| meaning.name).collect();
                 let close = nearest(name, &names);
                 let hint = close.map_or_else(

@@ -126,7 +126,7 @@ impl Context<'_> {
             "pointing_error" => SampledQuantity::PointingError,
             "rate_error" => SampledQuantity::RateError,
             "line_of_sight" => self.line_of_sight(requirement)?,
-            name => return metric(requirement, name, self.model),
+            name => return metric_source(requirement, name, self.model),
         };
         let unit = if quantity == SampledQuantity::RateError { "rad/s" } else { "rad" };
         if requirement.point.is_some() && !matches!(quantity, SampledQuantity::LineOfSight(..)) {
@@ -276,17 +276,15 @@ fn index_window(requirement: &Requirement, period: f64) -> Result<IndexWindow, C
 }
 
 /// Returns a metric as the origin of a requirement's values, and its unit.
-fn metric(
+fn metric_source(
     requirement: &Requirement,
     name: &str,
     model: &BodyModel,
 ) -> Result<(RequirementSource, &'static str), ConfigError> {
     let at = |key: &str, why: String| Err(ConfigError::new(key, why));
-    let (list, element) = match name.strip_suffix(']').and_then(|name| name.rsplit_once('[')) {
-        Some((list, index)) => (list, index.parse().ok()),
-        None => (name, None),
-    };
-    let known = metric_list::meaning(list, Some(model)).filter(|_| element.is_some() || list == name);
+    let (list, element) =
+        metric_list::list_element(name).map_or((name, None), |(list, index)| (list, Some(index)));
+    let known = metric_list::meaning(list, Some(model));
     let Some(meaning) = known else {
         let names: Vec<&str> =
             SAMPLED.into_iter().chain(metric_list::ALL.iter().map(|meaning| meaning.name)).collect();

@@ -82,6 +82,12 @@ class IndexBudget:
     >>> list(index.levels)
     [0.683, 0.955, 0.997]
     """
+    linear_noise: float | None
+    """Rms of the index under the noise of the linear loop about its target at rest; None without such a loop.
+
+    >>> index.linear_noise is None or index.linear_noise > 0.0
+    True
+    """
     sources: dict[str, Any] | None
     """Error sources: `biases`, half widths of uniform errors; `amplitudes` of harmonic ones; `noise`, the rms
     of the random part. None for an index without sources.
@@ -139,5 +145,5 @@ def pointing_budget(scenario: Scenario, runs: int, jobs: int) -> PointingBudget:
 def _index(found: dict[str, Any]) -> IndexBudget:
     words = ("temporal", "ensemble", "mixed")
     levels = {row["level"]: {word: BudgetLevel(**row[word]) for word in words} for row in found["levels"]}
-    keys = ("name", "description", "unit", "limit", "sources")
+    keys = ("name", "description", "unit", "limit", "linear_noise", "sources")
     return IndexBudget(levels=levels, **{key: found[key] for key in keys})

@@ -77,9 +77,7 @@ def evaluate(
     design = engine.Design()
     design.add_table(list(keys), points)
     design.share_noise(run_number(run))
-    # An element of a list, such as `line_of_sight_rms_rad[0]`, needs the whole list.
-    whole = [name.partition("[")[0] for name in names]
-    work = engine.Work.for_points(scenario._native, design, whole, yes)
+    work = engine.Work.for_points(scenario._native, design, names, yes)
     values, error = work.numbers(work.runs, threads(jobs, scenario), names)
     if error is not None:
         _check_keys(scenario, keys)

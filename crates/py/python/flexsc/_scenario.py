@@ -11,26 +11,17 @@ from flexsc import _keys
 from flexsc import _native as engine
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
-from flexsc._scenario_file import ScenarioFile
+from flexsc._scenario_analysis import ScenarioAnalysis
 from flexsc._values import arrays, run_number, toml
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
-    from flexsc._budget import PointingBudget
-    from flexsc._linear import Linear
-    from flexsc._loop_margins import StabilityMargins
-    from flexsc._noise import NoiseSpectrum
-    from flexsc._open_loop import Break
-    from flexsc._output_bounds import OutputBound
     from flexsc._part import Part
-    from flexsc._structured_tuning import TunedScenario
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
 
 P = TypeVar("P", bound="Part")
 
 
-class Scenario(ScenarioFile):
+class Scenario(ScenarioAnalysis):
     """A study: everything that a scenario file contains. It is valid and immutable.
 
     Args:
@@ -183,168 +174,6 @@ class Scenario(ScenarioFile):
         {}
         """
         return dict(engine.parts_of(self._native))
-
-    def linearise(
-        self,
-        at: float = 0.0,
-        *,
-        period: float | None = None,
-        delay: float | None = None,
-        loop: Break | None = None,
-    ) -> Linear:
-        """Return the scenario's body at rest as a linear model, or its open loop.
-
-        The states are rigid motion and modes. The inputs are the torques of the actuator (N m). The outputs
-        are the measured quantities, angles and rates at the sensor with their elastic parts, followed by all
-        states. The momentum of the wheels couples the axes; the environment and limits are left out.
-
-        Args:
-            at: The time (s) whose natural frequencies are used if they drift.
-            period: Sampling period (s), over which inputs are held; None for continuous time.
-            delay: The delay of the inputs (s); None for the delay of the scenario's wheel.
-            loop: Return the open loop of a linear law (`pd`, `attitude` with its integral and filters,
-                `state_space`), with the Kalman filter or attitude filter that the law reads, sampled with the
-                law's period (or the shortest with which all parts repeat) and opened at the `command` of the
-                law, at the `torque` of the actuator, or at the `measurement` of angles and rates. The signs
-                are those of negative feedback: `closed()` closes the loop again.
-
-        >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).a.shape
-        (6, 6)
-
-        Raises:
-            ScenarioError: The body is not a linear system, because it has driven appendages.
-            ValueError: The loop is not linear, or a time is not accepted.
-        """
-        from flexsc._open_loop import linearise
-
-        return linearise(self, at, period, delay, loop)
-
-    def margins(self, loop: Break = "command") -> StabilityMargins:
-        """Return the stability margins of the scenario's loop, opened at a point: `flexsc margins`.
-
-        Each signal at the break has gain, phase and delay margins at every crossing, a modulus and a disk
-        margin, with the loops of the others closed; all signals together have a modulus and a disk margin.
-
-        Args:
-            loop: The point: the `command` of the law, the `torque` of the actuator, or the `measurement` of
-                angles and rates.
-
-        >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins()
-        >>> margins.loops["command"].gain_crossings["frequency"].round(3)[:3]
-        array([0.062, 0.175, 0.242])
-
-        Raises:
-            ScenarioError: The loop is not linear: the key, and the reason.
-            ValueError: The closed loop is not stable: its worst pole; or there is no such point.
-        """
-        from flexsc._loop_margins import stability_margins
-
-        return stability_margins(self, loop)
-
-    def tune(
-        self,
-        ranges: Mapping[str, tuple[float, float]],
-        *,
-        loop: Break = "command",
-        bandwidth: float | None = None,
-        corners: bool = True,
-    ) -> TunedScenario:
-        """Return the scenario with the keys that maximise the least modulus margin: `flexsc tune --vary`.
-
-        The margin is that of all signals together, and the least one is taken over the nominal plant and the
-        corners of `[uncertain]`.
-
-        Args:
-            ranges: The least and the largest value of each key, such as `{"law.pd.k_d": (10.0, 400.0)}`.
-            loop: The point at which the loops are opened.
-            bandwidth: A frequency (rad/s) at which the loop gain of the nominal plant stays 1 or more.
-            corners: Whether there is a plant for each corner of the uncertain keys.
-
-        >>> scenario = flexsc.Scenario.example("earth-observer")
-        >>> tuned = scenario.tune({"law.attitude.damping": (0.4, 1.5)}, bandwidth=0.1)
-        >>> tuned.least_margin > tuned.least_margin_before
-        True
-
-        Raises:
-            ScenarioError: A key cannot be tuned, or the loop is not linear: the key, and the reason.
-            ValueError: The loop of a plant is not stable with the keys of the scenario.
-        """
-        from flexsc._structured_tuning import tune
-
-        return tune(self, ranges, loop, bandwidth, corners)
-
-    def spectrum(
-        self,
-        signals: Sequence[str] | None = None,
-        window: float | None = None,
-        separation: float | None = None,
-        speeds: npt.ArrayLike | None = None,
-    ) -> NoiseSpectrum:
-        """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
-
-        The noise is that of the sensors, of their rounding, and of random torques. Limits and steady
-        disturbances are left out; the body is about its target at rest.
-
-        Args:
-            signals: Names of outputs, such as `roll`, `roll_rate`, `command_roll`, `mode0_displacement` and
-                `line_of_sight0_x`; `["all"]` for all of them, None for measured angles and lines of sight.
-            window: Length (s) of windows for pointing indices.
-            separation: Time (s) from the start of a window to that of the next, for differences of means.
-            speeds: Speeds (rad/s) of the wheels for the lines of their imbalance; None for 48 up to their
-                largest.
-
-        >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["roll", "command_roll"])
-        >>> spectrum.sources
-        ('sensor.sampled.noise', 'sensor.sampled.rate_noise')
-        >>> spectrum.outputs["command_roll"].unit
-        'N m'
-
-        Raises:
-            ScenarioError: A part has no linear model: the key, and the reason.
-            ValueError: The closed loop is not stable, noise grows without limit, or there is no such output.
-        """
-        from flexsc._noise import noise_spectrum
-
-        return noise_spectrum(self, signals, window, separation, speeds)
-
-    def budget(self, runs: int = 20, jobs: int = 0) -> PointingBudget:
-        """Return the pointing budget of the scenario's `[[requirement]]` tables: `flexsc budget`.
-
-        Each pointing index has its levels at 68.3, 95.5 and 99.7 %, temporal, ensemble and mixed: by the
-        order statistics of a campaign, by convolution of its error sources, and by the rule of k sigma.
-
-        Args:
-            runs: Number of runs of the campaign over the noise and the uncertain keys.
-            jobs: Number of threads; 0 for one per core.
-
-        >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
-        >>> [index.unit for index in budget.indices]
-        ['rad', 'rad']
-
-        Raises:
-            ValueError: The scenario has no requirement on a pointing index, or a run fails.
-        """
-        from flexsc._budget import pointing_budget
-
-        return pointing_budget(self, runs, jobs)
-
-    def bound(self) -> list[OutputBound]:
-        """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
-
-        Each is over all states at the start, inputs in time, frequencies and damping ratios of the claim. It
-        has the verdict about its limits.
-
-        >>> import flexsc
-        >>> [bound.verdict for bound in flexsc.Scenario.example("bounded-jitter").bound()]
-        ['proved', 'proved']
-
-        Raises:
-            ScenarioError: The scenario has no claims, or its body or a claim is not accepted: the key, and
-                the reason.
-        """
-        from flexsc._output_bounds import output_bounds
-
-        return output_bounds(self)
 
     def with_law(
         self,

@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{
-    ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker, list_element,
-};
-use flexsc_core::metrics::{self, goal};
+use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker};
+use flexsc_core::metrics::{self, goal, list_element};
 
 use super::table::{CampaignKey, CampaignRuns, MetricColumn, ScenarioSource, TextCells};
 use crate::campaign::{MAIN, part_files};

@@ -147,7 +147,7 @@ impl BoxPair<'_> {
     }
 
     /// Returns the bound of the magnitude of a derivative of the response to a rate, without the decay.
-    fn of_rate(&self, degree: i32) -> f64 {
+    fn rate_bound(&self, degree: i32) -> f64 {
         let [by_position, by_rate] = self.pair.weights.map(f64::abs);
         let w = self.frequency.high;
         (by_position * w.powi(degree - 1) + by_rate * w.powi(degree)) / self.cosine.low
@@ -155,7 +155,7 @@ impl BoxPair<'_> {
 
     /// Returns the bound of the second derivative of the impulse response to an input, without the decay.
     fn bend(&self, input: usize) -> f64 {
-        if self.pair.is_elastic() { self.pair.inputs[input].abs() * self.of_rate(2) } else { 0.0 }
+        if self.pair.is_elastic() { self.pair.inputs[input].abs() * self.rate_bound(2) } else { 0.0 }
     }
 
     /// Returns the bound of the second derivative of its part of the range, without the decay.
@@ -173,7 +173,7 @@ impl BoxPair<'_> {
         let [by_position, by_rate] = self.pair.weights.map(f64::abs);
         let w = self.frequency.high;
         let moved = (by_position * w.powi(2) + by_rate * w.powi(3)) / self.cosine.low;
-        (position * moved + rate * self.of_rate(2) + push * self.of_rate(1)) * (1.0 + SUMMATION)
+        (position * moved + rate * self.rate_bound(2) + push * self.rate_bound(1)) * (1.0 + SUMMATION)
     }
 
     /// Returns the responses at a time (s).

@@ -20,6 +20,8 @@ pub struct CampaignBudget {
     pub levels: Vec<[BudgetLevel; 3]>,
     /// Magnitudes of all values of all runs, sorted.
     pub magnitudes: Vec<f64>,
+    /// Rms of the index under the noise of the linear loop; `None` without one.
+    pub linear_noise: Option<f64>,
 }
 
 /// Level of the magnitude of an index at a probability, in three ways.
@@ -60,7 +62,7 @@ impl CampaignBudget {
             })
         };
         let levels = LEVELS.into_iter().map(level).collect();
-        Self { requirement, sources, levels, magnitudes }
+        Self { requirement, sources, levels, magnitudes, linear_noise: None }
     }
 }
 

@@ -7,13 +7,13 @@
 
 mod campaign_budget;
 mod convolution;
-mod window_variance;
+mod linear_noise;
 
 use crate::scenario::Interpretation;
 
 pub use campaign_budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS};
 pub use convolution::Sum;
-pub use window_variance::{AutocovarianceTerm, IndexVariances};
+pub use linear_noise::linear_noise;
 
 /// Levels at which a budget is stated: those of one, two and three standard deviations of a Gaussian number.
 pub const LEVELS: [f64; 3] = [0.683, 0.955, 0.997];

@@ -1,7 +1,4 @@
-//! Budgets against tables of closed forms: quantiles of SciPy's distributions, a sum by integration over the phase, and
-//! variances by quadrature over time and over frequency.
-
-use nalgebra::{Complex, ComplexField};
+//! Budgets against tables of closed forms: quantiles of SciPy's distributions, and a sum by integration over the phase.
 
 use super::*;
 
@@ -50,42 +47,4 @@ fn a_budget_by_convolution_and_by_k_sigma() {
     let two = ErrorSources { biases: vec![1.0, 1.0], ..ErrorSources::default() };
     agree("triangle", two.level(0.75, Interpretation::Mixed), 1.0, 1e-8);
     assert_eq!(ErrorSources::default().level(0.997, Interpretation::Mixed), 0.0);
-}
-
-#[test]
-fn variances_of_windows() {
-    // A first-order error of 3 s and a sine of 2 rad/s, over 10 s and 60 s apart.
-    let real = |value: f64| Complex::new(value, 0.0);
-    let slow = AutocovarianceTerm { residue: real(1.0), pole: real(-1.0 / 3.0) };
-    let found = IndexVariances::new(&[slow], 10.0, 60.0);
-    agree("MPE", found.mean, 0.426_421_318_802_5, 1e-12);
-    agree("RPE uniform", found.relative_uniform, 0.573_578_681_197_5, 1e-12);
-    agree("RPE end", found.relative_end, 0.847_825_714_810_9, 1e-12);
-    agree("RPE middle", found.relative_middle, 0.453_072_042_207_6, 1e-12);
-    agree("PDE", found.difference, 0.852_842_627_933_8, 1e-12);
-    let found = IndexVariances::new(&[AutocovarianceTerm::sine(1.0, 2.0)], 10.0, 60.0);
-    agree("sine MPE", found.mean.sqrt(), 0.038_468_101_661_9, 1e-11);
-    agree("sine RPE", found.relative_uniform.sqrt(), 0.706_059_632_86, 1e-11);
-    agree("sine PDE", found.difference.sqrt(), 0.023_450_971_920_2, 1e-11);
-}
-
-#[test]
-fn series_and_closed_form_meet() {
-    // On both sides of the change, and of a pole at zero, whose error is a constant.
-    for size in [0.099_999, 0.100_001] {
-        let z: Complex<f64> = Complex::new(-0.6, 0.8) * size;
-        let closed = (z.exp() - 1.0 - z) / (z * z);
-        assert!((window_variance_second(z) - closed).modulus() < 1e-13, "{size}");
-    }
-    let constant = AutocovarianceTerm { residue: Complex::new(4.0, 0.0), pole: Complex::new(0.0, 0.0) };
-    let found = IndexVariances::new(&[constant], 10.0, 60.0);
-    assert_eq!((found.mean, found.relative_uniform, found.difference), (4.0, 0.0, 0.0));
-}
-
-/// The function of the mean's variance, through a term of unit residue and a window of 1 s.
-fn window_variance_second(z: Complex<f64>) -> Complex<f64> {
-    let part = |residue: Complex<f64>| {
-        IndexVariances::new(&[AutocovarianceTerm { residue, pole: z }], 1.0, 1.0).mean / 2.0
-    };
-    Complex::new(part(Complex::new(1.0, 0.0)), part(Complex::new(0.0, -1.0)))
 }

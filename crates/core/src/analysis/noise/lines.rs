@@ -141,7 +141,7 @@ impl<'a> LineLoop<'a> {
                     total * unit_circle(-turns.frequencies[place] * turns.period) / turns.period
                 }),
                 OutputRow::Command(axis) => {
-                    turns.lines(|place| turns.of_command(&period_rows.pieces, *axis, &state, place))
+                    turns.lines(|place| turns.command_amplitude(&period_rows.pieces, *axis, &state, place))
                 }
             });
             found.push(lines.collect());
@@ -201,7 +201,7 @@ impl LineFrequencies {
     }
 
     /// Returns the amplitude of a command, which is constant in each piece.
-    fn of_command(
+    fn command_amplitude(
         &self,
         pieces: &[Piece],
         axis: usize,
