@@ -154,6 +154,7 @@ mod frozen;
 mod habits;
 mod rooms;
 mod words;
+mod worst;
 
 // Helpers of the tests.
 mod drawing;

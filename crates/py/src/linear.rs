@@ -40,7 +40,7 @@ pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
 }
 
 /// The point of this name at which a loop is cut open.
-fn loop_break(name: &str) -> PyResult<LoopBreak> {
+pub fn loop_break(name: &str) -> PyResult<LoopBreak> {
     LoopBreak::from_name(name).ok_or_else(|| {
         let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
         PyValueError::new_err(format!("loop must be one of {accepted}, got '{name}'"))

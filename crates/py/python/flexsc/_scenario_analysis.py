@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from flexsc._output_bounds import OutputBound
     from flexsc._scenario import Scenario
     from flexsc._structured_tuning import TunedScenario
+    from flexsc._worst_case import Margin, WorstCase
 
 
 class ScenarioAnalysis(ScenarioFile):
@@ -191,3 +192,41 @@ class ScenarioAnalysis(ScenarioFile):
         from flexsc._output_bounds import output_bounds
 
         return output_bounds(self._scenario)
+
+    def worst(
+        self,
+        metric: str | None = None,
+        *,
+        requirement: str | None = None,
+        margin: Margin | None = None,
+        loop: Break = "command",
+        least: bool = False,
+        points: int = 200,
+        jobs: int = 0,
+    ) -> WorstCase:
+        """Return the worst case over the scenario's `[uncertain]` keys: `flexsc worst`.
+
+        Half of the points are spread over the ranges of the keys; searches from the worst of them use the
+        others. What is found is a witness: it can be worse, but not better. All runs have the same noise.
+
+        Args:
+            metric: A metric, or an element `NAME[i]` of a list of them.
+            requirement: A requirement of the scenario, by its name, in place of a metric.
+            margin: A stability margin in place of a metric, the least of all loops: `modulus`, `disk`,
+                `gain`, `phase` or `delay`.
+            loop: The point at which the loops are opened for a margin.
+            least: Whether small values of the metric are bad.
+            points: Largest number of points, each of which is a run, or a loop of a margin.
+            jobs: Number of threads of the runs; 0 for one per core.
+
+        >>> worst = flexsc.Scenario.example("slew-wheel-lqg").worst("settling_time_s", points=10)
+        >>> worst.value >= worst.nominal
+        True
+
+        Raises:
+            ScenarioError: The scenario has no uncertain keys, or no linear loop: the key, and the reason.
+            ValueError: There is no such quantity, or it has no value at any point.
+        """
+        from flexsc._worst_case import worst_case
+
+        return worst_case(self._scenario, metric, requirement, margin, loop, least, points, jobs)
