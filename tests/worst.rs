@@ -141,5 +141,5 @@ fn what_has_no_worst_case_is_refused() {
     refused("slew-wheel-lqg.toml -o witness.toml", "a witness is of one quantity");
     refused("slew-wheel-lqg.toml --metric itae --margin gain", "cannot be used with");
     refused("slew-wheel-lqg.toml --margin modulus --points 0", "0 is not in");
-    refused("relay-sampled.toml --metric itae", "cannot read");
+    refused("relay-sampled.toml --metric itae", "No such file");
 }

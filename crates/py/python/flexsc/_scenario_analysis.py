@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, cast
 
@@ -230,3 +231,29 @@ class ScenarioAnalysis(ScenarioFile):
         from flexsc._worst_case import worst_case
 
         return worst_case(self._scenario, metric, requirement, margin, loop, least, points, jobs)
+
+    def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:
+        """Write a page for a design review, and return whether all its verdicts are good: `flexsc report`.
+
+        The page has the spacecraft, margins, noise, one run, claims, budgets, worst cases and a campaign with
+        their figures, and the command that repeats each.
+
+        Args:
+            path: The page, `FILE.html`.
+            runs: Number of runs of the campaign; 0 leaves it out.
+            force: Whether a file of other content is replaced.
+
+        >>> import pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_(duration=20.0)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = pathlib.Path(folder) / "study.html"
+        ...     met = scenario.report(page, runs=0)
+        ...     met, page.stat().st_size > 100_000
+        (True, True)
+
+        Raises:
+            ValueError: The page cannot be written, or the scenario has parts that are written in Python.
+        """
+        from flexsc._report import report
+
+        return report(self._scenario, path, runs, force)
