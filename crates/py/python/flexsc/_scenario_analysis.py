@@ -243,8 +243,8 @@ class ScenarioAnalysis(ScenarioFile):
             runs: Number of runs of the campaign; 0 leaves it out.
             force: Whether a file of other content is replaced.
 
-        >>> import pathlib, tempfile
-        >>> scenario = flexsc.Scenario.example("attitude-hold").with_(duration=20.0)
+        >>> import flexsc, pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_("duration", 40.0)
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     page = pathlib.Path(folder) / "study.html"
         ...     met = scenario.report(page, runs=0)

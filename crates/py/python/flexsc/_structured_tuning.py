@@ -46,13 +46,13 @@ class TunedPlant:
     """Frequency (rad/s) at which the margin was attained with the keys of the scenario.
 
     >>> round(plant.frequency_before, 3)
-    4.885
+    7.682
     """
     frequency: float
     """Frequency (rad/s) at which the margin is attained with the tuned keys.
 
     >>> round(plant.frequency, 3)
-    4.901
+    7.665
     """
     spectral_radius: float
     """Largest magnitude of a pole of the closed loop with the tuned keys.

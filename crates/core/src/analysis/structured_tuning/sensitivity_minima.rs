@@ -13,8 +13,8 @@ use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
 pub struct LoopSensitivity {
     response: FrequencyResponse,
     transfer: TransferMatrices,
-    /// Poles of the loop when it is cut open.
-    open_poles: Vec<Complex<f64>>,
+    /// State matrix of the loop when it is cut open.
+    open: DMatrix<f64>,
     /// Number of signals at the break.
     signals: usize,
     /// Period of the loop, and samples in it.
@@ -25,12 +25,10 @@ impl LoopSensitivity {
     /// Computes the sensitivity; `None` for a loop without one.
     pub fn new(opened: &OpenLoop) -> Option<Self> {
         let transfer = opened.transfer.sensitivity()?;
-        // Without them, the grid follows the resonances of the closed loop alone.
-        let open_poles = eigenvalues(&opened.transfer.a).unwrap_or_default();
         Some(Self {
             response: FrequencyResponse::new(&transfer),
             transfer,
-            open_poles,
+            open: opened.transfer.a.clone(),
             signals: opened.signals.len(),
             samples: LoopSamples { period: opened.period, count: opened.samples },
         })
@@ -41,10 +39,16 @@ impl LoopSensitivity {
         eigenvalues(&self.transfer.a)
     }
 
+    /// Returns the poles of the loop when it is cut open. Without them, a grid follows the resonances of the closed loop
+    /// alone.
+    fn open_poles(&self) -> Vec<Complex<f64>> {
+        eigenvalues(&self.open).unwrap_or_default()
+    }
+
     /// Returns 1/s1(S) over frequency (rad/s), on a grid that follows the resonances; `None` if the poles cannot be
     /// computed.
     pub fn margins(&self) -> Option<Vec<(f64, f64)>> {
-        let angles = frequency_grid(&self.closed_poles()?, &self.open_poles);
+        let angles = frequency_grid(&self.closed_poles()?, &self.open_poles());
         Some(angles.into_iter().map(|angle| (angle / self.samples.period, self.margin_at(angle))).collect())
     }
 
@@ -77,12 +81,12 @@ impl LoopSensitivity {
 
     /// Returns the angles (rad) and values of the local minima of 1/s1(S) that exceed the least by at most `within`.
     pub fn minima(&self, closed: &[Complex<f64>], within: f64) -> Vec<(f64, f64)> {
-        let angles = coarse_frequency_grid(closed, &self.open_poles);
-        let value = |angle: &f64| {
-            let scanned = self.response.scan(unit_circle(*angle));
+        let angles = coarse_frequency_grid(closed, &self.open_poles());
+        let value = |angle: f64| {
+            let scanned = self.response.scan(unit_circle(angle));
             scanned.as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
         };
-        let values: Vec<f64> = angles.iter().map(value).collect();
+        let values: Vec<f64> = angles.iter().copied().map(value).collect();
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let last = values.len() - 1;
         let is_minimum = |k: &usize| {
@@ -92,8 +96,10 @@ impl LoopSensitivity {
         };
         let refined = (0..=last).filter(is_minimum).map(|k| {
             let (low, high) = (angles[k.saturating_sub(1)], angles[(k + 1).min(last)]);
-            let (angle, negative) = maximum(|angle| -self.margin_at(angle), low, high);
-            if -negative < values[k] { (angle, -negative) } else { (angles[k], values[k]) }
+            // The value is flat at its minimum: the rounding of a scan moves the angle, and not the value there.
+            let (angle, negative) = maximum(|angle| -value(angle), low, high);
+            let angle = if -negative < values[k] { angle } else { angles[k] };
+            (angle, self.margin_at(angle))
         });
         refined.collect()
     }
