@@ -14,22 +14,46 @@ pub(super) const MOST_DEGREES: usize = 13;
 /// coefficients.
 const SIZE: usize = MOST_DEGREES + 2;
 
+/// Factors of the recurrence of degrees, V(n, m) = a z V(n - 1, m) - b r² V(n - 2, m): a = (2n - 1)/(n - m) and b =
+/// (n + m - 1)/(n - m), by degree and order.
+const RECURRENCE: [[[f64; 2]; SIZE]; SIZE] = {
+    let mut factors = [[[0.0; 2]; SIZE]; SIZE];
+    let mut n = 1;
+    while n < SIZE {
+        let mut m = 0;
+        while m < n {
+            let below = (n - m) as f64;
+            factors[n][m] = [(2 * n - 1) as f64 / below, (n + m - 1) as f64 / below];
+            m += 1;
+        }
+        n += 1;
+    }
+    factors
+};
+
 /// Field of a planet in spherical harmonics, in axes that rotate with it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct SphericalHarmonics {
     /// Reference radius of the coefficients (m).
     radius: f64,
-    /// Coefficients \[g, h\] for functions that are not normalised (T), by degree from 1 and order from 0.
-    coefficients: Vec<Vec<[f64; 2]>>,
+    /// Shares of the functions in the field, by degree from 1 and by order of the function from 0.
+    shares: Vec<Vec<FunctionShare>>,
     /// Upper bound of the field of each degree at the reference radius (T).
     bounds: Vec<f64>,
+}
+
+/// Shares of the functions V and W of one degree and order in the field along x, y and z (T).
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct FunctionShare {
+    v: [f64; 3],
+    w: [f64; 3],
 }
 
 impl SphericalHarmonics {
     /// Creates the field of Schmidt semi-normalised coefficients \[g, h\] (T) up to a degree of at most
     /// [`MOST_DEGREES`], in the order of degree n from 1 and order m from 0 to n.
     pub fn new(radius: f64, degree: usize, mut schmidt: impl Iterator<Item = [f64; 2]>) -> Self {
-        let (mut coefficients, mut bounds) = (Vec::new(), Vec::new());
+        let (mut shares, mut bounds) = (Vec::new(), Vec::new());
         for n in 1..=degree.min(MOST_DEGREES) {
             let normalised: Vec<[f64; 2]> = schmidt.by_ref().take(n + 1).collect();
             let power: f64 = normalised.iter().flatten().map(|part| part * part).sum();
@@ -43,20 +67,21 @@ impl SphericalHarmonics {
                 }
                 row.map(|part| part * factor)
             });
-            coefficients.push(rows.collect());
+            let coefficients: Vec<[f64; 2]> = rows.collect();
+            shares.push(function_shares(&coefficients));
         }
-        Self { radius, coefficients, bounds }
+        Self { radius, shares, bounds }
     }
 
     /// Returns the highest degree.
     pub fn degree(&self) -> usize {
-        self.coefficients.len()
+        self.shares.len()
     }
 
     /// Returns the field of the degrees up to `degree`.
     pub fn truncated(&self, degree: usize) -> Self {
         let mut field = self.clone();
-        field.coefficients.truncate(degree);
+        field.shares.truncate(degree);
         field.bounds.truncate(degree);
         field
     }
@@ -65,19 +90,9 @@ impl SphericalHarmonics {
     pub fn at(&self, position: &Vector) -> Vector {
         let (v, w) = self.functions(position);
         let mut field = Vector::zeros();
-        for (n, rows) in (1..).zip(&self.coefficients) {
-            let (v, w) = (&v[n + 1], &w[n + 1]);
-            for (m, [g, h]) in rows.iter().enumerate() {
-                field.z += (n - m + 1) as f64 * (g * v[m] + h * w[m]);
-                if m == 0 {
-                    field.x += g * v[1];
-                    field.y += g * w[1];
-                    continue;
-                }
-                let factor = 0.5 * ((n - m + 1) * (n - m + 2)) as f64;
-                let [up, down] = [m + 1, m - 1];
-                field.x += 0.5 * (g * v[up] + h * w[up]) - factor * (g * v[down] + h * w[down]);
-                field.y += 0.5 * (g * w[up] - h * v[up]) + factor * (g * w[down] - h * v[down]);
+        for ((shares, v), w) in self.shares.iter().zip(&v[2..]).zip(&w[2..]) {
+            for ((share, v), w) in shares.iter().zip(v).zip(w) {
+                field += Vector::from(share.v) * *v + Vector::from(share.w) * *w;
             }
         }
         field
@@ -90,20 +105,17 @@ impl SphericalHarmonics {
         let squared = self.radius * ratio;
         let (mut v, mut w) = ([[0.0; SIZE]; SIZE], [[0.0; SIZE]; SIZE]);
         v[0][0] = f64::sqrt(squared);
-        let top = self.degree() + 1;
-        for m in 0..=top {
-            if m > 0 {
-                let (factor, [cos, sin]) = ((2 * m - 1) as f64, [v[m - 1][m - 1], w[m - 1][m - 1]]);
-                v[m][m] = factor * (x * cos - y * sin);
-                w[m][m] = factor * (x * sin + y * cos);
-            }
-            for n in m + 1..=top {
-                let (first, share) = ((2 * n - 1) as f64 * z, 1.0 / (n - m) as f64);
-                let second = if n > m + 1 { (n + m - 1) as f64 * squared } else { 0.0 };
+        for n in 1..=self.degree() + 1 {
+            for m in 0..n {
+                let [first, second] = RECURRENCE[n][m];
+                let [first, second] = [first * z, second * squared];
                 let before = n.saturating_sub(2);
-                v[n][m] = (first * v[n - 1][m] - second * v[before][m]) * share;
-                w[n][m] = (first * w[n - 1][m] - second * w[before][m]) * share;
+                v[n][m] = first * v[n - 1][m] - second * v[before][m];
+                w[n][m] = first * w[n - 1][m] - second * w[before][m];
             }
+            let (factor, [cos, sin]) = ((2 * n - 1) as f64, [v[n - 1][n - 1], w[n - 1][n - 1]]);
+            v[n][n] = factor * (x * cos - y * sin);
+            w[n][n] = factor * (x * sin + y * cos);
         }
         (v, w)
     }
@@ -117,4 +129,29 @@ impl SphericalHarmonics {
             sum + bound * power
         })
     }
+}
+
+/// Returns the shares of the functions of degree n + 1 in the field of degree n, whose coefficients \[g, h\], for
+/// functions that are not normalised, are given from order 0 on.
+fn function_shares(coefficients: &[[f64; 2]]) -> Vec<FunctionShare> {
+    let n = coefficients.len() - 1;
+    let mut shares = vec![FunctionShare { v: [0.0; 3], w: [0.0; 3] }; n + 2];
+    for (m, [g, h]) in coefficients.iter().copied().enumerate() {
+        let along = (n - m + 1) as f64;
+        shares[m].v[2] += along * g;
+        shares[m].w[2] += along * h;
+        if m == 0 {
+            shares[1].v[0] += g;
+            shares[1].w[1] += g;
+            continue;
+        }
+        let next = &mut shares[m + 1];
+        (next.v[0], next.w[0]) = (next.v[0] + 0.5 * g, next.w[0] + 0.5 * h);
+        (next.v[1], next.w[1]) = (next.v[1] - 0.5 * h, next.w[1] + 0.5 * g);
+        let factor = 0.5 * along * (n - m + 2) as f64;
+        let last = &mut shares[m - 1];
+        (last.v[0], last.w[0]) = (last.v[0] - factor * g, last.w[0] - factor * h);
+        (last.v[1], last.w[1]) = (last.v[1] - factor * h, last.w[1] + factor * g);
+    }
+    shares
 }
