@@ -56,9 +56,21 @@ fn a_filter_with_a_dipole_errs_by_what_the_dipole_leaves_out() {
 #[test]
 fn fields_that_do_not_fit_are_refused() {
     for (from, to, words) in [
-        ("field_degree = 1", "field_degree = 14", ["`estimator.attitude.field_degree`", "from 1 to 13", "got 14"]),
-        ("field_degree = 1", "field_degree = 0", ["`estimator.attitude.field_degree`", "from 1 to 13", "got 0"]),
-        ("magnetic_field = {}", "magnetic_field = { degree = 14 }", ["`environment.magnetic_field.degree`", "from 1 to 13", "got 14"]),
+        (
+            "field_degree = 1",
+            "field_degree = 14",
+            ["`estimator.attitude.field_degree`", "from 1 to 13", "got 14"],
+        ),
+        (
+            "field_degree = 1",
+            "field_degree = 0",
+            ["`estimator.attitude.field_degree`", "from 1 to 13", "got 0"],
+        ),
+        (
+            "magnetic_field = {}",
+            "magnetic_field = { degree = 14 }",
+            ["`environment.magnetic_field.degree`", "from 1 to 13", "got 14"],
+        ),
         (
             "magnetic_field = {}",
             "magnetic_field = { model = \"WMM2025\", degree = 13 }",
@@ -106,7 +118,9 @@ fn the_model_follows_from_the_date() {
         assert_eq!(at(&scenario), at(&again));
         at(&scenario)
     };
-    let with = |keys: &str| field(&BOARD_MODEL.replace("magnetic_field = {}", &format!("magnetic_field = {{ {keys} }}")));
+    let with = |keys: &str| {
+        field(&BOARD_MODEL.replace("magnetic_field = {}", &format!("magnetic_field = {{ {keys} }}")))
+    };
     let default = with("");
     assert_eq!(default, with("model = \"IGRF-14\", degree = 13"));
     let dipole = with("model = \"dipole\"");

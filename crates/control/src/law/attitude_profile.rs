@@ -363,7 +363,11 @@ mod tests {
             assert!((turn / (2.0 * h) - now.rate).norm() < 2e-13, "{seconds}");
             assert!(now.rate.norm() > 1.7e-7 && now.rate.norm() < 2.4e-7, "{seconds}");
             let change = (after.rate - before.rate) / (2.0 * h);
-            assert!((change - now.acceleration).norm() < 1e-19, "{seconds} {:e}", (change - now.acceleration).norm());
+            assert!(
+                (change - now.acceleration).norm() < 1e-19,
+                "{seconds} {:e}",
+                (change - now.acceleration).norm()
+            );
         }
     }
 

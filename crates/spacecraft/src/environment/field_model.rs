@@ -61,7 +61,9 @@ impl FieldModel {
         }
         let (name, first) = (self.name(), self.first_year());
         let Some(epoch_ns) = epoch_ns else {
-            let why = format!("depends on the date with \"{name}\": it needs the scenario's `epoch`, and there is none");
+            let why = format!(
+                "depends on the date with \"{name}\": it needs the scenario's `epoch`, and there is none"
+            );
             return Some(ConfigError::new("model", why));
         };
         let start = epoch_ns as f64 / 1e9;

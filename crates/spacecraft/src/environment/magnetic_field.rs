@@ -115,9 +115,8 @@ impl PlanetField {
     pub fn new(field: &MagneticField, epoch_ns: Option<u64>) -> Self {
         let model = field.model(epoch_ns.is_some());
         let degree = field.degree.map_or(model.highest_degree(), |degree| degree as usize);
-        let dipole = || {
-            FieldSource::Dipole(Vector::from(field.coefficients.map(Finite::get)), field.radius.get())
-        };
+        let dipole =
+            || FieldSource::Dipole(Vector::from(field.coefficients.map(Finite::get)), field.radius.get());
         let source = model.harmonics(degree, epoch_ns.unwrap_or(0));
         Self {
             source: source.map_or_else(dipole, |source| FieldSource::Harmonics(Arc::new(source))),

@@ -86,11 +86,9 @@ impl SunPath {
     /// Returns the direction with its derivatives at a time since the start (s).
     pub fn motion(&self, t: f64) -> SunMotion {
         match self {
-            Self::Fixed(direction) => SunMotion {
-                direction: *direction,
-                rate: Vector::zeros(),
-                acceleration: Vector::zeros(),
-            },
+            Self::Fixed(direction) => {
+                SunMotion { direction: *direction, rate: Vector::zeros(), acceleration: Vector::zeros() }
+            }
             Self::Dated(start) => almanac(start + t),
         }
     }
@@ -209,11 +207,9 @@ mod tests {
         // Seconds since 1970, right ascension and declination (degrees): the apparent Sun of Meeus, Astronomical
         // Algorithms, example 25.a (1992-10-13), the equinox of 2026-03-20 14:46 UTC, the solstice of 2024-06-20 20:51
         // UTC.
-        for (seconds, ascension, declination) in [
-            (718_934_400, 198.380_83, -7.785_07),
-            (1_774_017_960, 0.0, 0.0),
-            (1_718_916_660, 90.0, 23.436),
-        ] {
+        for (seconds, ascension, declination) in
+            [(718_934_400, 198.380_83, -7.785_07), (1_774_017_960, 0.0, 0.0), (1_718_916_660, 90.0, 23.436)]
+        {
             let sun = path(seconds).direction(0.0);
             let found = libm::atan2(sun.y, sun.x).to_degrees().rem_euclid(360.0);
             let apart = libm::remainder(found - ascension, 360.0);
@@ -238,7 +234,10 @@ mod tests {
             let off = (path.direction(t) - Vector::from(direction)).norm();
             assert!(off < 2e-4, "{seconds}: {off:e}");
             let pressure = path.light(t).pressure * distance * distance;
-            assert!((pressure - 1.0).abs() < 1e-4 && path.light(t).pressure <= path.most_pressure(), "{pressure}");
+            assert!(
+                (pressure - 1.0).abs() < 1e-4 && path.light(t).pressure <= path.most_pressure(),
+                "{pressure}"
+            );
         }
         assert_eq!(SunPath::Fixed(Vector::x()).light(1e7).pressure, 1.0);
     }

@@ -99,9 +99,7 @@ impl SurroundingsState {
         if self.held == Vector::zeros() {
             return Vector::zeros();
         }
-        self.sky
-            .field_at(t)
-            .map_or_else(Vector::zeros, |field| self.held.cross(&to_body(attitude, &field)))
+        self.sky.field_at(t).map_or_else(Vector::zeros, |field| self.held.cross(&to_body(attitude, &field)))
     }
 
     /// Returns the orbit, field and Sun.

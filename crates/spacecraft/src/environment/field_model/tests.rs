@@ -216,7 +216,8 @@ fn the_dipole_is_as_wrong_as_the_table_of_the_documentation_has_it() {
         (1000e3, [10.0, 6.8, 22.2, 31.8, 18.9, -27.3, 61.3], [0.1, 0.2]),
         (35_786e3, [1.33, 1.18, 2.28, 2.99, 2.79, -4.6, 5.1], [0.011, 0.06]),
     ] {
-        let off = Deviation::new(altitude, &|position| dipole.at(position, 0.0), &|position| truth.at(position));
+        let off =
+            Deviation::new(altitude, &|position| dipole.at(position, 0.0), &|position| truth.at(position));
         let found = [
             Deviation::rms(&off.angles),
             off.quantile(0.5),
@@ -274,7 +275,12 @@ fn models_refuse_dates_that_they_do_not_cover() {
     assert_eq!(error(FieldModel::Igrf14, ns(2026.9), 1.0), None);
     for (model, epoch, days, expected) in [
         (FieldModel::Igrf14, None, 1.0, "needs the scenario's `epoch`"),
-        (FieldModel::Igrf14, ns(1999.5), 1.0, "covers 2000 to 2030 with \"IGRF-14\", and the run is from 1999.50"),
+        (
+            FieldModel::Igrf14,
+            ns(1999.5),
+            1.0,
+            "covers 2000 to 2030 with \"IGRF-14\", and the run is from 1999.50",
+        ),
         (FieldModel::Wmm2025, ns(2024.5), 1.0, "covers 2025 to 2030 with \"WMM2025\""),
         (FieldModel::Wmm2025, ns(2029.9), 100.0, "to 2030.17"),
     ] {
