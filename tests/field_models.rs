@@ -3,7 +3,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::record::Trace;
 
-use crate::traces::{column, traced, within};
+use crate::traces::{times, traced, within};
 
 /// Returns the rows of a column along three axes.
 fn along(trace: &Trace, topic: &str, field: &str) -> Vec<[f64; 3]> {
@@ -35,7 +35,7 @@ fn a_filter_with_a_dipole_errs_by_what_the_dipole_leaves_out() {
     let innovation = |text: &str| {
         let scenario = Scenario::parse("model.toml", text).expect("a scenario");
         let trace = traced(&scenario);
-        let t = column(&trace, "/attitude_filter", "time_s")[0];
+        let t = times(&trace, "/attitude_filter")[0];
         let sky = scenario.orbit_environment();
         let truth: [f64; 3] = sky.field_at(t).expect("a field").into();
         let model: [f64; 3] = sky.with_field_degree(1).field_at(t).expect("a field").into();
