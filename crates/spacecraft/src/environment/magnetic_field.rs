@@ -218,6 +218,30 @@ mod tests {
     }
 
     #[test]
+    fn a_model_turns_with_the_planet() {
+        // 2026-03-20T14:46:00Z.
+        let date = Some(1_774_017_960_000_000_000);
+        let at = |meridian: f64, position: &Vector, t: f64| {
+            let field = MagneticField { meridian: Finite::new(meridian), ..MagneticField::default() };
+            PlanetField::new(&field, date).at(position, t)
+        };
+        let turned = |v: &Vector, angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            Vector::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z)
+        };
+        let position = Vector::new(5e6, -3e6, 4e6);
+        let fixed = at(0.0, &position, 0.0);
+        for (meridian, t) in [(0.7, 0.0), (0.0, 9000.0), (2.0, 50_000.0)] {
+            let angle = meridian + 7.292_115e-5 * t;
+            let off = at(meridian, &turned(&position, angle), t) - turned(&fixed, angle);
+            assert!(off.norm() < 1e-18, "{meridian} {t} {off}");
+        }
+        // The default meridian is that of Greenwich.
+        let default = PlanetField::new(&MagneticField::default(), date).at(&position, 900.0);
+        assert!((default - at(0.691_984_659, &position, 900.0)).norm() < 1e-12);
+    }
+
+    #[test]
     fn the_earths_is_29_8_microtesla_over_its_magnetic_equator_and_turns_with_it() {
         let earth = MagneticField::default();
         let axis = Vector::from(earth.coefficients.map(Finite::get)).normalize();

@@ -341,14 +341,14 @@ const PERIHELION: u64 = 1_798_977_600_000_000_000;
 
 #[test]
 fn sunlight_presses_by_the_square_of_the_distance_of_the_sun() {
-    let text = "sun = \"epoch\"\nsolar_pressure = { plates = [{ area = 2, normal = [1, 0, 0], at = [0, 0.5, 0] }, \
-                { area = 2, normal = [-1, 0, 0], at = [0, 0.5, 0] }] }";
+    let text =
+        "sun = \"epoch\"\nsolar_pressure = { plates = [{ area = 2, normal = [1, 0, 0], at = [0, 0.5, 0] }] }";
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let duration = Span::from_seconds(2e7);
     let sky = OrbitEnvironment::new(&environment, duration, Some(PERIHELION));
     let state =
         SurroundingsState::new(&environment, sky.clone(), [upright(), Matrix3::zeros()], &Vector::zeros());
-    // Half a year apart, at distances of 0.98333 and 1.01667 au, the plates face the same line.
+    // Half a year apart, at distances of 0.98333 and 1.01667 au, the plate faces the Sun.
     for (t, distance) in [(0.0, 0.983_334), (1.577e7, 1.016_6)] {
         let sun = sky.sun().expect("a Sun").direction(t);
         let attitude = flexsc_numerics::attitude::from_axes(&[

@@ -279,10 +279,10 @@ fn models_refuse_dates_that_they_do_not_cover() {
             FieldModel::Igrf14,
             ns(1999.5),
             1.0,
-            "covers 2000 to 2030 with \"IGRF-14\", and the run is from 1_999.50",
+            "covers 2000 to 2030 with \"IGRF-14\", and the run is from 1999.50",
         ),
         (FieldModel::Wmm2025, ns(2024.5), 1.0, "covers 2025 to 2030 with \"WMM2025\""),
-        (FieldModel::Wmm2025, ns(2029.9), 100.0, "to 2_030.17"),
+        (FieldModel::Wmm2025, ns(2029.9), 100.0, "to 2030.17"),
     ] {
         let found = error(model, epoch, days).expect(expected);
         assert!(found.contains(expected), "{found}");
