@@ -237,3 +237,19 @@ fn what_cannot_be_bounded_is_refused() {
     dir.write("coupled.toml", one_mode(claim).replace("modes = [{ frequency = 2.0, gain = 0.5 }]", two));
     dir.run("bound coupled.toml").exits(2).says(&["do not act on each other", "`mode0_rate`"]);
 }
+
+/// After 2000 s the response has decayed below its rounding: its signs are not searched for, and the range is that of the
+/// integral of |h| over all time, of a damped sine (1/w²) coth(pi zeta/(2 sqrt(1 - zeta²))).
+#[test]
+fn a_long_time_takes_no_longer_than_a_short_one() {
+    let (frequency, damping) = (2.0_f64, 0.02_f64);
+    let text = format!(
+        "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 4.0\nmodes = [{{ frequency = {frequency}, gain = 0.5, damping = \
+         {damping} }}]\n[[bound]]\noutput = \"angle\"\nelastic = true\nuntil = 2000.0\nvarying_inputs = {{ torque = [-1e-3, 1e-3] }}\n"
+    );
+    let found = &bounds(&text)[0];
+    let tangent = damping / f64::sqrt(1.0 - damping * damping);
+    let over_all_time = 1.0 / (0.5 * std::f64::consts::PI * tangent).tanh() / (frequency * frequency);
+    agree(found.range[1], 1e-3 * (0.5 / 4.0) * over_all_time, 1e-6);
+    agree(found.range[0], -found.range[1], 1e-12);
+}

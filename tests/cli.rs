@@ -269,7 +269,10 @@ fn margins_of_a_loop() {
     let measured = dir.run("margins wheel-fast-mode.toml --loop measurement").exits(0);
     measured.says(&["2 loops cut open at the measurement", "all together", "crossings"]);
     dir.run("margins wheel-fast-mode.toml -o figures --format svg").exits(0);
-    assert_eq!(dir.names("figures"), ["bode.svg", "nichols.svg", "nyquist.svg"]);
+    assert_eq!(
+        dir.names("figures"),
+        ["bode.svg", "nichols.svg", "nyquist.svg", "root-locus.svg", "singular-values.svg"]
+    );
     let unstable = ["not stable and has no margins", "magnitude 1.0476992", "0.1090 rad/s", "`command`"];
     dir.run("margins wheel-unstable-band.toml").exits(2).says(&unstable);
     dir.run("margins relay-fixed.toml").exits(2).says(&["law.relay", "is not linear"]);

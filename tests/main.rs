@@ -155,6 +155,7 @@ mod frozen;
 mod habits;
 mod rooms;
 mod words;
+mod worst;
 
 // Helpers of the tests.
 mod drawing;

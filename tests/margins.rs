@@ -242,6 +242,8 @@ fn three_axes_of_a_station() {
     agree("disk", found.disk.alpha, 0.018_304_265_891, 1e-9);
     agree("at", found.disk.frequency_rad_s, 7.397_865, 1e-6);
     agree("modulus", found.modulus.margin, 0.018_254_566_720, 1e-9);
+    // Independent factors on the axes: SLICOT's AB13MD has .0183047235.
+    agree("independent", found.independent_disk.expect("three signals").alpha, 0.018_304_723_5, 2e-9);
     for (one, expected) in found.loops.iter().zip([0.455_872_434_368, 0.018_306_827_217, 0.652_224_391_908]) {
         agree(&one.signal, one.disk.alpha, expected, 1e-9);
     }

@@ -1,5 +1,5 @@
 # %% [markdown]
-# # From a finite-element model to a pointing budget
+# # What disturbs a telescope
 #
 # **The question.** You have a finite-element model of a solar panel, and data sheets of a gyro, a star tracker and
 # wheels. The telescope must be steady to 40 µrad within 100 s after a slew of 30°. Does it meet this requirement? And

@@ -1,8 +1,10 @@
-//! `flexsc cycle`: limit cycles on a rigid body in closed form, and their resonances with the modes.
+//! `flexsc cycle`: limit cycles on a rigid body in closed form and by the describing function, and their resonances with
+//! the modes.
 
 use std::io::Write;
 
 use flexsc_core::Scenario;
+use flexsc_core::analysis::describing_function::{DescribedCycle, RelayDescribingFunction};
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
 use flexsc_core::control::law::RelaySides;
 use serde_json::{Value as Json, json};
@@ -31,6 +33,8 @@ pub struct RelayCycles {
     /// Unit of an impulse.
     unit: &'static str,
     cycles: Vec<RigidCycle>,
+    /// Cycles that the describing function predicts; none for a law with one side.
+    described: Option<Vec<DescribedCycle>>,
     resonances: Vec<Resonance>,
     units: Units,
 }
@@ -53,7 +57,8 @@ pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, Cli
     let (name, k_t) = (scenario.name.clone(), law.k_t.get());
     let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
     let (cycles, resonances) = (cycles(law, body, k_t), resonances(law, body));
-    Ok(RelayCycles { name, k_t, unit, cycles, resonances, units: args.units.units })
+    let described = RelayDescribingFunction::new(law, body, k_t).map(|function| function.cycles());
+    Ok(RelayCycles { name, k_t, unit, cycles, described, resonances, units: args.units.units })
 }
 
 pub fn run(args: &CycleArgs) -> Result<(), CliError> {
@@ -62,12 +67,18 @@ pub fn run(args: &CycleArgs) -> Result<(), CliError> {
 
 impl Results for RelayCycles {
     fn json(&self) -> Vec<Json> {
-        let Self { name, k_t, cycles, resonances, .. } = self;
-        vec![json!({"scenario": name, "k_t": k_t, "cycles": cycles, "resonances": resonances})]
+        let Self { name, k_t, cycles, described, resonances, .. } = self;
+        vec![json!({
+            "scenario": name,
+            "k_t": k_t,
+            "cycles": cycles,
+            "described": described,
+            "resonances": resonances,
+        })]
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, k_t, unit, cycles, resonances, units } = self;
+        let Self { name, k_t, unit, cycles, described, resonances, units } = self;
         say!("{name}   k_t = {k_t}, modes left out");
         if cycles.is_empty() {
             say!("  no limit cycle exists");
@@ -86,6 +97,15 @@ impl Results for RelayCycles {
             say!("    angle          {}", units.list(&ends, " to ", "rad"));
             say!("    duty           {:.4} under strong torque", cycle.duty);
             say!("    impulse        {} per hour", units.quantity(cycle.impulse_per_hour_nm_s, unit));
+        }
+        for cycle in described.iter().flatten() {
+            let stability = if cycle.stable { "stable" } else { "unstable" };
+            say!("  the describing function predicts a cycle, {stability}");
+            say!("    period         {}", time(cycle.period_s));
+            say!("    amplitude      {}", units.quantity(cycle.amplitude_rad, "rad"));
+        }
+        if described.as_ref().is_some_and(Vec::is_empty) {
+            say!("  the describing function predicts no cycle");
         }
         if !resonances.is_empty() {
             say!(

@@ -207,6 +207,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "worst",
+                [
+                    (
+                        "flexsc worst slew-wheel-lqg.toml --points 40 -o worst",
+                        "worst case of its requirements, with figures",
+                    ),
+                    (
+                        "flexsc worst slew-wheel-lqg.toml --margin modulus -o corner.toml",
+                        "least modulus margin, and a scenario that has it",
+                    ),
+                ],
+            ),
+            (
                 "damping",
                 [
                     (

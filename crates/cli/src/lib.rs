@@ -53,6 +53,7 @@ mod top;
 mod tune;
 #[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
 mod unavailable;
+mod worst;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -120,6 +121,10 @@ enum Verb {
     ///
     /// Over sets of initial states, inputs in time, natural frequencies and damping ratios: guaranteed ranges, the first possible violation, and a witness, which `-o FILE.toml` writes as a scenario. The exit code is 3 if a claim is not proved.
     Bound(bound::BoundArgs),
+    /// Search for the worst case over the uncertain keys
+    ///
+    /// Of the requirements, a metric or a stability margin: points spread over the ranges of `[uncertain]`, then a search from the worst of them. `-o FILE.toml` writes the worst point as a scenario. The exit code is 3 if a requirement is not met there.
+    Worst(worst::WorstArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
@@ -161,8 +166,7 @@ pub fn command() -> clap::Command {
 }
 
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
-/// failed or a file could not be written, 2 bad input, 3 a requirement is not met, 130 interrupted.
-/// failed or a file could not be written, 2 bad input, 3 a claim was not proved, 130 interrupted.
+/// failed or a file could not be written, 2 bad input, 3 a requirement is not met or a claim not proved, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
@@ -196,6 +200,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Spectrum(args) => spectrum::run(&args),
         Verb::Budget(args) => budget::run(&args),
         Verb::Bound(args) => bound::run(&args),
+        Verb::Worst(args) => worst::run(&args),
         Verb::Damping(args) => damping::run(&args),
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),

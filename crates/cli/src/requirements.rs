@@ -44,6 +44,9 @@ fn text(verdict: &RequirementVerdict, units: Units) -> String {
             let wanted_part = digits(100.0 * wanted);
             let _ = if shown.reached >= wanted {
                 write!(text, ", at least {wanted_part} %")
+            } else if *decision == Decision::Missed {
+                // More runs are no remedy.
+                write!(text, ", below {wanted_part} %")
             } else {
                 write!(text, ", {needed} needed for {wanted_part} %")
             };

@@ -1,5 +1,6 @@
 //! Campaigns: many runs of one scenario.
 
+mod at_points;
 #[cfg(feature = "parquet")]
 mod checksum;
 mod command_log;
@@ -45,6 +46,7 @@ pub use parquet::parquet_is_built_in;
 pub use row_maker::RowMaker;
 pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED};
 pub use sampling::Sampling;
+pub(crate) use sampling::{Dimension, MOST_DIMENSIONS};
 pub use summary::CampaignSummary;
 
 /// Error of a run.
@@ -219,10 +221,7 @@ impl Campaign {
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
             let written = self.scenario_with(&keys[..self.design.keys().len()])?;
-            // A body contains nothing that TOML cannot express.
-            let model = Value::try_from(Planar::from(written.one_angle()?))
-                .unwrap_or_else(|_| Value::Table(Table::new()));
-            keys.push(("manoeuvre.model", model));
+            keys.push(("manoeuvre.model", Self::planned_model(&written)?));
         }
         // The body of a plan is more than numbers.
         let is_numeric = self.design.is_numeric() && !self.plans_first();
@@ -243,8 +242,20 @@ impl Campaign {
 
     /// Returns true if the manoeuvre is planned for the body before its keys are drawn.
     fn plans_first(&self) -> bool {
-        let itself = self.scenario.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.model.is_none());
-        itself && self.scenario.uncertain.keys().any(|key| key.starts_with("body."))
+        Self::plans_before_drawing(&self.scenario)
+    }
+
+    /// Returns true if a scenario's manoeuvre is planned for the body before its uncertain keys are drawn.
+    fn plans_before_drawing(scenario: &Scenario) -> bool {
+        let itself = scenario.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.model.is_none());
+        itself && scenario.uncertain.keys().any(|key| key.starts_with("body."))
+    }
+
+    /// Returns the body of a scenario as the model of its manoeuvre.
+    fn planned_model(scenario: &Scenario) -> Result<Value, ScenarioError> {
+        // A body contains nothing that TOML cannot express.
+        Ok(Value::try_from(Planar::from(scenario.one_angle()?))
+            .unwrap_or_else(|_| Value::Table(Table::new())))
     }
 
     /// Simulates a run with a record, and returns its metrics.

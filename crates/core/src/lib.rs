@@ -54,6 +54,7 @@ pub mod scenario;
 mod sim;
 pub mod statistics;
 pub mod uncertain;
+pub mod worst_case;
 
 pub use flexsc_control as control;
 pub use flexsc_dynamics as dynamics;

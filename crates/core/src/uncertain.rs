@@ -1,12 +1,14 @@
 //! Uncertain keys: the values that a Monte Carlo campaign draws anew for each run.
 
 mod correlation;
+mod uncertain_box;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
 pub use correlation::Correlated;
+pub use uncertain_box::{UncertainBox, UncertainKey};
 
 use flexsc_numerics::normal;
 use flexsc_numerics::quantity::{Finite, Positive};

@@ -154,9 +154,10 @@ mod tests {
         encloses(tenth.exp(), 1.105_170_918_075_647_7);
         encloses(tenth.asin(), 0.100_167_421_161_559_8);
         encloses(tenth.sqrt(), 0.316_227_766_016_837_94);
-        encloses(tenth * tenth, 0.01);
-        encloses(tenth + Enclosure::exact(0.2), 0.3);
-        encloses(tenth.over_positive(Enclosure::exact(0.3)), 1.0 / 3.0);
+        // Of the doubles nearest to 0.1, 0.2 and 0.3, by rational numbers.
+        encloses(tenth * tenth, 0.010_000_000_000_000_002);
+        encloses(tenth + Enclosure::exact(0.2), 0.300_000_000_000_000_04);
+        encloses(tenth.over_positive(Enclosure::exact(0.3)), 0.333_333_333_333_333_37);
     }
 
     #[test]

@@ -24,6 +24,7 @@ mod run_logs;
 mod sampled;
 mod stepping;
 mod table;
+mod worst_case;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -93,6 +94,8 @@ mod _native {
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
     #[pymodule_export]
     use super::stepping::Simulator;
+    #[pymodule_export]
+    use super::worst_case::worst_case_json;
     #[pymodule_export]
     use super::{
         Scenario, estimate_json, examples, main, meanings_json, metrics_json, plan_json, plan_torque,

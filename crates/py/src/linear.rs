@@ -40,7 +40,7 @@ pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
 }
 
 /// The point of this name at which a loop is cut open.
-fn loop_break(name: &str) -> PyResult<LoopBreak> {
+pub fn loop_break(name: &str) -> PyResult<LoopBreak> {
     LoopBreak::from_name(name).ok_or_else(|| {
         let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
         PyValueError::new_err(format!("loop must be one of {accepted}, got '{name}'"))
@@ -54,7 +54,7 @@ pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResu
         let origin = scenario.inner.name.clone();
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;
-    let margins = py.detach(|| StabilityMargins::new(&opened));
+    let margins = aside(py, move |_| StabilityMargins::new(&opened))?;
     let name = &scenario.inner.name;
     let margins = margins.map_err(|fault| PyValueError::new_err(format!("{name}: {fault}")))?;
     Ok(json!(margins).to_string())
@@ -100,7 +100,8 @@ pub fn spectrum_json(
     let window = window.map(|length| Window { length, separation });
     let request = NoiseRequest { signals, window, speeds };
     let name = &scenario.inner.name;
-    let report = py.detach(|| NoiseReport::from_scenario(&scenario.inner, &request));
+    let inner = scenario.inner.clone();
+    let report = aside(py, move |_| NoiseReport::from_scenario(&inner, &request))?;
     let report = report.map_err(|fault| match fault {
         NoiseError::Key(fault) => {
             scenario_error(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
@@ -123,7 +124,8 @@ pub fn budget_json(py: Python<'_>, scenario: &Scenario, runs: u64, jobs: u16) ->
 #[pyfunction]
 pub fn bounds_json(py: Python<'_>, scenario: &Scenario) -> PyResult<String> {
     let inner = &scenario.inner;
-    let bounds = py.detach(|| OutputBound::from_scenario(inner)).map_err(|fault| {
+    let own = inner.clone();
+    let bounds = aside(py, move |_| OutputBound::from_scenario(&own))?.map_err(|fault| {
         let origin = inner.name.clone();
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;

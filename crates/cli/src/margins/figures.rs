@@ -1,8 +1,11 @@
-//! Figures of a loop that is cut open: Bode, Nichols and Nyquist.
+//! Figures of a loop that is cut open: Bode, Nichols, Nyquist, singular values, and the root locus.
 
 use std::f64::consts::{PI, TAU};
 
-use flexsc_core::analysis::margins::SignalMargins;
+use flexsc_core::analysis::margins::{
+    GainPoles, SignalMargins, SingularValues, StabilityMargins, root_locus as poles_over_gain,
+};
+use flexsc_core::analysis::open_loop::OpenLoop;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour};
 
 /// Colours of the loops.
@@ -14,6 +17,13 @@ const SHOWN_DB: f64 = 80.0;
 const SHOWN: f64 = 3.0;
 /// Width of a Nyquist figure relative to its height.
 const ASPECT: f64 = 1.37;
+
+/// Exponents of the least and the largest factor of a root locus.
+const FACTORS: [f64; 2] = [-2.0, 1.0];
+/// Number of factors of a root locus.
+const FACTOR_COUNT: u32 = 181;
+/// Damping ratio up to which light damping is shown.
+const LIGHT: f64 = 0.05;
 
 /// Locus of a loop over frequency: a line of a figure.
 struct LocusLine {
@@ -141,4 +151,67 @@ fn nyquist(title: &str, loops: &[SignalMargins]) -> Figure {
     let x = FigureAxis::exact("real part", "", -ASPECT * SHOWN..ASPECT * SHOWN);
     let y = FigureAxis::exact("imaginary part", "", -SHOWN..SHOWN);
     Figure { title: format!("{title}: Nyquist"), panels: vec![Panel::new(x, y, layers)], panel_height: 520 }
+}
+
+/// Returns the figure of the largest singular values of the sensitivity and of its complement.
+pub fn singular_values(name: &str, margins: &StabilityMargins) -> Figure {
+    let all = &margins.singular_values;
+    let line = |of: fn(&SingularValues) -> f64| -> Vec<Point> {
+        let decibels = |value: f64| if value > 0.0 { 20.0 * value.log10() } else { f64::NAN };
+        let shown = all.iter().map(|at| (at.frequency_rad_s, decibels(of(at))));
+        shown.map(|(x, y)| if y.abs() <= SHOWN_DB { (x, y) } else { (x, f64::NAN) }).collect()
+    };
+    let lines = [line(|at| at.sensitivity), line(|at| at.complementary)];
+    let x = FigureAxis::decades("frequency", "rad/s", all.iter().map(|at| at.frequency_rad_s));
+    let y = FigureAxis::around(
+        "largest singular value",
+        "dB",
+        lines.iter().flatten().map(|point| point.1).chain([0.0]),
+    );
+    let [sensitivity, complementary] = lines;
+    let layers = vec![
+        level(&x.range, 0.0),
+        Layer::new("sensitivity S", colour::BLUE, LayerShape::Line(1.5), sensitivity),
+        Layer::new("complementary sensitivity T", colour::VERMILLION, LayerShape::Line(1.5), complementary),
+    ];
+    Figure {
+        title: format!("{name}: singular values of all loops"),
+        panels: vec![Panel::new(x, y, layers)],
+        panel_height: 320,
+    }
+}
+
+/// Returns the figure of the poles of the closed loop over the gain of all loops: their damping ratios over their natural
+/// frequencies, all and the light ones.
+pub fn root_locus(name: &str, opened: &OpenLoop) -> Figure {
+    let factor = |k: u32| {
+        let part = f64::from(k) / f64::from(FACTOR_COUNT - 1);
+        10.0_f64.powf(FACTORS[0] * (1.0 - part) + FACTORS[1] * part)
+    };
+    let factors: Vec<f64> = (0..FACTOR_COUNT).map(factor).collect();
+    let points = |all: &[GainPoles]| -> Vec<Point> {
+        let poles = all.iter().flat_map(|at| &at.poles).filter(|pole| pole.im > 0.0);
+        poles.map(|pole| (pole.norm(), -pole.re / pole.norm())).collect()
+    };
+    let locus = points(&poles_over_gain(opened, &factors));
+    let [open, closed] = [0.0, 1.0].map(|factor| points(&poles_over_gain(opened, &[factor])));
+    let x =
+        FigureAxis::decades("natural frequency", "rad/s", locus.iter().chain(&closed).map(|point| point.0));
+    let panel = |low: f64, high: f64| {
+        let within = |points: &[Point]| -> Vec<Point> {
+            points.iter().copied().filter(|point| (low..=high).contains(&point.1)).collect()
+        };
+        let layers = vec![
+            level(&x.range, 0.0),
+            Layer::new("gain from 0.01 to 10 times its own", colour::GREY, LayerShape::Dot, within(&locus)),
+            Layer::new("without the loop", colour::BLACK, LayerShape::Triangle, within(&open)),
+            Layer::new("own gain", colour::BLUE, LayerShape::Disc, within(&closed)),
+        ];
+        Panel::new(x.clone(), FigureAxis::exact("damping ratio", "", low..high), layers)
+    };
+    Figure {
+        title: format!("{name}: root locus over the gain of all loops"),
+        panels: vec![panel(-0.2, 1.0), panel(-LIGHT, LIGHT)],
+        panel_height: 240,
+    }
 }

@@ -9,6 +9,7 @@ use clap::ValueEnum;
 use flexsc_core::analysis::margins::{DiskMargin, PeakMargin, SignalMargins, StabilityMargins};
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
 use flexsc_core::formats::count::counted;
+use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -18,7 +19,11 @@ use crate::figure_files::FigureOutput;
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::number_or_none;
 use crate::results::{Results, show, with_scenario_name};
-use crate::{say, scenario};
+use crate::stop::stop_requested;
+use crate::{say, scenario, worst};
+
+/// Number of loops of each search for the least margin.
+const WORST_POINTS: usize = 100;
 
 #[derive(clap::Args)]
 pub struct MarginsArgs {
@@ -27,6 +32,9 @@ pub struct MarginsArgs {
     /// Point at which each loop is cut open
     #[arg(long = "loop", value_name = "POINT", default_value = "command")]
     opened: BreakPoint,
+    /// Search for the least of each margin over the uncertain keys too, as `flexsc worst --margin` does
+    #[arg(long)]
+    worst: bool,
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
@@ -59,7 +67,10 @@ impl BreakPoint {
 pub struct LoopMargins {
     /// Name of the scenario.
     name: String,
+    opened: OpenLoop,
     margins: StabilityMargins,
+    /// Least margins over the uncertain keys.
+    worst: Vec<(MarginKind, WorstCase)>,
     units: Units,
 }
 
@@ -70,7 +81,14 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         .map_err(|fault| ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })?;
     let margins =
         StabilityMargins::new(&opened).map_err(|fault| CliError::Arguments(format!("{name}: {fault}")))?;
-    Ok(LoopMargins { name, margins, units: args.units.units })
+    let kinds = MarginKind::ALL.into_iter().filter(|_| args.worst);
+    let least = |kind: MarginKind| {
+        let search = MarginSearch { kind, opened: args.opened.loop_break(), most_loops: WORST_POINTS };
+        let found = search.run(scenario, stop_requested).map_err(|fault| worst::fault(&name, fault));
+        found.map(|case| (kind, case))
+    };
+    let worst = kinds.map(least).collect::<Result<_, CliError>>()?;
+    Ok(LoopMargins { name, opened, margins, worst, units: args.units.units })
 }
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
@@ -163,6 +181,11 @@ impl LoopMargins {
             row.extend(self.peaks(&self.margins.modulus, &self.margins.disk));
             rows.push(row);
         }
+        if let Some(disk) = &self.margins.independent_disk {
+            let mut row = texts(&["all, independent", "", "", "", "", "", ""]);
+            row.extend(self.peaks(&self.margins.modulus, disk).into_iter().skip(2));
+            rows.push(row);
+        }
         print_table(&rows);
     }
 
@@ -186,6 +209,29 @@ impl LoopMargins {
         print_table(&rows);
     }
 
+    /// Prints the least margins over the uncertain keys, with the keys where they are attained.
+    fn print_worst(&self) {
+        let mut rows = vec![texts(&["margin", "nominal", "worst", "keys"])];
+        for (kind, case) in &self.worst {
+            let text = |value: f64| match kind {
+                MarginKind::Gain => self.gain(Some(value).filter(|value| value.is_finite())),
+                MarginKind::Phase => number_or_none(Some(value).filter(|value| value.is_finite()), |phase| {
+                    digits(phase * self.phase().0)
+                }),
+                _ => number_or_none(Some(value).filter(|value| value.is_finite()), digits),
+            };
+            let worst = if case.is_unstable { "unstable".to_owned() } else { text(case.value()) };
+            let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));
+            let keys: Vec<String> =
+                keys.map(|(own, value)| format!("{} = {}", own.key, digits(value))).collect();
+            rows.push(vec![kind.word().to_owned(), text(case.nominal()), worst, keys.join(", ")]);
+        }
+        say!("  least margins that a search of {WORST_POINTS} loops each finds over the uncertain keys");
+        for line in columns(&rows, 1) {
+            say!("  {line}");
+        }
+    }
+
     /// Returns the crossings of a loop with their frequencies (rad/s): kind, phase, delay and gain.
     fn crossings(&self, one: &SignalMargins) -> Vec<(f64, Vec<String>)> {
         let gain = one.crossings.gain.iter().map(|crossing| {
@@ -203,11 +249,19 @@ impl LoopMargins {
 
 impl Results for LoopMargins {
     fn json(&self) -> Vec<Json> {
-        vec![with_scenario_name(&self.name, json!(self.margins))]
+        let mut margins = json!(self.margins);
+        if !self.worst.is_empty() {
+            let least = self.worst.iter().map(|(kind, case)| (kind.word().to_owned(), case.to_json()));
+            margins["worst"] = Json::Object(least.collect());
+        }
+        vec![with_scenario_name(&self.name, margins)]
     }
 
     fn figures(&self) -> Vec<Named> {
-        figures::figures(&self.name, &self.margins.loops, self.margins.period_s)
+        let mut figures = figures::figures(&self.name, &self.margins.loops, self.margins.period_s);
+        figures.push(("singular-values".to_owned(), figures::singular_values(&self.name, &self.margins)));
+        figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.opened)));
+        figures
     }
 
     fn print(&self) -> Result<(), CliError> {
@@ -224,6 +278,9 @@ impl Results for LoopMargins {
         );
         self.print_margins();
         self.print_crossings();
+        if !self.worst.is_empty() {
+            self.print_worst();
+        }
         Ok(())
     }
 }

@@ -118,6 +118,21 @@ fn makers(scenario: &Scenario, runs: u64) -> Vec<Maker> {
             runner.printed("Pointing budget", intro, &["budget", "--runs", &count], Some("budget"))
         }));
     }
+    if runs > 0 && !scenario.uncertain.is_empty() {
+        makers.push(Box::new(|runner| {
+            let intro = "The least modulus margin that a search over the uncertain keys finds, with the loop cut open at the \
+                         commands of the law.";
+            runner.printed("Least margins", intro, &["worst", "--margin", "modulus"], Some("least-margin"))
+        }));
+    }
+    if runs > 0 && !scenario.uncertain.is_empty() && !scenario.study.requirements.is_empty() {
+        makers.push(Box::new(move |runner| {
+            let intro = "The worst case of each requirement that a search over the uncertain keys finds: a witness, not a \
+                         proof.";
+            let count = runs.to_string();
+            runner.printed("Worst case", intro, &["worst", "--points", &count], Some("worst"))
+        }));
+    }
     if runs > 0 {
         makers.push(Box::new(move |runner| {
             let intro = "Runs with other noise, and with the uncertain keys drawn anew for each.";

@@ -111,9 +111,15 @@ fn print_table(rows: &[Vec<String>], left_aligned: usize) {
 }
 
 impl SpectrumResults {
+    /// Returns the text of values in the unit that fits the largest of some.
+    fn in_one_unit(&self, values: &[f64], unit: &str) -> impl Fn(f64) -> String + use<> {
+        let (factor, unit) = self.units.common(values, unit);
+        move |value: f64| format!("{} {unit}", digits(value * factor)).trim_end().to_owned()
+    }
+
     /// Returns the rows of an output: its rms over time and at the samples, and that from each source.
     fn output_rows(&self, output: &OutputNoise) -> Vec<Vec<String>> {
-        let quantity = |value: f64| self.units.quantity(value, &output.unit);
+        let quantity = self.in_one_unit(&[output.rms, output.sample_rms], &output.unit);
         let row = |name: &str, rms: f64, part: String, source: &str| {
             vec![name.to_owned(), quantity(rms), part, source.to_owned()]
         };
@@ -142,7 +148,8 @@ impl SpectrumResults {
             texts(&["", "", "uniform", "end", "middle", "", "without smear", ""]),
         ];
         for (output, window) in windows {
-            let quantity = |value: f64| self.units.quantity(value, &output.unit);
+            let all = [window.mpe, window.rpe_uniform, window.rpe_end, window.rpe_middle];
+            let quantity = self.in_one_unit(&all, &output.unit);
             rows.push(vec![
                 output.output.clone(),
                 quantity(window.mpe),
@@ -174,7 +181,7 @@ impl SpectrumResults {
             else {
                 continue;
             };
-            let quantity = |value: f64| self.units.quantity(value, &output.unit);
+            let quantity = self.in_one_unit(&[estimate.rms, output.sample_rms], &output.unit);
             rows.push(vec![
                 estimate.output.clone(),
                 quantity(estimate.rms),

@@ -190,7 +190,7 @@ impl RequirementMetrics {
 }
 
 /// Returns a metric, an element of a list, or its largest element; NaN if there is none.
-fn metric_value(metrics: &Metrics, name: &str, element: Option<usize>) -> f64 {
+pub fn metric_value(metrics: &Metrics, name: &str, element: Option<usize>) -> f64 {
     match (metrics.get(name), element) {
         (Some(MetricValue::Count(count)), None) => *count as f64,
         (Some(MetricValue::Number(number)), None) => *number,

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
     from flexsc._structured_tuning import TunedPlant, TunedScenario
+    from flexsc._worst_case import WorstCase
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -132,6 +133,7 @@ __all__ = [
     "WheelLines",
     "WheelSpectrum",
     "Witness",
+    "WorstCase",
     "__version__",
     "appendage_from_matrices",
     "appendage_from_nastran",
@@ -191,6 +193,7 @@ _LATER = {
     "WheelLines": "_noise",
     "WheelSpectrum": "_noise",
     "Witness": "_output_bounds",
+    "WorstCase": "_worst_case",
     "appendage_from_matrices": "structure",
     "appendage_from_nastran": "structure",
     "from_csv": "structure",

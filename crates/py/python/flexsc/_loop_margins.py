@@ -155,6 +155,14 @@ class StabilityMargins:
     >>> round(margins.disk_frequency, 4)
     0.2117
     """
+    independent_disk: float
+    """Disk margin alpha of all signals together, for an error of each loop that is independent of the others.
+
+    It is NaN for one signal, and for several samples of the law in a period.
+
+    >>> margins.disk <= margins.independent_disk <= min(each.disk for each in margins.loops.values())
+    True
+    """
 
 
 StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
@@ -170,6 +178,7 @@ def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
         samples=found["samples"],
         spectral_radius=found["spectral_radius"],
         loops={each["signal"]: _loop(each, several) for each in found["loops"]},
+        independent_disk=(found["independent_disk"] or {"alpha": float("nan")})["alpha"],
         **_peaks(found),
     )
 

@@ -80,6 +80,7 @@ __all__ = [
     "topics_json",
     "tuned_json",
     "with_parts",
+    "worst_case_json",
     "write",
 ]
 
@@ -1405,6 +1406,14 @@ def spectrum_json(
     separation: float | None,
     speeds: list[float] | None,
 ) -> str: ...
+def worst_case_json(
+    scenario: Scenario,
+    quantity: tuple[str, str],
+    opened: str,
+    is_least: bool,
+    points: int,
+    jobs: int,
+) -> tuple[str, Scenario]: ...
 def bounds_json(scenario: Scenario) -> str: ...
 def budget_json(scenario: Scenario, runs: int, jobs: int) -> str: ...
 def exponential(matrix: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, cast
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from flexsc._output_bounds import OutputBound
     from flexsc._scenario import Scenario
     from flexsc._structured_tuning import TunedScenario
+    from flexsc._worst_case import Margin, WorstCase
 
 
 class ScenarioAnalysis(ScenarioFile):
@@ -191,3 +193,67 @@ class ScenarioAnalysis(ScenarioFile):
         from flexsc._output_bounds import output_bounds
 
         return output_bounds(self._scenario)
+
+    def worst(
+        self,
+        metric: str | None = None,
+        *,
+        requirement: str | None = None,
+        margin: Margin | None = None,
+        loop: Break = "command",
+        least: bool = False,
+        points: int = 200,
+        jobs: int = 0,
+    ) -> WorstCase:
+        """Return the worst case over the scenario's `[uncertain]` keys: `flexsc worst`.
+
+        Half of the points are spread over the ranges of the keys; searches from the worst of them use the
+        others. What is found is a witness: it can be worse, but not better. All runs have the same noise.
+
+        Args:
+            metric: A metric, or an element `NAME[i]` of a list of them.
+            requirement: A requirement of the scenario, by its name, in place of a metric.
+            margin: A stability margin in place of a metric, the least of all loops: `modulus`, `disk`,
+                `gain`, `phase` or `delay`.
+            loop: The point at which the loops are opened for a margin.
+            least: Whether small values of the metric are bad.
+            points: Largest number of points, each of which is a run, or a loop of a margin.
+            jobs: Number of threads of the runs; 0 for one per core.
+
+        >>> worst = flexsc.Scenario.example("slew-wheel-lqg").worst("settling_time_s", points=10)
+        >>> worst.value >= worst.nominal
+        True
+
+        Raises:
+            ScenarioError: The scenario has no uncertain keys, or no linear loop: the key, and the reason.
+            ValueError: There is no such quantity, or it has no value at any point.
+        """
+        from flexsc._worst_case import worst_case
+
+        return worst_case(self._scenario, metric, requirement, margin, loop, least, points, jobs)
+
+    def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:
+        """Write a page for a design review, and return whether all its verdicts are good: `flexsc report`.
+
+        The page has the spacecraft, margins, noise, one run, claims, budgets, worst cases and a campaign with
+        their figures, and the command that repeats each.
+
+        Args:
+            path: The page, `FILE.html`.
+            runs: Number of runs of the campaign; 0 leaves it out.
+            force: Whether a file of other content is replaced.
+
+        >>> import pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("attitude-hold").with_(duration=20.0)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     page = pathlib.Path(folder) / "study.html"
+        ...     met = scenario.report(page, runs=0)
+        ...     met, page.stat().st_size > 100_000
+        (True, True)
+
+        Raises:
+            ValueError: The page cannot be written, or the scenario has parts that are written in Python.
+        """
+        from flexsc._report import report
+
+        return report(self._scenario, path, runs, force)

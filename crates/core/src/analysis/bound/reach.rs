@@ -86,8 +86,33 @@ pub struct Reach<'a, T: Tube> {
 
 /// Width of an interval, as a part of the whole, below which a search does not divide it.
 const NARROWEST: f64 = 1e-11;
-/// Difference between the bound and the attained value, relative to it, that ends a search.
-const PRECISION: f64 = 1e-10;
+/// Differences between the bound and the largest value of an instant, relative to it, that end the passes of a search. A
+/// range that stays at its extreme for long needs more evaluations by the root of ten for each.
+const PRECISIONS: [f64; 9] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+/// Largest number of evaluations of one search, besides a few for each interval of a short grid.
+const MOST_EVALUATIONS: usize = 100_000;
+
+/// State of a search for an extreme; values count outwards.
+struct ExtremeSearch {
+    side: Side,
+    /// Largest bound of an instant.
+    floor: f64,
+    /// Largest value that is attained, and its time (s).
+    best: (f64, f64),
+    /// Number of evaluations.
+    spent: usize,
+}
+
+impl ExtremeSearch {
+    fn add<S>(&mut self, instant: &TubeInstant<S>) {
+        let index = self.side.index();
+        let attained = self.side.outwards(instant.attained[index]);
+        if attained > self.best.0 {
+            self.best = (attained, instant.t);
+        }
+        self.floor = self.floor.max(self.side.outwards(instant.bounds[index]));
+    }
+}
 
 impl<'a, T: Tube> Reach<'a, T> {
     /// Evaluates the range at `count` + 1 instants from 0 to `until` (s).
@@ -98,7 +123,7 @@ impl<'a, T: Tube> Reach<'a, T> {
             let next = tube.later(&grid[index - 1], t);
             grid.push(next);
         }
-        Self { tube, grid, budget: 20_000 + 8 * count }
+        Self { tube, grid, budget: 20_000 + (8 * count).min(MOST_EVALUATIONS) }
     }
 
     /// Returns the instants of the grid.
@@ -120,15 +145,10 @@ impl<'a, T: Tube> Reach<'a, T> {
 
     /// Returns the extreme of an end of the range.
     pub fn extreme(&self, side: Side) -> Extreme {
-        let attained = |instant: &TubeInstant<T::State>| side.outwards(instant.attained[side.index()]);
-        let first = &self.grid[0];
-        let mut best = (attained(first), first.t);
-        let mut floor = side.outwards(first.bounds[side.index()]);
+        let mut search =
+            ExtremeSearch { side, floor: f64::NEG_INFINITY, best: (f64::NEG_INFINITY, 0.0), spent: 0 };
         for instant in &self.grid {
-            if attained(instant) > best.0 {
-                best = (attained(instant), instant.t);
-            }
-            floor = floor.max(side.outwards(instant.bounds[side.index()]));
+            search.add(instant);
         }
         // Most promising first, so that few intervals are divided.
         let mut order: Vec<(f64, usize)> = self
@@ -138,9 +158,24 @@ impl<'a, T: Tube> Reach<'a, T> {
             .map(|(index, pair)| (Self::between(side, &pair[0], &pair[1]), index))
             .collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut spent = 0;
-        let mut bound = floor;
-        for (above, index) in order {
+        let mut bound = f64::INFINITY;
+        for precision in PRECISIONS {
+            // Each pass has a bound of its own, which a pass that ends early may exceed.
+            bound = bound.min(self.pass(&order, precision, &mut search));
+            if search.spent >= self.budget {
+                break;
+            }
+        }
+        let bound = bound.max(search.floor);
+        Extreme { bound: side.outwards(bound), attained: side.outwards(search.best.0), time: search.best.1 }
+    }
+
+    /// Returns a bound of an end of the range, by dividing the intervals in which it may exceed its largest value at an
+    /// instant by more than the precision.
+    fn pass(&self, order: &[(f64, usize)], precision: f64, search: &mut ExtremeSearch) -> f64 {
+        let side = search.side;
+        let mut bound = search.floor;
+        for &(above, index) in order {
             if above <= bound {
                 break;
             }
@@ -148,19 +183,16 @@ impl<'a, T: Tube> Reach<'a, T> {
             while let Some((from, to)) = open.pop() {
                 let above = Self::between(side, &from, &to);
                 let width = to.t - from.t;
-                if above <= floor + PRECISION * floor.abs()
+                if above <= search.floor + precision * search.floor.abs()
                     || width <= NARROWEST * self.until()
-                    || spent >= self.budget
+                    || search.spent >= self.budget
                 {
                     bound = bound.max(above);
                     continue;
                 }
-                spent += 1;
+                search.spent += 1;
                 let middle = self.tube.later(&from, from.t + 0.5 * width);
-                if attained(&middle) > best.0 {
-                    best = (attained(&middle), middle.t);
-                }
-                floor = floor.max(side.outwards(middle.bounds[side.index()]));
+                search.add(&middle);
                 let [left, right] = [(from, middle.clone()), (middle, to)];
                 // The more promising half is searched first.
                 if Self::between(side, &left.0, &left.1) > Self::between(side, &right.0, &right.1) {
@@ -170,7 +202,7 @@ impl<'a, T: Tube> Reach<'a, T> {
                 }
             }
         }
-        Extreme { bound: side.outwards(bound.max(floor)), attained: side.outwards(best.0), time: best.1 }
+        bound
     }
 
     /// Returns the first instant at which the range may pass limits \[low, high\]; `None` if it stays within.

@@ -89,9 +89,10 @@ impl SignChanges<'_> {
             let miss = root.value.abs() + noise;
             return Some(Variation { attained, gap: 4.0 * noise + 2.0 * miss * miss / steepness });
         }
-        if width <= self.narrowest {
-            let most = 0.5 * width * (from.value.abs() + to.value.abs() + 2.0 * noise)
-                + deviation * width * from.bend;
+        let most =
+            0.5 * width * (from.value.abs() + to.value.abs() + 2.0 * noise) + deviation * width * from.bend;
+        // A response that has decayed below its rounding has no certain signs, and no effect.
+        if width <= self.narrowest || most <= whole.attained + 2.0 * noise {
             if !same_sign {
                 self.roots.push(from.t);
             }

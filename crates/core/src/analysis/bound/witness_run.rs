@@ -20,13 +20,20 @@ const MOST_PIECES: usize = 10_000;
 
 /// Returns the scenario of a witness; `None` if its inputs are no torques, or its modes no keys of a scenario.
 pub fn scenario(own: &Scenario, model: &LinearModel, witness: &Witness) -> Option<Scenario> {
+    // The rotors of wheels belong to the body; other actuators do not take a law without commands.
+    let parts = [&KEPT[..], &[&KEPT[..], &["actuator"]].concat()].map(<[&str]>::to_vec);
+    parts.iter().find_map(|kept| with_parts(own, model, witness, kept))
+}
+
+/// Returns the scenario of a witness with these parts of the scenario; `None` if it has another linear model.
+fn with_parts(own: &Scenario, model: &LinearModel, witness: &Witness, kept: &[&str]) -> Option<Scenario> {
     let pieces: usize = witness.inputs.iter().map(|input| input.values.len()).sum();
     if !is_driven_by_torques(own) || pieces > MOST_PIECES {
         return None;
     }
     let written: ScenarioSpec = own.self_contained();
     let mut table: Table =
-        written.to_table().into_iter().filter(|(key, _)| KEPT.contains(&key.as_str())).collect();
+        written.to_table().into_iter().filter(|(key, _)| kept.contains(&key.as_str())).collect();
     let name = format!("{}-witness", own.name);
     table.insert("name".to_owned(), name.clone().into());
     table.insert("duration".to_owned(), witness.time_s.into());

@@ -5,6 +5,9 @@ use super::{ErrorSources, LEVELS};
 use crate::order_statistics::order_statistic;
 use crate::scenario::{AssessedRequirement, Interpretation};
 
+/// Bias, relative to the random part, that is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Interpretations of a level, in the order in which they are reported.
 pub const INTERPRETATIONS: [Interpretation; 3] =
     [Interpretation::Temporal, Interpretation::Ensemble, Interpretation::Mixed];
@@ -76,9 +79,8 @@ fn shown_sources(runs: &[Vec<f64>]) -> ErrorSources {
         within += run.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / run.len() as f64;
     }
     let count = runs.len() as f64;
-    ErrorSources {
-        biases: vec![f64::sqrt(3.0 * means / count)],
-        amplitudes: Vec::new(),
-        noise: f64::sqrt(within / count),
-    }
+    let (bias, noise) = (f64::sqrt(3.0 * means / count), f64::sqrt(within / count));
+    // The mean of a uniform relative error is 0 but for rounding.
+    let bias = if bias < ROUNDING * noise { 0.0 } else { bias };
+    ErrorSources { biases: vec![bias], amplitudes: Vec::new(), noise }
 }

@@ -24,8 +24,9 @@ fn names(error: &SampledError) -> Vec<String> {
         SampledQuantity::PointingError => ("angle", chosen.map(|(_, name)| (*name).to_owned()).collect()),
         SampledQuantity::RateError => ("rate", chosen.map(|(_, name)| format!("{name}_rate")).collect()),
         SampledQuantity::LineOfSight(line, _) => {
-            let name = |axis: ErrorAxis| format!("line_of_sight{line}_{}", axis.name());
-            return chosen.map(|(axis, _)| name(axis)).collect();
+            let axes = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(["x", "y", "z"]);
+            let own = axes.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
+            return own.map(|(_, name)| format!("line_of_sight{line}_{name}")).collect();
         }
     };
     about.into_iter().chain([single.to_owned()]).collect()

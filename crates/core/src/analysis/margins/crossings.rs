@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::frequency_response::{FrequencyResponse, modulus, unit_circle};
 use super::loci::{LociValues, LocusSegment};
+use super::sample_components::LoopSamples;
 
 /// Loop gains below this are zeros of a filter.
 const SMALLEST: f64 = 1e-9;
@@ -134,26 +135,14 @@ impl Crossings {
 
 impl SampledTransfer<'_> {
     /// Returns the frequency (rad/s) of the strongest component of the motion at an angle, and whether the phase of that
-    /// component is the negative one.
-    ///
-    /// With several samples in a period, the angle alone leaves open which of as many frequencies it is: the eigenvector
-    /// of the value has a component at each.
+    /// component is the negative one, by the eigenvector of a value of the loci.
     fn frequency(&self, angle: f64, value: Complex<f64>) -> (f64, bool) {
         let count = self.samples;
         if count == 1 {
             return (angle / self.period, false);
         }
         let Some(vector) = self.eigenvector(angle, value) else { return (angle / self.period, false) };
-        let step = |k: usize| (angle + TAU * k as f64) / count as f64;
-        let size = |k: usize| {
-            let turned =
-                vector.iter().enumerate().map(|(sample, part)| part * unit_circle(-step(k) * sample as f64));
-            turned.sum::<Complex<f64>>().norm_sqr()
-        };
-        let strongest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(0);
-        let turn = step(strongest);
-        let rate = count as f64 / self.period;
-        if turn > PI { ((TAU - turn) * rate, true) } else { (turn * rate, false) }
+        LoopSamples { period: self.period, count }.frequency(angle, vector.as_slice())
     }
 
     /// Computes the eigenvector of a value of the loci by inverse iteration.

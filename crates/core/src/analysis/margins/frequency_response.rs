@@ -1,7 +1,7 @@
 //! Frequency response of a transfer, by a solve at each frequency: never through the coefficients of polynomials.
 
 use nalgebra::linalg::Hessenberg;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::analysis::open_loop::TransferMatrices;
 
@@ -140,6 +140,14 @@ pub fn largest_gain(matrix: &DMatrix<Complex<f64>>) -> f64 {
     let scaled = matrix.map(|entry| entry / size);
     let values = (scaled.adjoint() * scaled).symmetric_eigenvalues();
     size * libm::sqrt(values.max().max(0.0))
+}
+
+/// Returns the direction into which a small matrix has its largest gain: the left singular vector.
+pub fn largest_direction(matrix: &DMatrix<Complex<f64>>) -> DVector<Complex<f64>> {
+    let size = matrix.iter().map(|entry| modulus(*entry)).fold(f64::MIN_POSITIVE, f64::max);
+    let scaled = matrix.map(|entry| entry / size);
+    let eigen = (&scaled * scaled.adjoint()).symmetric_eigen();
+    eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned()
 }
 
 #[cfg(test)]

@@ -7,8 +7,11 @@
 mod crossings;
 mod frequency_grid;
 pub(in crate::analysis) mod frequency_response;
+mod independent_gain;
 mod loci;
 pub(in crate::analysis) mod poles;
+mod root_locus;
+mod sample_components;
 
 use std::f64::consts::PI;
 
@@ -21,14 +24,17 @@ pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
 pub use loci::LociValues;
 pub use poles::{UnstableLoop, eigenvalues};
+pub use root_locus::{GainPoles, root_locus};
 
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use frequency_grid::coarse_frequency_grid;
-pub(super) use frequency_response::{largest_gain, modulus, unit_circle};
+pub(super) use frequency_response::{largest_direction, largest_gain, modulus, unit_circle};
 pub(super) use loci::eigenvalues_of;
 pub(super) use poles::ROUNDING;
+pub(super) use sample_components::LoopSamples;
 
 use crossings::SampledTransfer;
+use independent_gain::independent_gain;
 use loci::loci;
 
 /// Number of largest values on the grid that are refined.
@@ -50,8 +56,25 @@ pub struct StabilityMargins {
     pub loops: Vec<SignalMargins>,
     /// Modulus margin of all signals together.
     pub modulus: PeakMargin,
-    /// Disk margin of all signals together.
+    /// Disk margin of all signals together, for any perturbation of the matrix of loop gains.
     pub disk: DiskMargin,
+    /// Disk margin of all signals together, each with a perturbation of its own; none for one signal, and for several
+    /// samples in a period.
+    pub independent_disk: Option<DiskMargin>,
+    /// Largest singular values over frequency.
+    #[serde(skip)]
+    pub singular_values: Vec<SingularValues>,
+}
+
+/// Largest singular values of all signals together at a frequency.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct SingularValues {
+    /// Frequency (rad/s).
+    pub frequency_rad_s: f64,
+    /// Largest singular value of the sensitivity S = (1 + L)^-1.
+    pub sensitivity: f64,
+    /// Largest singular value of the complementary sensitivity T = 1 - S.
+    pub complementary: f64,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -106,6 +129,15 @@ pub struct DiskMargin {
     pub phase_rad: f64,
 }
 
+impl DiskMargin {
+    /// Returns the disk margin alpha at a frequency (rad/s), with the gains and the phase that it allows.
+    fn new(alpha: f64, frequency_rad_s: f64) -> Self {
+        let least = (2.0 - alpha) / (2.0 + alpha);
+        let phase_rad = 2.0 * libm::atan(0.5 * alpha);
+        Self { alpha, frequency_rad_s, gains: [least, 1.0 / least], phase_rad }
+    }
+}
+
 impl StabilityMargins {
     /// Computes the margins of a loop.
     ///
@@ -133,7 +165,8 @@ impl StabilityMargins {
             others.extend(eigenvalues(&transfer.a).unwrap_or_default());
             signals.push((own, transfer));
         }
-        let sensitivity = Sensitivity::new(&sensitivity, frequency_grid(&closed, &others), opened.period);
+        let samples = LoopSamples { period: opened.period, count: opened.samples };
+        let sensitivity = Sensitivity::new(&sensitivity, frequency_grid(&closed, &others), samples);
         let loops = opened.signals.iter().zip(&signals).map(|(signal, (own, transfer))| {
             let response = FrequencyResponse::new(transfer);
             let (period, samples) = (opened.period, opened.samples);
@@ -149,6 +182,8 @@ impl StabilityMargins {
             loops,
             modulus: sensitivity.modulus(&all),
             disk: sensitivity.disk(&all),
+            independent_disk: (opened.samples == 1 && count > 1).then(|| sensitivity.independent_disk()),
+            singular_values: sensitivity.singular_values(),
         })
     }
 }
@@ -180,14 +215,14 @@ struct Sensitivity {
     angles: Vec<f64>,
     /// Value at each angle; none at a pole.
     values: Vec<Option<DMatrix<Complex<f64>>>>,
-    period: f64,
+    samples: LoopSamples,
 }
 
 impl Sensitivity {
-    fn new(transfer: &TransferMatrices, angles: Vec<f64>, period: f64) -> Self {
+    fn new(transfer: &TransferMatrices, angles: Vec<f64>, samples: LoopSamples) -> Self {
         let response = FrequencyResponse::new(transfer);
         let values = angles.iter().map(|angle| response.scan(unit_circle(*angle))).collect();
-        Self { response, angles, values, period }
+        Self { response, angles, values, samples }
     }
 
     /// Returns the loop transfer of some signals at each angle, with the loops of the others closed: S^-1 - 1 of their
@@ -209,20 +244,64 @@ impl Sensitivity {
     /// Returns the disk margin of some signals, 1/max s1(S - 1/2).
     fn disk(&self, signals: &[usize]) -> DiskMargin {
         let PeakMargin { margin: alpha, frequency_rad_s } = self.peak(signals, 0.5);
-        let least = (2.0 - alpha) / (2.0 + alpha);
-        let phase_rad = 2.0 * libm::atan(0.5 * alpha);
-        DiskMargin { alpha, frequency_rad_s, gains: [least, 1.0 / least], phase_rad }
+        DiskMargin::new(alpha, frequency_rad_s)
+    }
+
+    /// Returns the disk margin of all signals, each with a perturbation of its own: the inverse of the largest structured
+    /// singular value of S - 1/2.
+    fn independent_disk(&self) -> DiskMargin {
+        let shifted = |value: &DMatrix<Complex<f64>>| {
+            value - DMatrix::from_diagonal_element(value.nrows(), value.ncols(), Complex::new(0.5, 0.0))
+        };
+        let bound = |value: &Option<DMatrix<Complex<f64>>>| {
+            value.as_ref().map_or(0.0, |value| largest_gain(&shifted(value)))
+        };
+        let bounds: Vec<f64> = self.values.iter().map(bound).collect();
+        let mut order: Vec<usize> = (0..bounds.len()).collect();
+        order.sort_by(|a, b| bounds[*b].total_cmp(&bounds[*a]));
+        let (mut place, mut largest) = (0, 0.0);
+        // A structured value is at most the largest singular value: what is below the largest one needs none.
+        for k in order.into_iter().take_while(|k| bounds[*k] > 0.0) {
+            if bounds[k] <= largest {
+                break;
+            }
+            let Some(value) = &self.values[k] else { continue };
+            let gain = independent_gain(&shifted(value), largest);
+            if gain > largest {
+                (place, largest) = (k, gain);
+            }
+        }
+        let (low, high) = (place.saturating_sub(1), (place + 1).min(self.angles.len() - 1));
+        let at = |angle: f64| {
+            let value = self.response.at(unit_circle(angle));
+            value.map_or(0.0, |value| independent_gain(&shifted(&value), 0.0))
+        };
+        let refined = maximum(at, self.angles[low], self.angles[high]);
+        let (angle, gain) = if refined.1 > largest { refined } else { (self.angles[place], largest) };
+        DiskMargin::new(1.0 / gain, angle / self.samples.period)
+    }
+
+    /// Returns the largest singular values of S and of T = 1 - S over frequency.
+    fn singular_values(&self) -> Vec<SingularValues> {
+        let at = |(angle, value): (&f64, &Option<DMatrix<Complex<f64>>>)| {
+            let value = value.as_ref()?;
+            Some(SingularValues {
+                frequency_rad_s: angle / self.samples.period,
+                sensitivity: largest_gain(value),
+                complementary: largest_gain(&(DMatrix::identity(value.nrows(), value.ncols()) - value)),
+            })
+        };
+        self.angles.iter().zip(&self.values).filter_map(at).collect()
     }
 
     /// Returns the inverse of the largest s1(S - shift) over frequency, of some signals.
     fn peak(&self, signals: &[usize], shift: f64) -> PeakMargin {
-        let gain = |value: &DMatrix<Complex<f64>>| {
-            let count = signals.len();
-            let own = DMatrix::from_fn(count, count, |row, column| {
+        let own = |value: &DMatrix<Complex<f64>>| {
+            DMatrix::from_fn(signals.len(), signals.len(), |row, column| {
                 value[(signals[row], signals[column])] - if row == column { shift } else { 0.0 }
-            });
-            largest_gain(&own)
+            })
         };
+        let gain = |value: &DMatrix<Complex<f64>>| largest_gain(&own(value));
         let gains: Vec<f64> = self.values.iter().map(|value| value.as_ref().map_or(0.0, &gain)).collect();
         let last = gains.len() - 1;
         let mut peaks: Vec<usize> = (0..=last)
@@ -235,6 +314,9 @@ impl Sensitivity {
             if found.1 > gains[*k] { found } else { (self.angles[*k], gains[*k]) }
         });
         let largest = refined.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((PI, 0.0));
-        PeakMargin { margin: 1.0 / largest.1, frequency_rad_s: largest.0 / self.period }
+        let value = self.response.at(unit_circle(largest.0));
+        let direction = value.map(|value| largest_direction(&own(&value)));
+        let motion = direction.as_ref().map_or(&[][..], |direction| direction.as_slice());
+        PeakMargin { margin: 1.0 / largest.1, frequency_rad_s: self.samples.frequency(largest.0, motion).0 }
     }
 }

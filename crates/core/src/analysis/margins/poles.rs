@@ -1,5 +1,6 @@
 //! Poles of a loop, and the one that makes a closed loop unstable.
 
+use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::linalg::Schur;
@@ -8,6 +9,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use serde::Serialize;
 
 use super::frequency_response::modulus;
+use super::sample_components::LoopSamples;
 use crate::analysis::open_loop::OpenLoop;
 
 /// Number of sweeps after which the search for eigenvalues is given up.
@@ -32,9 +34,13 @@ impl fmt::Display for UnstableLoop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "the closed loop is not stable and has no margins: a pole of magnitude {:.7} at {:.4} rad/s, damping {:.3e}, \
-             is largest in `{}`",
-            self.spectral_radius, self.frequency_rad_s, self.damping, self.signal
+            "the closed loop is not stable and has no margins: a pole of magnitude {:.7} at {:.4} rad/s ({:.4} Hz), damping \
+             {:.3e}, is largest in `{}`",
+            self.spectral_radius,
+            self.frequency_rad_s,
+            self.frequency_rad_s / TAU,
+            self.damping,
+            self.signal
         )
     }
 }
@@ -51,8 +57,18 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     }
     let mut balanced = matrix.clone();
     balance_parlett_reinsch(&mut balanced);
-    let schur = Schur::try_new(balanced, f64::EPSILON, SWEEPS)?;
-    Some(schur.complex_eigenvalues().iter().copied().collect())
+    let values = |matrix: DMatrix<f64>| -> Option<Vec<Complex<f64>>> {
+        let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    };
+    // The search compares entries below the diagonal with those on it, and never ends for a defective eigenvalue 0, such as
+    // that of delays. The shifted matrix has none: the error is a rounding of the whole matrix, as LAPACK's is.
+    let size = balanced.norm();
+    let order = balanced.nrows();
+    values(balanced.clone()).or_else(|| {
+        let shifted = values(balanced + DMatrix::from_diagonal_element(order, order, size))?;
+        Some(shifted.into_iter().map(|value| value - size).collect())
+    })
 }
 
 /// Returns the spectral radius of a closed loop with these poles; the pole that makes it unstable as an error.
@@ -67,22 +83,25 @@ pub fn require_stable(
     if radius <= 1.0 + ROUNDING {
         return Ok(radius);
     }
-    let growth = Complex::new(libm::log(radius), libm::atan2(worst.im, worst.re).abs());
+    let vector = eigenvector(closed, worst);
+    let shown = vector.map(|vector| opened.transfer.c.map(|entry| Complex::new(entry, 0.0)) * vector);
+    let motion = shown.as_ref().map_or(&[][..], |shown| shown.as_slice());
+    let samples = LoopSamples { period: opened.period, count: opened.samples };
+    let (frequency, _) = samples.frequency(libm::atan2(worst.im, worst.re).abs(), motion);
+    let growth = Complex::new(libm::log(radius) / opened.period, frequency);
     let size = modulus(growth);
     Err(UnstableLoop {
         spectral_radius: radius,
-        frequency_rad_s: size / opened.period,
+        frequency_rad_s: size,
         damping: -growth.re / size,
-        signal: largest_signal(opened, closed, worst).unwrap_or_default(),
+        signal: largest_signal(opened, motion).unwrap_or_default(),
     })
 }
 
-/// Returns the name of the signal in which the motion of a pole is largest.
-fn largest_signal(opened: &OpenLoop, closed: &DMatrix<f64>, pole: Complex<f64>) -> Option<String> {
-    let vector = eigenvector(closed, pole)?;
-    let shown = opened.transfer.c.map(|entry| Complex::new(entry, 0.0)) * vector;
+/// Returns the name of the signal that is largest in a motion, sample after sample.
+fn largest_signal(opened: &OpenLoop, motion: &[Complex<f64>]) -> Option<String> {
     let count = opened.signals.len();
-    let size = |signal: usize| shown.iter().skip(signal).step_by(count).map(Complex::norm_sqr).sum::<f64>();
+    let size = |signal: usize| motion.iter().skip(signal).step_by(count).map(Complex::norm_sqr).sum::<f64>();
     let largest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
     Some(opened.signals[largest].name.clone())
 }
@@ -101,4 +120,29 @@ fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Com
         vector.iter_mut().for_each(|entry| *entry /= size);
     }
     Some(vector)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    /// Three samples of delay, twice, beside an integrator and a slow pole.
+    #[test]
+    fn delays_have_the_eigenvalue_0() {
+        let mut matrix = DMatrix::<f64>::zeros(8, 8);
+        for (row, column) in [(1, 0), (2, 1), (4, 3), (5, 4), (6, 2), (6, 5)] {
+            matrix[(row, column)] = 1.0;
+        }
+        (matrix[(6, 6)], matrix[(7, 7)], matrix[(7, 6)]) = (1.0, 0.5, 0.3);
+        let mut sizes: Vec<f64> = eigenvalues(&matrix).expect("values").into_iter().map(modulus).collect();
+        sizes.sort_by(f64::total_cmp);
+        for (size, expected) in sizes.iter().zip([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 1.0]) {
+            // A defective value of order three has an error of the third root of the rounding.
+            assert!((size - expected).abs() < 1e-4, "{sizes:?}");
+        }
+        let turn = dmatrix![0.0, -2.0; 2.0, 0.0];
+        assert!(eigenvalues(&turn).expect("values").iter().all(|value| (value.im.abs() - 2.0).abs() < 1e-15));
+    }
 }

@@ -41,7 +41,10 @@ pub struct PlantMargin {
 
 /// Loop of a plant with some parameters.
 struct PlantLoop {
+    /// Period of the loop (s).
     period: f64,
+    /// Frequency (rad/s) of the least minimum.
+    frequency: f64,
     spectral_radius: f64,
     /// Angle and value of each minimum.
     minima: Vec<(f64, f64)>,
@@ -71,11 +74,15 @@ impl LoopSet<'_> {
             let closed = loop_of.closed_poles().ok_or(TuningFault::Unstable(plant, f64::INFINITY))?;
             let spectral_radius = closed.iter().map(|pole| modulus(*pole)).fold(0.0, f64::max);
             let is_stable = spectral_radius <= 1.0 + ROUNDING;
-            let angle = self.constrained_angle(plant, loop_of.period);
+            let period = loop_of.samples.period;
+            let angle = self.constrained_angle(plant, period);
+            let minima = if is_stable { loop_of.minima(&closed, TRACKED) } else { Vec::new() };
+            let least = minima.iter().min_by(|a, b| a.1.total_cmp(&b.1));
             Ok(PlantLoop {
-                period: loop_of.period,
+                period,
+                frequency: least.map_or(0.0, |(angle, _)| loop_of.frequency(*angle)),
                 spectral_radius,
-                minima: if is_stable { loop_of.minima(&closed, TRACKED) } else { Vec::new() },
+                minima,
                 gain: angle.map(|angle| loop_of.loop_gain_at(angle)),
             })
         };
@@ -167,7 +174,7 @@ impl Evaluation {
             PlantMargin {
                 plant,
                 margin: least.map_or(0.0, |minimum| minimum.1),
-                frequency_rad_s: least.map_or(0.0, |minimum| minimum.0 / own.period),
+                frequency_rad_s: own.frequency,
                 spectral_radius: own.spectral_radius,
             }
         };

@@ -16,7 +16,7 @@ use std::fmt;
 use flexsc_formats::document::ConfigError;
 
 pub use loop_set::{LoopSet, PlantMargin};
-pub use scenario_loops::{MOST_UNCERTAIN, ScenarioLoops, UncertainKey};
+pub use scenario_loops::{MOST_UNCERTAIN, ScenarioLoops};
 pub use scenario_tuning::{MOST_TUNED, ScenarioTuning, TunedScenario};
 pub use sensitivity_minima::LoopSensitivity;
 
@@ -190,13 +190,16 @@ fn search(
         let tried: Vec<f64> = moved
             .map(|((value, step), parameter)| (value + step).clamp(parameter.range[0], parameter.range[1]))
             .collect();
-        let there = loops.evaluate(&tried)?;
-        if there.unstable().is_none() && there.merit() > here.merit() {
-            (values, here) = (tried, there);
-            slopes = loops.slopes(&here, &values, parameters)?;
-            trust = (trust * FACTORS[0]).min(LARGEST_TRUST);
-        } else {
-            trust *= FACTORS[1];
+        // Values that the scenario does not accept, or of which the margins cannot be computed, are no step.
+        let there = loops.evaluate(&tried).ok();
+        match there.filter(|there| there.unstable().is_none() && there.merit() > here.merit()) {
+            Some(better) => {
+                (values, here) = (tried, better);
+                let Ok(next) = loops.slopes(&here, &values, parameters) else { break };
+                slopes = next;
+                trust = (trust * FACTORS[0]).min(LARGEST_TRUST);
+            }
+            None => trust *= FACTORS[1],
         }
     }
     Ok(SearchEnd { values, here, steps })

@@ -5,22 +5,10 @@ use toml::{Table, Value};
 
 use crate::analysis::open_loop::{LoopBreak, OpenLoop};
 use crate::scenario::Scenario;
-use crate::uncertain::{Distribution, Normal};
+use crate::uncertain::{UncertainBox, UncertainKey};
 
 /// Largest number of uncertain keys: a set has a plant for each corner.
 pub const MOST_UNCERTAIN: usize = 10;
-
-/// Number of standard deviations to a corner of a normal distribution.
-const DEVIATIONS: f64 = 3.0;
-
-/// Uncertain key, and its values at the corners.
-#[derive(Clone, Debug, PartialEq)]
-pub struct UncertainKey {
-    /// Key of the scenario.
-    pub key: String,
-    /// Least and largest value.
-    pub limits: [f64; 2],
-}
 
 /// Loops of a scenario at one point at which they are cut open.
 #[derive(Clone, Debug)]
@@ -47,19 +35,15 @@ impl ScenarioLoops {
     ) -> Result<Self, ConfigError> {
         let whole = scenario.self_contained();
         let mut table = whole.to_table();
+        let all = UncertainBox::new(&scenario.uncertain, &table);
         table.remove("uncertain");
         table.remove("correlated");
         for name in &keys {
             number(&table, name).ok_or_else(|| ConfigError::new(name, "is no number of this scenario"))?;
         }
-        let mut uncertain = Vec::new();
-        for (name, distribution) in scenario.uncertain.iter().filter(|_| corners) {
-            if keys.contains(name) {
-                return Err(ConfigError::new(name, "is uncertain: a tuned key has one value"));
-            }
-            // Keys that are not numbers of the loop, such as the seed of a noise, have no effect on it.
-            let own = number(&table, name).unwrap_or(f64::NAN);
-            uncertain.push(UncertainKey { key: name.clone(), limits: limits(distribution, own) });
+        let uncertain = if corners { all.keys } else { Vec::new() };
+        if let Some(tuned) = uncertain.iter().find(|own| keys.contains(&own.key)) {
+            return Err(ConfigError::new(&tuned.key, "is uncertain: a tuned key has one value"));
         }
         if uncertain.len() > MOST_UNCERTAIN {
             let why = format!("has {} keys: at most {MOST_UNCERTAIN} have corners", uncertain.len());
@@ -82,7 +66,7 @@ impl ScenarioLoops {
     pub fn plant(&self, index: usize) -> Vec<(&str, f64)> {
         let Some(corner) = index.checked_sub(1) else { return Vec::new() };
         let each = self.uncertain.iter().enumerate();
-        each.map(|(place, uncertain)| (uncertain.key.as_str(), uncertain.limits[(corner >> place) & 1]))
+        each.map(|(place, uncertain)| (uncertain.key.as_str(), uncertain.limits()[(corner >> place) & 1]))
             .collect()
     }
 
@@ -99,7 +83,10 @@ impl ScenarioLoops {
         let mut table = self.table.clone();
         let tuned = self.keys.iter().map(String::as_str).zip(values.iter().copied());
         for (name, value) in tuned.chain(self.plant(plant)) {
-            key::set(&mut table, name, Value::Float(value))?;
+            let is_integer = matches!(key::get(&table, name), Some(Value::Integer(_)));
+            let value =
+                if is_integer { Value::Integer(libm::round(value) as i64) } else { Value::Float(value) };
+            key::set(&mut table, name, value)?;
         }
         Scenario::from_document(&Document::from_table(&self.origin, table)).map_err(|error| error.to_string())
     }
@@ -121,21 +108,5 @@ fn number(table: &Table, name: &str) -> Option<f64> {
         Value::Float(value) => Some(*value),
         Value::Integer(value) => Some(*value as f64),
         _ => None,
-    }
-}
-
-/// Returns the limits of a distribution for a key whose value in the scenario is `own`.
-fn limits(distribution: &Distribution, own: f64) -> [f64; 2] {
-    let around = |middle: f64, half: f64| [middle - half.abs(), middle + half.abs()];
-    match distribution {
-        Distribution::Uniform([low, high]) => [low.get(), high.get()],
-        Distribution::LogUniform([low, high]) => [low.get(), high.get()],
-        Distribution::Normal(Normal { mean, sd }) => around(mean.get(), DEVIATIONS * sd.get()),
-        Distribution::RelativeUniform(part) => around(own, part.get() * own),
-        Distribution::RelativeNormal(sd) => around(own, DEVIATIONS * sd.get() * own),
-        Distribution::Choice(values) => {
-            let all = || values.iter().map(|value| value.get());
-            [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
-        }
     }
 }

@@ -83,7 +83,17 @@ impl ScenarioTuning {
         }
         let loop_at = |values: &[f64], plant: usize| loops.loop_at(values, plant);
         let set = LoopSet { loop_at: &loop_at, plants: loops.plants(), bandwidth: self.bandwidth };
-        let tuned = tune(&set, &parameters)?;
+        let tuned = tune(&set, &parameters).map_err(|fault| match fault {
+            TuningFault::Unstable(plant, radius) if plant > 0 => {
+                let values = loops.plant(plant).into_iter().map(|(key, value)| format!("{key} = {value}"));
+                let values = values.collect::<Vec<_>>().join(", ");
+                TuningFault::Loop(format!(
+                    "the closed loop with {values} is not stable at the start: its spectral radius is {radius:.7}; a search \
+                     for margins starts from a stable loop"
+                ))
+            }
+            fault => fault,
+        })?;
         Ok(TunedScenario { loops, parameters, tuned, scenario: scenario.clone(), opened: self.opened })
     }
 }

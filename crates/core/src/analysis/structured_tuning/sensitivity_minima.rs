@@ -4,8 +4,8 @@ use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 
 use crate::analysis::margins::{
-    FrequencyResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of, frequency_grid, largest_gain,
-    modulus, unit_circle,
+    FrequencyResponse, LoopSamples, coarse_frequency_grid, eigenvalues, eigenvalues_of, frequency_grid,
+    largest_direction, largest_gain, modulus, unit_circle,
 };
 use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
 
@@ -17,21 +17,22 @@ pub struct LoopSensitivity {
     open_poles: Vec<Complex<f64>>,
     /// Number of signals at the break.
     signals: usize,
-    /// Period of the loop (s).
-    pub period: f64,
+    /// Period of the loop, and samples in it.
+    pub samples: LoopSamples,
 }
 
 impl LoopSensitivity {
     /// Computes the sensitivity; `None` for a loop without one.
     pub fn new(opened: &OpenLoop) -> Option<Self> {
         let transfer = opened.transfer.sensitivity()?;
-        let open_poles = eigenvalues(&opened.transfer.a)?;
+        // Without them, the grid follows the resonances of the closed loop alone.
+        let open_poles = eigenvalues(&opened.transfer.a).unwrap_or_default();
         Some(Self {
             response: FrequencyResponse::new(&transfer),
             transfer,
             open_poles,
             signals: opened.signals.len(),
-            period: opened.period,
+            samples: LoopSamples { period: opened.period, count: opened.samples },
         })
     }
 
@@ -44,12 +45,19 @@ impl LoopSensitivity {
     /// computed.
     pub fn margins(&self) -> Option<Vec<(f64, f64)>> {
         let angles = frequency_grid(&self.closed_poles()?, &self.open_poles);
-        Some(angles.into_iter().map(|angle| (angle / self.period, self.margin_at(angle))).collect())
+        Some(angles.into_iter().map(|angle| (angle / self.samples.period, self.margin_at(angle))).collect())
     }
 
     /// Returns 1/s1(S) at an angle (rad) of the unit circle.
     pub fn margin_at(&self, angle: f64) -> f64 {
         self.response.at(unit_circle(angle)).as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
+    }
+
+    /// Returns the frequency (rad/s) of a minimum at an angle (rad) of the unit circle.
+    pub fn frequency(&self, angle: f64) -> f64 {
+        let direction = self.response.at(unit_circle(angle)).map(|value| largest_direction(&value));
+        let motion = direction.as_ref().map_or(&[][..], |direction| direction.as_slice());
+        self.samples.frequency(angle, motion).0
     }
 
     /// Returns the least loop gain of all signals at an angle (rad) of the unit circle, of each signal with the loops of

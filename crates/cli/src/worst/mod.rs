@@ -1,0 +1,344 @@
+//! `flexsc worst`: the worst case of requirements, a metric or a stability margin over the uncertain keys.
+
+mod figures;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use flexsc_core::Scenario;
+use flexsc_core::campaign::Campaign;
+use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
+use flexsc_core::scenario::AssessedRequirement;
+use flexsc_core::worst_case::{
+    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase, WorstCaseFault,
+};
+use flexsc_core::{ScenarioError, campaign::Design};
+use flexsc_figure::Named;
+use serde_json::{Value as Json, json};
+
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
+use crate::human::{Units, UnitsArgs, digits};
+use crate::margins::{BreakPoint, print_table, texts};
+use crate::number_table::NumberTable;
+use crate::out::Out;
+use crate::result_files::ResultOutput;
+use crate::results::{Results, print_lines, with_scenario_name};
+use crate::stop::{StopRecord, stop_requested};
+use crate::{files, say, scenario};
+
+/// Files that hold results.
+const FILES: [&str; 5] = ["svg", "png", "pdf", "csv", "toml"];
+
+#[derive(clap::Args)]
+pub struct WorstArgs {
+    #[command(flatten)]
+    pub scenario: scenario::ScenarioArgs,
+    /// Metric, or element NAME[i] of a list [default: all requirements of the scenario]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["requirement", "margin"])]
+    metric: Option<String>,
+    /// Requirement of the scenario
+    #[arg(long, value_name = "NAME", conflicts_with = "margin")]
+    requirement: Option<String>,
+    /// Stability margin, the least of all loops
+    #[arg(long, value_name = "MARGIN")]
+    margin: Option<WorstMargin>,
+    /// Point at which the loops are cut open
+    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "margin")]
+    opened: BreakPoint,
+    /// Search for the smallest value of the metric instead of the largest
+    #[arg(long, requires = "metric")]
+    least: bool,
+    /// Largest number of points that are assessed, each by a run or a loop
+    #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    points: u32,
+    /// Seed of the noise and of the points [default: the scenario's]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
+    seed: Option<u64>,
+    /// Number of threads [default: one per core]
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    output: ResultOutput,
+    #[command(flatten)]
+    consent: CostConfirmation,
+}
+
+/// Stability margin whose worst case is searched for.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
+enum WorstMargin {
+    /// Modulus margin of all signals together
+    Modulus,
+    /// Disk margin of all signals together
+    Disk,
+    /// Factor by which the loop gain may rise or fall
+    Gain,
+    /// Phase (rad)
+    Phase,
+    /// Delay (s)
+    Delay,
+}
+
+impl WorstMargin {
+    fn kind(self) -> MarginKind {
+        match self {
+            Self::Modulus => MarginKind::Modulus,
+            Self::Disk => MarginKind::Disk,
+            Self::Gain => MarginKind::Gain,
+            Self::Phase => MarginKind::Phase,
+            Self::Delay => MarginKind::Delay,
+        }
+    }
+}
+
+/// Worst cases of a scenario.
+pub struct WorstCases {
+    name: String,
+    cases: Vec<(WorstCase, Option<AssessedRequirement>)>,
+    units: Units,
+}
+
+pub fn run(args: &WorstArgs) -> Result<(), CliError> {
+    let inputs = [args.scenario.scenario.as_path()];
+    let witness = witness_path(args, &inputs)?;
+    let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
+    let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.seed)?;
+    if witness.is_some() && args.quantities(&scenario)?.len() > 1 {
+        let why = "-o: a witness is of one quantity; give --requirement, --metric or --margin";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
+    let worst = results(&scenario, args)?;
+    if let Some(path) = witness {
+        worst.write_witness(&path, args.output.force)?;
+    }
+    if let Some(target) = target {
+        target.save(&worst)?;
+    }
+    if args.scenario.json {
+        print_lines(&worst.json())?;
+    } else {
+        worst.print()?;
+    }
+    worst.require_met()
+}
+
+/// Searches for the worst cases.
+pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliError> {
+    let name = scenario.name.clone();
+    let most = args.points as usize;
+    if let Some(margin) = args.margin {
+        let search = MarginSearch { kind: margin.kind(), opened: args.opened.loop_break(), most_loops: most };
+        let case = search.run(scenario, stop_requested).map_err(|error| fault(&name, error))?;
+        return Ok(WorstCases { name, cases: vec![(case, None)], units: args.units.units });
+    }
+    let quantities = args.quantities(scenario)?;
+    let origin = args.scenario.scenario.display().to_string();
+    let campaign = Campaign::from_design(scenario.clone(), &origin, Design::default())?;
+    let runs = u64::from(args.points) * quantities.len() as u64;
+    let cost = campaign.cost(runs, None).map_err(|why| CliError::Arguments(format!("--points: {why}")))?;
+    args.consent.check(&cost)?;
+    let mut cases = Vec::with_capacity(quantities.len());
+    for quantity in quantities {
+        let requirement = match &quantity {
+            RunQuantity::Requirement(wanted) => {
+                let all = scenario.study.requirements.iter();
+                all.clone().find(|requirement| requirement.name == *wanted).cloned()
+            }
+            RunQuantity::Metric(_) => None,
+        };
+        let search = MetricSearch {
+            quantity,
+            is_least: args.least,
+            most_runs: most,
+            threads: usize::from(args.jobs.unwrap_or(0)),
+        };
+        let work = |run: &flexsc_core::campaign::CampaignRun, selection: &flexsc_core::metrics::Selection| {
+            Ok(Campaign::simulate_metrics(run, selection, StopRecord)?)
+        };
+        let case =
+            search.run(scenario, &origin, work, stop_requested).map_err(|error| fault(&name, error))?;
+        cases.push((case, requirement));
+    }
+    Ok(WorstCases { name, cases, units: args.units.units })
+}
+
+/// Returns the error of a search in a scenario.
+pub fn fault(name: &str, fault: WorstCaseFault) -> CliError {
+    match fault {
+        WorstCaseFault::Key(ConfigError { key, why }) => {
+            ScenarioError::Key { origin: name.to_owned(), key, why }.into()
+        }
+        WorstCaseFault::Scenario(error) => error.into(),
+        WorstCaseFault::Request(why) => CliError::Arguments(format!("{name}: {why}")),
+        WorstCaseFault::Interrupted => CliError::Interrupted(String::new()),
+    }
+}
+
+/// Returns the file of the witness, if the command was asked for one.
+fn witness_path(args: &WorstArgs, inputs: &[&Path]) -> Result<Option<PathBuf>, CliError> {
+    let Some(out) = args.output.out.as_ref().filter(|out| crate::out::ending(out) == Some("toml")) else {
+        return Ok(None);
+    };
+    match Out::new(out, &FILES, inputs)? {
+        Out::File(path, "toml") => {
+            files::refuse_existing(&path, args.output.force)?;
+            Ok(Some(path))
+        }
+        _ => Ok(None),
+    }
+}
+
+impl WorstArgs {
+    /// Returns the quantities of runs that are searched.
+    fn quantities(&self, scenario: &Scenario) -> Result<Vec<RunQuantity>, CliError> {
+        if let Some(name) = &self.metric {
+            return Ok(vec![RunQuantity::Metric(name.clone())]);
+        }
+        if let Some(name) = &self.requirement {
+            return Ok(vec![RunQuantity::Requirement(name.clone())]);
+        }
+        if self.margin.is_some() {
+            return Ok(Vec::new());
+        }
+        let all = &scenario.study.requirements;
+        if all.is_empty() {
+            return Err(CliError::Arguments(format!(
+                "{}: has no [[requirement]]\n\nhint: `--metric NAME` or `--margin MARGIN` gives the quantity; \
+                 `flexsc schema --metrics` lists the metrics",
+                scenario.name
+            )));
+        }
+        Ok(all.iter().map(|requirement| RunQuantity::Requirement(requirement.name.clone())).collect())
+    }
+}
+
+impl WorstCases {
+    fn write_witness(&self, path: &Path, force: bool) -> Result<(), CliError> {
+        let Some((case, _)) = self.cases.first() else { return Ok(()) };
+        files::write(path, case.witness.self_contained().to_toml().as_bytes(), force)?;
+        say!("{}: the worst case of {}", path.display(), case.quantity);
+        Ok(())
+    }
+
+    /// Fails if a requirement is not met at its worst point.
+    fn require_met(&self) -> Result<(), CliError> {
+        let (mut all, mut missed) = (0, Vec::new());
+        for (case, requirement) in &self.cases {
+            let Some(requirement) = requirement else { continue };
+            all += 1;
+            if !is_met(case, requirement) {
+                missed.push(requirement.name.as_str());
+            }
+        }
+        if missed.is_empty() {
+            return Ok(());
+        }
+        let (count, all) = (missed.len(), counted(all, "requirement"));
+        let names = missed.join(", ");
+        Err(CliError::Requirements(format!(
+            "{}: {count} of {all} not met in the worst case: {names}",
+            self.name
+        )))
+    }
+
+    fn print_case(&self, case: &WorstCase, requirement: Option<&AssessedRequirement>) {
+        let values = [case.nominal(), case.value()];
+        let limit = requirement.map(|requirement| requirement.limit);
+        let finite: Vec<f64> =
+            values.iter().copied().chain(limit).filter(|value| value.is_finite()).collect();
+        let (factor, unit) = self.units.common(&finite, &case.unit);
+        let text = |value: f64| {
+            if value.is_nan() {
+                "no value".to_owned()
+            } else {
+                format!("{} {unit}", digits(value * factor)).trim_end().to_owned()
+            }
+        };
+        let judged = requirement.map_or_else(String::new, |requirement| {
+            let word = if is_met(case, requirement) { "met" } else { "missed" };
+            format!(", at most {}: {word}", text(requirement.limit))
+        });
+        let unstable = if case.is_unstable { ", where the loop is not stable" } else { "" };
+        say!(
+            "  {}   nominal {}, worst {}{unstable}{judged}",
+            case.quantity,
+            text(values[0]),
+            text(values[1])
+        );
+        let mut rows = vec![texts(&["key", "nominal", "worst", "lowest", "highest"])];
+        for (own, value) in case.ranges.keys.iter().zip(case.key_values(case.worst)) {
+            let [low, high] = own.limits();
+            rows.push([vec![own.key.clone()], [own.own(), value, low, high].map(digits).to_vec()].concat());
+        }
+        print_table(&rows);
+        if case.failed > 0 {
+            let why =
+                case.first_failure.as_ref().map_or_else(String::new, |why| format!("; the first: {why}"));
+            say!("  {} without a value{why}", counted(case.failed, "point"));
+        }
+    }
+}
+
+/// Returns true if a requirement is met at the worst point.
+fn is_met(case: &WorstCase, requirement: &AssessedRequirement) -> bool {
+    case.value() <= requirement.limit
+}
+
+impl Results for WorstCases {
+    fn json(&self) -> Vec<Json> {
+        let case = |(case, requirement): &(WorstCase, Option<AssessedRequirement>)| {
+            let mut object = case.to_json();
+            if let Some(requirement) = requirement {
+                object["limit"] = json!(requirement.limit);
+                object["met"] = json!(is_met(case, requirement));
+            }
+            object
+        };
+        let cases: Vec<Json> = self.cases.iter().map(case).collect();
+        vec![with_scenario_name(&self.name, json!({ "cases": cases }))]
+    }
+
+    fn figures(&self) -> Vec<Named> {
+        let each = self.cases.iter().enumerate();
+        each.map(|(index, (case, requirement))| {
+            let name = if index == 0 { "worst".to_owned() } else { format!("worst-{}", index + 1) };
+            let limit = requirement.as_ref().map(|requirement| requirement.limit);
+            (name, figures::figure(&self.name, case, limit))
+        })
+        .collect()
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        let (first, _) = self.cases.first()?;
+        let keys = first.ranges.keys.iter().map(|own| own.key.clone());
+        let columns = ["case", "point", "value"].map(str::to_owned).into_iter().chain(keys).collect();
+        let rows = self.cases.iter().enumerate().flat_map(|(number, (case, _))| {
+            (0..case.points.len()).map(move |point| {
+                let value = case.points[point].assessed.value;
+                let head =
+                    [Some(number as f64), Some(point as f64), Some(value).filter(|value| value.is_finite())];
+                head.into_iter().chain(case.key_values(point).into_iter().map(Some)).collect()
+            })
+        });
+        Some(NumberTable { columns, rows: rows.collect() })
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let Some((first, _)) = self.cases.first() else { return Ok(()) };
+        let points: usize = self.cases.iter().map(|(case, _)| case.points.len()).sum();
+        say!(
+            "{}   worst of {} over {}",
+            self.name,
+            counted(points, "point"),
+            counted(first.ranges.keys.len(), "uncertain key"),
+        );
+        for (case, requirement) in &self.cases {
+            self.print_case(case, requirement.as_ref());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,66 @@
+//! Frequency of a motion that is known at the samples of a period alone.
+//!
+//! With several samples in a period, an angle of the transfer leaves open which of as many frequencies it is: the motion has
+//! a component at each, and the strongest one counts.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Complex;
+
+use super::frequency_response::unit_circle;
+
+/// Samples of a loop in a period.
+#[derive(Copy, Clone, Debug)]
+pub struct LoopSamples {
+    /// Period (s).
+    pub period: f64,
+    /// Number of samples in it.
+    pub count: usize,
+}
+
+impl LoopSamples {
+    /// Returns the frequency (rad/s) of the strongest component of a motion at an angle, and true if the phase of that
+    /// component is the negative one. The motion is that of some signals, sample after sample.
+    pub fn frequency(self, angle: f64, motion: &[Complex<f64>]) -> (f64, bool) {
+        let Self { period, count } = self;
+        let signals = motion.len() / count;
+        if count == 1 || signals == 0 {
+            return (angle / period, false);
+        }
+        let step = |k: usize| (angle + TAU * k as f64) / count as f64;
+        let size = |k: usize| {
+            let of_signal = |signal: usize| {
+                let samples = motion.iter().skip(signal).step_by(signals).enumerate();
+                let turned = samples.map(|(sample, part)| part * unit_circle(-step(k) * sample as f64));
+                turned.sum::<Complex<f64>>().norm_sqr()
+            };
+            (0..signals).map(of_signal).sum::<f64>()
+        };
+        let strongest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(0);
+        let turn = step(strongest);
+        let rate = count as f64 / period;
+        if turn > PI { ((TAU - turn) * rate, true) } else { (turn * rate, false) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two signals at 5 rad/s, sampled five times in 1 s, and the mirrored motion.
+    #[test]
+    fn a_motion_has_its_own_frequency() {
+        let samples = LoopSamples { period: 1.0, count: 5 };
+        let motion = |frequency: f64| -> Vec<Complex<f64>> {
+            let turn = |sample: i32| unit_circle(frequency * 0.2 * f64::from(sample));
+            (0..5).flat_map(|sample| [turn(sample), turn(sample) * Complex::new(0.0, 0.5)]).collect()
+        };
+        for (frequency, is_mirrored) in [(5.0, false), (-5.0, true), (14.0, false)] {
+            let angle = frequency - TAU * (frequency / TAU).floor();
+            let (found, mirrored) = samples.frequency(angle, &motion(frequency));
+            assert!((found - frequency.abs()).abs() < 1e-12, "{found}");
+            assert_eq!(mirrored, is_mirrored);
+        }
+        assert_eq!(LoopSamples { period: 0.5, count: 1 }.frequency(1.0, &motion(1.0)[..1]), (2.0, false));
+    }
+}

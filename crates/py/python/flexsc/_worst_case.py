@@ -1,0 +1,150 @@
+"""Worst case of a metric, a requirement or a stability margin over the uncertain keys."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from flexsc import _native as engine
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from flexsc._open_loop import Break
+    from flexsc._scenario import Scenario
+
+Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
+"""Name of a stability margin."""
+
+
+@dataclass(frozen=True, eq=False)
+class WorstCase:
+    """Worst point of the ranges of the uncertain keys that a search found.
+
+    >>> scenario = flexsc.Scenario.example("slew-wheel-lqg")
+    >>> worst = scenario.worst(margin="modulus", points=40)
+    >>> worst
+    WorstCase(quantity='modulus margin', value=0.3886, nominal=0.3998)
+    """
+
+    quantity: str
+    """Name of the metric, the requirement or the margin.
+
+    >>> worst.quantity
+    'modulus margin'
+    """
+    unit: str
+    """Unit of the values.
+
+    >>> worst.unit
+    ''
+    """
+    least: bool
+    """Whether small values are bad.
+
+    >>> worst.least
+    True
+    """
+    value: float
+    """Value at the worst point.
+
+    >>> worst.value < worst.nominal
+    True
+    """
+    nominal: float
+    """Value with the keys of the scenario itself, or as near to them as their ranges are.
+
+    >>> worst.nominal == worst.values[0]
+    True
+    """
+    keys: dict[str, float]
+    """Value of each uncertain key at the worst point.
+
+    >>> list(worst.keys)
+    ['body.planar.modes[0].frequency', 'body.planar.modes[1].frequency']
+    """
+    ranges: dict[str, tuple[float, float]]
+    """Range of each uncertain key.
+
+    >>> all(low <= worst.keys[key] <= high for key, (low, high) in worst.ranges.items())
+    True
+    """
+    points: npt.NDArray[np.float64]
+    """The points that were assessed, one in each row, with the keys as columns.
+
+    >>> worst.points.shape[1]
+    2
+    """
+    values: npt.NDArray[np.float64]
+    """Value at each point; NaN at a point without one.
+
+    >>> worst.values.min() == worst.value
+    True
+    """
+    without_value: int
+    """Number of points without a value.
+
+    >>> worst.without_value
+    0
+    """
+    unstable: bool
+    """Whether the quantity is a margin and the loop is not stable at the worst point.
+
+    >>> worst.unstable
+    False
+    """
+    scenario: Scenario
+    """The scenario with the keys of the worst point, and without uncertain ones.
+
+    >>> worst.scenario.margins().modulus == worst.value
+    True
+    """
+
+    def __repr__(self) -> str:
+        """Return the quantity with its values."""
+        return f"WorstCase(quantity={self.quantity!r}, value={self.value:.4g}, nominal={self.nominal:.4g})"
+
+
+WorstCase.__module__ = "flexsc"
+
+
+def worst_case(
+    scenario: Scenario,
+    metric: str | None,
+    requirement: str | None,
+    margin: Margin | None,
+    loop: Break,
+    least: bool,
+    points: int,
+    jobs: int,
+) -> WorstCase:
+    """Return the worst case of one quantity."""
+    import numpy as np
+
+    given = {"metric": metric, "requirement": requirement, "margin": margin}
+    chosen = [(kind, name) for kind, name in given.items() if name is not None]
+    if len(chosen) != 1:
+        raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}")
+    if least and metric is None:
+        raise ValueError("least is for a metric: it is known of a requirement and of a margin")
+    text, witness = engine.worst_case_json(scenario._native, chosen[0], loop, least, points, jobs)
+    found = json.loads(text)
+    # JSON has no NaN and no infinity.
+    values = np.array([np.nan if value is None else value for value in found["values"]])
+    worst, nominal = (np.nan if found[name] is None else found[name] for name in ("worst", "nominal"))
+    return WorstCase(
+        quantity=found["quantity"],
+        unit=found["unit"],
+        least=found["least"],
+        value=worst,
+        nominal=nominal,
+        keys=found["keys"],
+        ranges=dict(zip(found["keys"], map(tuple, found["ranges"]), strict=True)),
+        points=np.array(found["rows"]),
+        values=values,
+        without_value=found["without_value"],
+        unstable=found["unstable"],
+        scenario=type(scenario)._of(witness),
+    )

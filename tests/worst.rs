@@ -1,0 +1,145 @@
+//! Worst cases over uncertain keys: margins against the closed form of their interval, metrics against grids of runs, and
+//! the verb `worst`.
+
+use flexsc_core::Scenario;
+use flexsc_core::analysis::open_loop::LoopBreak;
+use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::metrics::Selection;
+use flexsc_core::worst_case::{MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
+use serde_json::Value as Json;
+
+use crate::margins::wheel_loop;
+use crate::util::{Dir, SCENARIOS};
+
+fn shipped(name: &str) -> Scenario {
+    Scenario::load(format!("{SCENARIOS}/{name}.toml").as_ref()).expect("shipped")
+}
+
+/// The wheel's loop without back-EMF, whose four frequencies are off by up to 10 %, each by itself.
+fn uncertain_wheel() -> Scenario {
+    let key = |mode: usize| format!("\"body.planar.modes[{mode}].frequency\" = {{ relative_uniform = 0.1 }}");
+    let keys = [0, 1, 2, 3].map(key).join("\n");
+    let text = wheel_loop(0.0).replace("back_emf = 1e-4", "back_emf = 0.0") + "\n[uncertain]\n" + &keys;
+    Scenario::parse("wheel.toml", &text).expect("valid")
+}
+
+fn worst_metric(scenario: &Scenario, quantity: RunQuantity, is_least: bool, threads: usize) -> WorstCase {
+    let search = MetricSearch { quantity, is_least, most_runs: 60, threads };
+    let work = |run: &CampaignRun, selection: &Selection| Ok(Campaign::simulate_metrics(run, selection, ())?);
+    search.run(scenario, &scenario.name, work, || false).expect("a value")
+}
+
+/// Each term of the loop is monotone in its frequency, so that the interval of the margin over the box follows from a
+/// search in the frequency alone: 0.5958006848460, and a gain margin of 42.30593465 to 43.09146988.
+#[test]
+fn the_least_margins_of_the_wheel_are_the_ends_of_their_intervals() {
+    let scenario = uncertain_wheel();
+    for (kind, nominal, worst, part) in [
+        (MarginKind::Modulus, 0.600_718_808_009_7, 0.595_800_684_846_0, 1e-9),
+        (MarginKind::Gain, 42.727_248_515_894_8, 42.305_934_65, 1e-9),
+    ] {
+        let search = MarginSearch { kind, opened: LoopBreak::Command, most_loops: 200 };
+        let found = search.run(&scenario, || false).expect("stable");
+        assert!((found.nominal() / nominal - 1.0).abs() < 1e-12, "{}", found.nominal());
+        assert!((found.value() / worst - 1.0).abs() < part, "{}", found.value());
+        assert!(!found.is_unstable && found.failed == 0 && found.points.len() <= 200);
+    }
+}
+
+/// The worst point is at least as bad as any of a grid of runs, and its scenario repeats the value.
+#[test]
+fn the_worst_arrival_is_that_of_no_point_of_a_grid() {
+    let scenario = shipped("slew-wheel-lqg");
+    let found = worst_metric(&scenario, RunQuantity::Requirement("arrival".to_owned()), false, 0);
+    let part = |index: u32| f64::from(index) / 8.0;
+    let points: Vec<Vec<f64>> = (0..81)
+        .map(|index| {
+            let parts = [part(index / 9), part(index % 9)];
+            found.ranges.keys.iter().zip(parts).map(|(own, part)| own.number_at(part)).collect()
+        })
+        .collect();
+    let grid = Campaign::at_points(&scenario, "grid", points).expect("a campaign");
+    let value = |run: &CampaignRun| {
+        let metrics = Campaign::simulate(run, ()).expect("a run");
+        metrics.get("requirement_values").expect("requirements").numbers()[0]
+    };
+    let most = (0..81).map(|number| value(&grid.run(number).expect("a point"))).fold(0.0, f64::max);
+    assert!(found.value() >= most, "{} of the search, {most} of the grid", found.value());
+    assert!(found.value() < 1.05 * most);
+    let run = CampaignRun { number: 0, scenario: found.witness.clone(), drawn: Vec::new() };
+    assert_eq!(value(&run).to_bits(), found.value().to_bits());
+    assert!(found.witness.uncertain.is_empty());
+}
+
+/// A plan is made for the body as it is written, in a campaign and here.
+#[test]
+fn a_point_is_the_run_of_a_campaign_with_the_same_keys() {
+    let scenario = shipped("rotation-robust");
+    let campaign = Campaign::new(scenario.clone(), "campaign", []).expect("a campaign");
+    let drawn = campaign.run(0).expect("a run");
+    let numbers: Vec<f64> = drawn.drawn.iter().map(|value| value.as_float().expect("a number")).collect();
+    let point =
+        Campaign::at_points(&scenario, "campaign", vec![numbers]).expect("a campaign").run(0).expect("a run");
+    // As text: NaN differs from itself.
+    let metrics = |run: &CampaignRun| format!("{:?}", Campaign::simulate(run, ()).expect("a run"));
+    assert_eq!(metrics(&drawn), metrics(&point));
+}
+
+#[test]
+fn threads_have_no_effect() {
+    let scenario = shipped("relay-sampled");
+    let quantity = || RunQuantity::Metric("envelope_mean_rad".to_owned());
+    let (one, four) =
+        (worst_metric(&scenario, quantity(), true, 1), worst_metric(&scenario, quantity(), true, 4));
+    assert_eq!(one.points, four.points);
+    assert_eq!(one.worst, four.worst);
+    assert!(one.value() <= one.nominal());
+}
+
+#[test]
+fn the_verb_prints_judges_and_writes_the_witness() {
+    let dir = Dir::with(&["slew-wheel-lqg"]);
+    let all = "worst slew-wheel-lqg.toml --points 20";
+    dir.run(all).exits(0).says(&[" points over 2 uncertain keys", "arrival", "stability", ": met"]);
+    let tight = format!("{all} --set requirement[0].limit=3e-4");
+    dir.run(&tight).exits(3).says(&["missed", "1 of 2 requirements not met in the worst case: arrival"]);
+    dir.run(&format!("{all} --requirement arrival -o worst.toml")).exits(0);
+    let json = dir.run(&format!("{all} --requirement arrival --json")).exits(0).out;
+    let json: Json = serde_json::from_str(&json).expect("JSON");
+    let case = &json["cases"][0];
+    assert_eq!(case["met"], true);
+    assert!(case["worst"].as_f64() > case["nominal"].as_f64());
+    let run: Json = serde_json::from_str(&dir.run("simulate worst.toml --json").exits(0).out).expect("JSON");
+    assert_eq!(run["metrics"]["requirement_values"][0], case["worst"], "{run}");
+    dir.run(&format!("{all} -o points.csv")).exits(0);
+    assert!((10..=41).contains(&dir.text("points.csv").lines().count()));
+    dir.run(&format!("{all} -o figures --format svg")).exits(0);
+    assert!(dir.text("figures/worst-2.svg").contains("stability"));
+}
+
+/// Kalman filter and gains of the example are for the nominal frequencies: 5 % off, a mode grows slowly.
+#[test]
+fn an_unstable_corner_is_found() {
+    let dir = Dir::with(&["slew-wheel-lqg"]);
+    let margin = "worst slew-wheel-lqg.toml --margin modulus --points 40";
+    dir.run(&format!("{margin} -o corner.toml")).exits(0).says(&["where the loop is not stable"]);
+    dir.run("margins corner.toml").exits(2).says(&["is not stable"]);
+    dir.run("margins slew-wheel-lqg.toml --worst").exits(0).says(&["over the uncertain keys", "unstable"]);
+}
+
+#[test]
+fn what_has_no_worst_case_is_refused() {
+    let dir = Dir::with(&["slew-wheel-lqg", "earth-observer", "attitude-hold"]);
+    let refused = |arguments: &str, why: &str| {
+        dir.run(&format!("worst {arguments}")).exits(2).says(&[why]);
+    };
+    refused("earth-observer.toml --margin disk", "uncertain: is missing");
+    refused("slew-wheel-lqg.toml --metric itaee", "did you mean `itae`?");
+    refused("slew-wheel-lqg.toml --metric goal", "is a word");
+    refused("slew-wheel-lqg.toml --metric fuel_kg --points 4", "fuel_kg has no value");
+    refused("slew-wheel-lqg.toml --requirement arival", "did you mean `arrival`?");
+    refused("slew-wheel-lqg.toml -o witness.toml", "a witness is of one quantity");
+    refused("slew-wheel-lqg.toml --metric itae --margin gain", "cannot be used with");
+    refused("slew-wheel-lqg.toml --margin modulus --points 0", "0 is not in");
+    refused("relay-sampled.toml --metric itae", "No such file");
+}
