@@ -20,6 +20,7 @@ mod crossings;
 mod drifting_axes;
 mod drives;
 mod environment;
+mod field_models;
 mod forces;
 mod gimbals;
 mod hinges;

@@ -161,8 +161,9 @@ impl AttitudeProfile {
 
     /// Returns true if the reference moves at an instant.
     pub fn is_moving(&self, now: Instant) -> bool {
-        self.leg(now)
-            .is_some_and(|leg| leg.frame.rotates() || now.since(leg.begins).seconds() < leg.path.duration())
+        self.leg(now).is_some_and(|leg| {
+            leg.frame.rotates(&self.sky) || now.since(leg.begins).seconds() < leg.path.duration()
+        })
     }
 
     /// Whether the target moves within its frame at an instant, from one attitude to another.
@@ -343,6 +344,32 @@ mod tests {
             assert!((change - now.acceleration).norm() < 1e-8, "{seconds}");
         }
         assert!((profile.at(at(390.0)).rate.norm() - sky.position(390.0).unwrap().turning[0]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_target_of_the_sun_follows_its_motion() {
+        let environment = flexsc_formats::document::from_text("sun = \"epoch\"");
+        // Seconds from 1970 to 2027-01-03T12:00:00Z.
+        let epoch = Some(1_798_977_600_000_000_000);
+        let sky = OrbitEnvironment::new(&environment.unwrap(), Span::from_seconds(1e7), epoch);
+        let targets = targets("target = [{ from = 0, frame = \"sun\", yaw = 0.3, pitch = 0.1 }]");
+        let profile = AttitudeProfile::new(&targets, &sky, &[]);
+        assert!(profile.is_moving(at(1e6)));
+        let h = 2e3;
+        for seconds in [1e5, 3e6, 9e6] {
+            let [before, now, after] = [seconds - h, seconds, seconds + h].map(|t| profile.at(at(t)));
+            let turn = (before.attitude.conjugate() * after.attitude).vector() * 2.0;
+            // The Sun's rate is 2e-7 rad/s, and the rate of the obliquity, 8e-14 rad/s, is not in that of the axes.
+            let off = (turn / (2.0 * h) - now.rate).norm();
+            assert!(off < 2e-13, "{seconds} {off:e}");
+            assert!(now.rate.norm() > 1.7e-7 && now.rate.norm() < 2.4e-7, "{seconds}");
+            let change = (after.rate - before.rate) / (2.0 * h);
+            assert!(
+                (change - now.acceleration).norm() < 1e-19,
+                "{seconds} {:e}",
+                (change - now.acceleration).norm()
+            );
+        }
     }
 
     #[test]

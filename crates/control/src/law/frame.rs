@@ -3,7 +3,7 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::attitude::from_axes;
-use flexsc_spacecraft::environment::OrbitEnvironment;
+use flexsc_spacecraft::environment::{OrbitEnvironment, SunMotion, SunPath};
 use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -33,19 +33,17 @@ impl Frame {
                 rate: Vector::new(0.0, -place.turning[0], 0.0),
                 acceleration: Vector::new(0.0, -place.turning[1], 0.0),
             }),
-            Self::Sun => sky.sun().map_or_else(inertial, |sun| {
-                let across = Vector::z().cross(sun);
-                // If the Sun is along the planet's axis, any direction will do.
-                let y = if across.norm() > 1e-9 { across.normalize() } else { Vector::y() };
-                let y = (y - sun * sun.dot(&y)).normalize();
-                AttitudeMotion::at_rest(from_axes(&[y.cross(sun), y, *sun]))
-            }),
+            Self::Sun => sky.sun().map_or_else(inertial, |sun| sun_axes(&sun.motion(t))),
         }
     }
 
-    /// Returns true if the frame rotates.
-    pub fn rotates(self) -> bool {
-        self == Self::Nadir
+    /// Returns true if the frame rotates under a sky that defines it.
+    pub fn rotates(self, sky: &OrbitEnvironment) -> bool {
+        match self {
+            Self::Inertial => false,
+            Self::Nadir => true,
+            Self::Sun => sky.sun().is_some_and(SunPath::moves),
+        }
     }
 
     /// Returns the name of the reference frame for messages.
@@ -67,5 +65,35 @@ impl Frame {
             _ => return None,
         };
         Some(ConfigError::new("frame", why))
+    }
+}
+
+/// Returns attitude, rate and acceleration of the axes with z to the Sun and x in the plane of the Sun and the planet's
+/// axis.
+fn sun_axes(sun: &SunMotion) -> AttitudeMotion {
+    let z = sun.direction;
+    let across = Vector::z().cross(&z);
+    // If the Sun is along the planet's axis, any direction will do.
+    let y = if across.norm() > 1e-9 { across.normalize() } else { Vector::y() };
+    let y = (y - z * z.dot(&y)).normalize();
+    let attitude = from_axes(&[y.cross(&z), y, z]);
+    if sun.rate == Vector::zeros() {
+        return AttitudeMotion::at_rest(attitude);
+    }
+    // Right ascension a and declination d: the axes turn by a' about the planet's axis and by -d' about y.
+    let (sin, cos) = (z.z, libm::hypot(z.x, z.y));
+    let (ds, dds) = (sun.rate, sun.acceleration);
+    let [ascension, declination] = [(z.x * ds.y - z.y * ds.x) / (cos * cos), ds.z / cos];
+    let cos_rate = -sin * declination;
+    let ascension_change = (z.x * dds.y - z.y * dds.x) / (cos * cos) - 2.0 * ascension * cos_rate / cos;
+    let declination_change = (dds.z + sin * declination * declination) / cos;
+    AttitudeMotion {
+        attitude,
+        rate: Vector::new(-ascension * cos, -declination, ascension * sin),
+        acceleration: Vector::new(
+            -ascension_change * cos - ascension * cos_rate,
+            -declination_change,
+            ascension_change * sin + ascension * cos * declination,
+        ),
     }
 }

@@ -12,7 +12,7 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::BodyModel;
 use flexsc_spacecraft::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
-use flexsc_spacecraft::environment::{OrbitEnvironment, to_body};
+use flexsc_spacecraft::environment::{OrbitEnvironment, SunPath, to_body};
 use nalgebra::{Matrix3, Quaternion};
 
 use super::{ResolvedScenario, Scenario, ScenarioSpec};
@@ -61,7 +61,7 @@ enum DriveProfile {
 #[derive(Clone, Debug, PartialEq)]
 struct SunTracking {
     sky: OrbitEnvironment,
-    sun: Vector,
+    sun: SunPath,
     /// Frame of the spacecraft's target, and (`attitude`) the target attitude in it.
     frame: Frame,
     attitude: Quaternion<f64>,
@@ -78,8 +78,10 @@ impl SunTracking {
     fn seen(&self, t: f64) -> [[f64; 2]; 2] {
         let pose = self.frame.state_at(&self.sky, t);
         let rate: Vector = to_body(&self.attitude, &pose.rate);
-        let sun: Vector = to_body(&(pose.attitude * self.attitude), &self.sun);
-        let (own, change) = (self.axes.tr_mul(&sun), self.axes.tr_mul(&sun.cross(&rate)));
+        let motion = self.sun.motion(t);
+        let [sun, moves]: [Vector; 2] =
+            [motion.direction, motion.rate].map(|v| to_body(&(pose.attitude * self.attitude), &v));
+        let (own, change) = (self.axes.tr_mul(&sun), self.axes.tr_mul(&(sun.cross(&rate) + moves)));
         let across = self.about.cross(&self.facing);
         [[self.facing.dot(&own), across.dot(&own)], [self.facing.dot(&change), across.dot(&change)]]
     }

@@ -9,7 +9,7 @@ impl ScenarioSpec {
     /// Checks that the environment is consistent in itself and with the run.
     pub(super) fn validate_environment(&self) -> Option<ConfigError> {
         let around = self.environment.as_ref()?;
-        let fault = around.fault().or_else(|| around.run_error(self.duration, self.epoch.is_some()))?;
+        let fault = around.fault().or_else(|| around.run_error(self.duration, self.date_ns()))?;
         Some(fault.within("environment"))
     }
 

@@ -146,7 +146,7 @@ impl ResolvedScenario {
         if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::attitude) {
             let jets = study.groups.is_some();
             let mounted = model.three_axis().map(|body| (body, &study.sensor_points[..], jets));
-            let setting = spec.setup(&written.sensor, cycle, mounted);
+            let setting = spec.setup(&written.sensor, &written.orbit_environment(), cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
         if let Some(fault) = unmet.first(Rule::ElasticRates) {

@@ -555,6 +555,9 @@ class AttitudeEstimator(Part):
             default: the sensor's own.
         field_noise: Standard deviation of a measured magnetic field along each axis (T); default: the
             magnetometer's own.
+        field_degree: Degree of the magnetic field that the filter takes as the reference of magnetometers,
+            from 1 to that of the environment's; default: the environment's field itself, without a model
+            error.
         sun_noise: Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's
             own.
         initial: Standard deviations of the estimate at the start.
@@ -580,6 +583,10 @@ class AttitudeEstimator(Part):
     """
     field_noise: float | None = None
     """Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
+    """
+    field_degree: int | None = None
+    """Degree of the magnetic field that the filter takes as the reference of magnetometers, from 1 to that
+    of the environment's; default: the environment's field itself, without a model error.
     """
     sun_noise: float | None = None
     """Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own."""
@@ -1245,8 +1252,8 @@ class Environment(Part):
     Args:
         orbit: Orbit of the body; default: none, or the one given with a torque below.
         magnetic_field: The magnetic field of the orbit's planet.
-        sun: Direction to the Sun in inertial axes, of any length, or from the date of the start; the
-            orbit's planet casts a shadow.
+        sun: Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet
+            casts a shadow.
         gravity_gradient: Gravity gradient of a circular orbit.
         solar_pressure: Pressure of sunlight.
         dipole: A magnetic moment of the body in the field of its planet.
@@ -1259,8 +1266,8 @@ class Environment(Part):
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
     sun: Vector | Literal["epoch"] | None = None
-    """Direction to the Sun in inertial axes, of any length, or from the date of the start; the orbit's
-    planet casts a shadow.
+    """Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a
+    shadow.
     """
     gravity_gradient: GravityGradient | None = None
     """Gravity gradient of a circular orbit."""
@@ -1933,26 +1940,40 @@ class LowPass(Part):
 
 
 class MagneticField(Part):
-    """A tilted dipole: B = (a/R)³ (3 (g.r) r - g) with r the direction from the planet's centre and g,
-    which points south.
+    """Magnetic field of the orbit's planet: a model of the Earth's, or a tilted dipole, B = (a/R)³ (3 (g.r)
+    r - g) with r the direction from the planet's centre and g, which points south.
 
     Args:
-        coefficients: Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the
+        model: Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless
+            `coefficients` or `radius` differ from their defaults.
+        degree: Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's
+            highest, 13 of IGRF-14 and 12 of WMM2025.
+        coefficients: Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the
             planet: z along its axis, x through its prime meridian; default: the Earth's from IGRF-13 for
             2020.
-        radius: Reference radius a of the coefficients (m); default: the Earth's mean radius. Default:
-            6371200.0.
+        radius: Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius.
+            Default: 6371200.0.
         rotation: Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
         meridian: Angle from the inertial x to the prime meridian at the start (rad); default: that of
             Greenwich at the scenario's `epoch`, 0 without one.
     """
 
+    model: Literal["dipole", "IGRF-14", "WMM2025"] | None = None
+    """Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless
+    `coefficients` or `radius` differ from their defaults.
+    """
+    degree: int | None = None
+    """Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest,
+    13 of IGRF-14 and 12 of WMM2025.
+    """
     coefficients: Vector | None = None
-    """Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the planet: z along
+    """Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the planet: z along
     its axis, x through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     """
     radius: float | None = None
-    """Reference radius a of the coefficients (m); default: the Earth's mean radius. Default: 6371200.0."""
+    """Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius. Default:
+    6371200.0.
+    """
     rotation: float | None = None
     """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
     meridian: float | None = None
@@ -3098,7 +3119,8 @@ class SolarPressure(Part):
         at: Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a
             spatial body.
         plates: Plates that sunlight presses on.
-        pressure: Pressure of sunlight on the plates (N/m²); default: that at 1 au.
+        pressure: Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun =
+            "epoch"` it falls with the square of the Sun's distance at the date.
         shadow: Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet.
     """
 
@@ -3111,7 +3133,9 @@ class SolarPressure(Part):
     plates: Sequence[LitPlate] | None = None
     """Plates that sunlight presses on."""
     pressure: float | None = None
-    """Pressure of sunlight on the plates (N/m²); default: that at 1 au."""
+    """Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun = "epoch"`
+    it falls with the square of the Sun's distance at the date.
+    """
     shadow: Rows | None = None
     """Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet."""
 

@@ -1,4 +1,4 @@
-//! The Earth at a date: how far it has turned.
+//! Dates: the angle of Greenwich, and the year with its fraction.
 
 use std::f64::consts::TAU;
 
@@ -20,9 +20,47 @@ pub fn greenwich(epoch_ns: u64) -> f64 {
     TAU * (seconds / DAY).rem_euclid(1.0)
 }
 
+/// Returns the year with its fraction at `seconds` after 1970, UTC, in the Gregorian calendar.
+pub fn year(seconds: f64) -> f64 {
+    let days = seconds / DAY;
+    let begins = |year: f64| {
+        let past = year - 1.0;
+        let leap_days = libm::floor(past / 4.0) - libm::floor(past / 100.0) + libm::floor(past / 400.0);
+        // 1970 begins after 477 leap days.
+        365.0 * (year - 1970.0) + leap_days - 477.0
+    };
+    // The estimate is at most one year off near the turn of a year.
+    let near = libm::floor(1970.0 + days / 365.2425);
+    let year = if days < begins(near) {
+        near - 1.0
+    } else if days >= begins(near + 1.0) {
+        near + 1.0
+    } else {
+        near
+    };
+    year + (days - begins(year)) / (begins(year + 1.0) - begins(year))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn years_begin_on_the_first_of_january() {
+        // Seconds since 1970 (`date --utc +%s`).
+        for (seconds, exact) in [
+            (0.0, 1970.0),
+            (946_684_800.0, 2000.0),                   // 2000-01-01
+            (951_782_400.0, 2000.0 + 59.0 / 366.0),    // 2000-02-29
+            (1_735_689_600.0, 2025.0),                 // 2025-01-01
+            (1_767_182_400.0, 2025.0 + 364.5 / 365.0), // 2025-12-31T12:00:00Z
+            (1_767_225_600.0, 2026.0),                 // 2026-01-01
+            (4_102_444_800.0, 2100.0),                 // 2100-01-01
+            (4_133_980_800.0, 2101.0),                 // 2101-01-01
+        ] {
+            assert!((year(seconds) - exact).abs() < 1e-9, "{seconds}: {}", year(seconds));
+        }
+    }
 
     #[test]
     fn greenwich_is_where_erfa_has_it() {

@@ -1,4 +1,4 @@
-//! A Kepler orbit about a planet: the body's position, the local axes and their rate, and the planet's shadow.
+//! A Kepler orbit about a planet: the body's position, the local axes and their rate.
 //!
 //! In the eccentric anomaly E with E - e sin E = n t + M (\[Wie08\]), r = a ((cos E - e) P + sqrt(1 - e²) sin E Q),
 //! with P to the perigee and Q across it in the plane of the orbit. Local axes are z to the planet's centre (nadir), y
@@ -102,7 +102,7 @@ impl Kepler {
     }
 
     /// Returns the unit vectors P, Q and along the orbit's normal.
-    fn plane(&self) -> [Vector; 3] {
+    pub(super) fn plane(&self) -> [Vector; 3] {
         let [(si, ci), (sn, cn), (sp, cp)] =
             [self.inclination, self.node, self.perigee].map(|angle| libm::sincos(angle.get()));
         let ahead =
@@ -132,94 +132,6 @@ impl Kepler {
             turning: [orbit_rate, -2.0 * orbit_rate * climb / radius],
             tide: gravity / (radius * radius * radius),
         }
-    }
-
-    /// Returns the times (s) at which the planet's shadow, a cylinder opposite to the direction `sun`, begins and ends,
-    /// for those shadows that begin before `duration` (s).
-    pub(super) fn shadows(&self, sun: &Vector, duration: f64) -> Vec<[f64; 2]> {
-        let crossings = self.shadow_edges(sun);
-        let e = self.eccentricity.get();
-        let (rate, period) = (self.mean_motion(), TAU / self.mean_motion());
-        let since_start = |anomaly: f64| {
-            let mean = anomaly - e * libm::sin(anomaly) - self.anomaly.get();
-            (mean - TAU * libm::floor(mean / TAU)) / rate
-        };
-        let mut shadows = Vec::new();
-        for (index, (begins, enters)) in crossings.iter().enumerate() {
-            if !enters {
-                continue;
-            }
-            let (ends, _) = crossings[(index + 1) % crossings.len()];
-            let (from, to) = (since_start(*begins), since_start(ends));
-            let length = if to > from { to - from } else { to - from + period };
-            // The run may begin within a shadow.
-            let mut orbit = -1.0;
-            while from + orbit * period < duration {
-                let from = from + orbit * period;
-                if from + length > 0.0 {
-                    shadows.push([from.max(0.0), from + length]);
-                }
-                orbit += 1.0;
-            }
-        }
-        shadows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        shadows
-    }
-
-    /// Returns the eccentric anomalies at which the orbit crosses the shadow's edge, each with true for an entry.
-    fn shadow_edges(&self, sun: &Vector) -> Vec<(f64, bool)> {
-        let (a, e, planet) = (self.semi_major_axis.get(), self.eccentricity.get(), self.planet_radius.get());
-        let [p, q, _] = self.plane().map(|axis| axis.dot(sun) * a);
-        let minor = f64::sqrt(1.0 - e * e);
-        // Distance of the body towards the Sun, and its squared distance from the axis of the shadow minus the squared
-        // radius of the planet, with their derivatives.
-        let towards = |sin: f64, cos: f64| p * (cos - e) + q * minor * sin;
-        let beyond = |anomaly: f64| {
-            let (sin, cos) = libm::sincos(anomaly);
-            let (x, dx) = (towards(sin, cos), q * minor * cos - p * sin);
-            let radius = a * (1.0 - e * cos);
-            [radius * radius - x * x - planet * planet, 2.0 * (radius * a * e * sin - x * dx)]
-        };
-        let mut crossings = Vec::new();
-        // Upper bound of the second derivative.
-        crossings_within(&beyond, [0.0, TAU], 16.0 * a * a, &mut crossings);
-        let behind = |(anomaly, _): &(f64, bool)| {
-            let (sin, cos) = libm::sincos(*anomaly);
-            towards(sin, cos) < 0.0
-        };
-        crossings.into_iter().filter(behind).collect()
-    }
-}
-
-/// Finds the zeros of a function, given with its derivative, within an interval, in order, each with true if the
-/// function decreases there. `bend` bounds the second derivative: no zero is missed.
-fn crossings_within(
-    motion: &dyn Fn(f64) -> [f64; 2],
-    [from, to]: [f64; 2],
-    bend: f64,
-    found: &mut Vec<(f64, bool)>,
-) {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let [value, slope] = motion(middle);
-    if value.abs() > slope.abs() * half + 0.5 * bend * half * half || half < 1e-9 {
-        return;
-    }
-    if slope.abs() <= bend * half {
-        crossings_within(motion, [from, middle], bend, found);
-        return crossings_within(motion, [middle, to], bend, found);
-    }
-    let falls = slope < 0.0;
-    let above = |time: f64| motion(time)[0] >= 0.0;
-    if above(from) != falls || above(to) == falls {
-        return;
-    }
-    let (mut low, mut high) = (from, to);
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return found.push((high, falls));
-        }
-        if above(middle) == falls { low = middle } else { high = middle }
     }
 }
 
@@ -277,58 +189,6 @@ mod tests {
             assert!((nadir + now.local[0] * rate).norm() < 1e-10, "{t}");
             assert!(((after.turning[0] - before.turning[0]) / (2.0 * h) - change).abs() < 1e-12, "{t}");
             assert!(rate <= orbit.fastest() * (1.0 + 1e-14));
-        }
-    }
-
-    #[test]
-    fn the_shadow_of_a_circular_orbit_is_as_by_hand() {
-        // With the Sun in the plane, the planet hides 2 asin(Rp/R) of the orbit, centred opposite to the Sun.
-        let orbit = orbit("semi_major_axis = 7e6\nanomaly = 1.0");
-        let shadows = orbit.shadows(&Vector::x(), 12_000.0);
-        let half = libm::asin(6_378_137.0 / 7e6);
-        let rate = orbit.mean_motion();
-        assert_eq!(shadows.len(), 2);
-        for (k, [from, to]) in shadows.into_iter().enumerate() {
-            let middle = (std::f64::consts::PI - 1.0 + TAU * k as f64) / rate;
-            assert!(
-                (from - (middle - half / rate)).abs() < 1e-8 && (to - (middle + half / rate)).abs() < 1e-8
-            );
-        }
-        // For a run that begins within a shadow, only the rest of it.
-        let within = Kepler { anomaly: Finite::new(3.2).unwrap(), ..orbit };
-        let first = within.shadows(&Vector::x(), 10.0);
-        assert!(first.len() == 1 && first[0][0] == 0.0 && first[0][1] < half / rate);
-        // With the Sun along the normal there is no shadow.
-        assert!(orbit.shadows(&Vector::z(), 12_000.0).is_empty());
-    }
-
-    #[test]
-    fn at_its_edges_the_body_leaves_the_shadow() {
-        let orbit = eccentric_orbit();
-        let sun = Vector::new(-0.5, -0.4, 0.3).normalize();
-        let depth = |t: f64| {
-            let position = orbit.at(t).position;
-            let along = position.dot(&sun);
-            (along < 0.0).then(|| (position - sun * along).norm() - 6_378_137.0)
-        };
-        let shadows = orbit.shadows(&sun, 40_000.0);
-        // Reference by a scan of every second with other code: after 9104, 11 764, 22 187, 24 847, 35 269 and 37 929 s.
-        let scanned = [[9104.5, 11_764.5], [22_187.5, 24_847.5], [35_269.5, 37_929.5]];
-        assert_eq!(shadows.len(), scanned.len());
-        for (found, scanned) in shadows.iter().flatten().zip(scanned.iter().flatten()) {
-            assert!((found - scanned).abs() <= 0.5, "{found} {scanned}");
-        }
-        for [from, to] in &shadows {
-            if *from > 0.0 {
-                assert!(depth(*from).unwrap().abs() < 1e-4);
-            }
-            assert!(depth(*to).unwrap().abs() < 1e-4 && depth(0.5 * (from + to)).unwrap() < 0.0);
-        }
-        // No other time is in shadow.
-        for k in 0..4000 {
-            let t = 10.0 * f64::from(k);
-            let dark = shadows.iter().any(|[from, to]| *from <= t && t < *to);
-            assert_eq!(dark, depth(t).is_some_and(|depth| depth < 0.0), "{t}");
         }
     }
 

@@ -1,21 +1,36 @@
-//! The magnetic field of a planet: a dipole through its centre, tilted against its axis, that turns with it
-//! (\[Wertz78\]).
+//! The magnetic field of a planet, which turns with it: a model of the Earth's, or a dipole through the centre, tilted
+//! against the axis (\[Wertz78\]).
 
+use std::sync::Arc;
+
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::FieldModel;
 use super::date::greenwich;
+use super::spherical_harmonics::SphericalHarmonics;
 
-/// A tilted dipole: B = (a/R)³ (3 (g.r) r - g) with r the direction from the planet's centre and g, which points south.
+/// Magnetic field of the orbit's planet: a model of the Earth's, or a tilted dipole, B = (a/R)³ (3 (g.r) r - g) with r
+/// the direction from the planet's centre and g, which points south.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MagneticField {
-    /// Coefficients g11, h11 and g10 of the field (T), a vector in axes that rotate with the planet: z along its axis, x
+    /// Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless `coefficients` or `radius`
+    /// differ from their defaults.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<FieldModel>,
+    /// Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest, 13 of IGRF-14 and
+    /// 12 of WMM2025.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub degree: Option<u32>,
+    /// Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the planet: z along its axis, x
     /// through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     pub coefficients: [Finite; 3],
-    /// Reference radius a of the coefficients (m); default: the Earth's mean radius.
+    /// Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius.
     pub radius: Positive,
     /// Rotation rate of the planet (rad/s); default: the Earth's.
     pub rotation: Finite,
@@ -29,6 +44,8 @@ impl Default for MagneticField {
     /// Returns the field of the Earth.
     fn default() -> Self {
         Self {
+            model: None,
+            degree: None,
             coefficients: [-1450.9e-9, 4652.5e-9, -29_404.8e-9].map(|t| Finite::new(t).unwrap_or_default()),
             radius: Positive::new(6_371_200.0).unwrap_or(Positive::ONE),
             rotation: Finite::new(7.292_115e-5).unwrap_or_default(),
@@ -38,28 +55,124 @@ impl Default for MagneticField {
 }
 
 impl MagneticField {
-    /// Returns the field with its meridian, for a scenario that begins `epoch_ns` nanoseconds after 1970, UTC.
-    #[must_use]
-    pub fn at_epoch(mut self, epoch_ns: u64) -> Self {
-        self.meridian = self.meridian.or_else(|| Finite::new(greenwich(epoch_ns)));
-        self
+    /// Returns the first key of the dipole that differs from its default.
+    fn dipole_key(&self) -> Option<&'static str> {
+        let earth = Self::default();
+        let keys = [
+            ("coefficients", self.coefficients != earth.coefficients),
+            ("radius", self.radius != earth.radius),
+        ];
+        keys.into_iter().find(|(_, differs)| *differs).map(|(key, _)| key)
+    }
+
+    /// Returns the model of the field in a scenario with a date of its start, or without.
+    pub fn model(&self, has_date: bool) -> FieldModel {
+        let default =
+            if has_date && self.dipole_key().is_none() { FieldModel::Igrf14 } else { FieldModel::Dipole };
+        self.model.unwrap_or(default)
+    }
+
+    /// Checks the field's keys against each other and against a run of this duration from `epoch_ns` nanoseconds after
+    /// 1970, if known; returns the key and the reason.
+    pub(super) fn run_error(&self, duration: Span, epoch_ns: Option<u64>) -> Option<ConfigError> {
+        let model = self.model(epoch_ns.is_some());
+        let (name, highest) = (model.name(), model.highest_degree());
+        if let Some(key) = self.dipole_key().filter(|_| model != FieldModel::Dipole) {
+            let why = format!("is for the model \"dipole\", and the model is \"{name}\": leave it out");
+            return Some(ConfigError::new(key, why));
+        }
+        if let Some(degree) = self.degree.filter(|degree| !(1..=highest).contains(&(*degree as usize))) {
+            let range = if highest == 1 { "1".to_owned() } else { format!("from 1 to {highest}") };
+            let why = format!("must be {range} with the model \"{name}\", got {degree}");
+            return Some(ConfigError::new("degree", why));
+        }
+        model.date_error(epoch_ns, duration)
+    }
+}
+
+/// Magnetic field of a planet in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PlanetField {
+    source: FieldSource,
+    /// Rotation rate of the planet (rad/s).
+    pub rotation: f64,
+    /// Angle from the inertial x to the prime meridian at the start (rad).
+    meridian: f64,
+}
+
+/// Source of a planet's field, in axes that rotate with the planet.
+#[derive(Clone, Debug, PartialEq)]
+enum FieldSource {
+    /// Dipole, as the vector (g11, h11, g10) (T) with its reference radius (m).
+    Dipole(Vector, f64),
+    /// Spherical harmonics.
+    Harmonics(Arc<SphericalHarmonics>),
+}
+
+impl PlanetField {
+    /// Creates the field of a scenario that begins `epoch_ns` nanoseconds after 1970, UTC, if known. The coefficients of
+    /// a model are those at the start.
+    pub fn new(field: &MagneticField, epoch_ns: Option<u64>) -> Self {
+        let model = field.model(epoch_ns.is_some());
+        let degree = field.degree.map_or(model.highest_degree(), |degree| degree as usize);
+        let dipole =
+            || FieldSource::Dipole(Vector::from(field.coefficients.map(Finite::get)), field.radius.get());
+        let source = model.harmonics(degree, epoch_ns.unwrap_or(0));
+        Self {
+            source: source.map_or_else(dipole, |source| FieldSource::Harmonics(Arc::new(source))),
+            rotation: field.rotation.get(),
+            meridian: field.meridian.map_or_else(|| epoch_ns.map_or(0.0, greenwich), Finite::get),
+        }
+    }
+
+    /// Returns the highest degree of the spherical harmonics, 1 of a dipole.
+    pub fn degree(&self) -> usize {
+        match &self.source {
+            FieldSource::Dipole(..) => 1,
+            FieldSource::Harmonics(harmonics) => harmonics.degree(),
+        }
+    }
+
+    /// Returns the field of the degrees up to `degree`.
+    pub fn truncated(&self, degree: usize) -> Self {
+        let source = match &self.source {
+            dipole @ FieldSource::Dipole(..) => dipole.clone(),
+            FieldSource::Harmonics(harmonics) => {
+                FieldSource::Harmonics(Arc::new(harmonics.truncated(degree)))
+            }
+        };
+        Self { source, ..*self }
     }
 
     /// Returns the field (T) at a position from the planet's centre (m), both in inertial axes, at a time since the
     /// start (s).
     pub fn at(&self, position: &Vector, t: f64) -> Vector {
-        let [x, y, z] = self.coefficients.map(Finite::get);
-        let (sin, cos) = libm::sincos(self.meridian.unwrap_or_default().get() + self.rotation.get() * t);
-        let south = Vector::new(cos * x - sin * y, sin * x + cos * y, z);
-        let distance = position.norm();
-        let (up, ratio) = (position / distance, self.radius.get() / distance);
-        (up * (3.0 * south.dot(&up)) - south) * (ratio * ratio * ratio)
+        let (sin, cos) = libm::sincos(self.meridian + self.rotation * t);
+        match &self.source {
+            FieldSource::Dipole(coefficients, radius) => {
+                let [x, y, z] = (*coefficients).into();
+                let south = Vector::new(cos * x - sin * y, sin * x + cos * y, z);
+                let distance = position.norm();
+                let (up, ratio) = (position / distance, radius / distance);
+                (up * (3.0 * south.dot(&up)) - south) * (ratio * ratio * ratio)
+            }
+            FieldSource::Harmonics(harmonics) => {
+                let [x, y, z] = (*position).into();
+                let field = harmonics.at(&Vector::new(cos * x + sin * y, cos * y - sin * x, z));
+                Vector::new(cos * field.x - sin * field.y, sin * field.x + cos * field.y, field.z)
+            }
+        }
     }
 
     /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.
     pub fn bound(&self, distance: f64) -> f64 {
-        let ratio = self.radius.get() / distance;
-        2.0 * Vector::from(self.coefficients.map(Finite::get)).norm() * ratio * ratio * ratio
+        match &self.source {
+            FieldSource::Dipole(coefficients, radius) => {
+                let ratio = radius / distance;
+                2.0 * coefficients.norm() * ratio * ratio * ratio
+            }
+            FieldSource::Harmonics(harmonics) => harmonics.bound(distance),
+        }
     }
 }
 
@@ -73,6 +186,7 @@ mod tests {
         // Expected field: b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
         let field: MagneticField =
             flexsc_formats::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
+        let field = PlanetField::new(&field, None);
         let (inclination, radius) = (0.9, 7e6);
         let orbit: Kepler = flexsc_formats::document::from_text(&format!(
             "semi_major_axis = {radius}\ninclination = {inclination}\nnode = 0.4\nperigee = 0.3\nanomaly = 0.2"
@@ -93,17 +207,45 @@ mod tests {
 
     #[test]
     fn with_a_date_its_meridian_is_that_of_greenwich_unless_it_is_a_key() {
-        let field = MagneticField::default().at_epoch(1_774_017_960_000_000_000);
-        let same = MagneticField { meridian: Finite::new(0.691_984_659), ..MagneticField::default() };
+        let date = Some(1_774_017_960_000_000_000);
+        let dipole = MagneticField { model: Some(FieldModel::Dipole), ..MagneticField::default() };
+        let given = MagneticField { meridian: Finite::new(0.691_984_659), ..dipole };
         let position = Vector::new(7e6, -1e6, 2e6);
-        assert!((field.at(&position, 900.0) - same.at(&position, 900.0)).norm() < 1e-13);
-        assert_eq!(same.at_epoch(1_774_017_960_000_000_000), same);
+        let at = |field: &MagneticField, date| PlanetField::new(field, date).at(&position, 900.0);
+        assert!((at(&dipole, date) - at(&given, None)).norm() < 1e-13);
+        assert_eq!(at(&given, date), at(&given, None));
+        assert_ne!(at(&dipole, date), at(&dipole, None));
+    }
+
+    #[test]
+    fn a_model_turns_with_the_planet() {
+        // 2026-03-20T14:46:00Z.
+        let date = Some(1_774_017_960_000_000_000);
+        let at = |meridian: f64, position: &Vector, t: f64| {
+            let field = MagneticField { meridian: Finite::new(meridian), ..MagneticField::default() };
+            PlanetField::new(&field, date).at(position, t)
+        };
+        let turned = |v: &Vector, angle: f64| {
+            let (sin, cos) = libm::sincos(angle);
+            Vector::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z)
+        };
+        let position = Vector::new(5e6, -3e6, 4e6);
+        let fixed = at(0.0, &position, 0.0);
+        for (meridian, t) in [(0.7, 0.0), (0.0, 9000.0), (2.0, 50_000.0)] {
+            let angle = meridian + 7.292_115e-5 * t;
+            let off = at(meridian, &turned(&position, angle), t) - turned(&fixed, angle);
+            assert!(off.norm() < 1e-18, "{meridian} {t} {off}");
+        }
+        // The default meridian is that of Greenwich.
+        let default = PlanetField::new(&MagneticField::default(), date).at(&position, 900.0);
+        assert!((default - at(0.691_984_659, &position, 900.0)).norm() < 1e-12);
     }
 
     #[test]
     fn the_earths_is_29_8_microtesla_over_its_magnetic_equator_and_turns_with_it() {
-        let field = MagneticField::default();
-        let axis = Vector::from(field.coefficients.map(Finite::get)).normalize();
+        let earth = MagneticField::default();
+        let axis = Vector::from(earth.coefficients.map(Finite::get)).normalize();
+        let field = PlanetField::new(&earth, None);
         let across = axis.cross(&Vector::x()).normalize() * 6_371_200.0;
         assert!(
             (field.at(&across, 0.0).norm() - 29_805.924e-9).abs() < 1e-12,

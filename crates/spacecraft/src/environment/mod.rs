@@ -3,16 +3,21 @@
 mod date;
 mod dipole;
 mod drag;
+mod field_model;
 mod gravity_gradient;
+mod igrf_14;
 mod kepler;
 mod magnetic_field;
 mod orbit;
 mod orbit_environment;
+mod shadow;
 mod solar_pressure;
+mod spherical_harmonics;
 mod sun;
 mod surroundings;
 #[cfg(test)]
 mod tests;
+mod wmm_2025;
 
 use std::f64::consts::TAU;
 
@@ -24,13 +29,14 @@ use serde::{Deserialize, Serialize};
 
 pub use dipole::Dipole;
 pub use drag::{Drag, DragPlate};
+pub use field_model::FieldModel;
 pub use gravity_gradient::GravityGradient;
 pub use kepler::{Kepler, OrbitPosition};
 pub use magnetic_field::MagneticField;
 pub use orbit::to_body;
 pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
 pub use solar_pressure::{SolarPlate, SolarPressure};
-pub use sun::Sun;
+pub use sun::{Sun, SunMotion, SunPath};
 pub use surroundings::SurroundingsState;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.
@@ -46,7 +52,7 @@ pub struct Environment {
     /// The magnetic field of the orbit's planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic_field: Option<MagneticField>,
-    /// Direction to the Sun in inertial axes, of any length, or from the date of the start; the orbit's planet casts a shadow.
+    /// Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a shadow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun: Option<Sun>,
     /// Gravity gradient of a circular orbit.
@@ -85,11 +91,14 @@ impl Environment {
         pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
     }
 
-    /// Checks the environment against a run of this duration, with a date of its start or without; returns a key within the
-    /// environment and the reason.
-    pub fn run_error(&self, duration: Span, has_date: bool) -> Option<ConfigError> {
-        if self.sun == Some(Sun::Epoch) && !has_date {
+    /// Checks the environment against a run of this duration from `epoch_ns` nanoseconds after 1970, if known; returns a
+    /// key within the environment and the reason.
+    pub fn run_error(&self, duration: Span, epoch_ns: Option<u64>) -> Option<ConfigError> {
+        if self.sun == Some(Sun::Epoch) && epoch_ns.is_none() {
             return Some(ConfigError::new("sun", "follows from the scenario's `epoch`, and there is none"));
+        }
+        if let Some(fault) = self.magnetic_field.and_then(|field| field.run_error(duration, epoch_ns)) {
+            return Some(fault.within("magnetic_field"));
         }
         let turns = self.orbit.filter(|_| self.sun.is_some())?.mean_motion() * duration.seconds() / TAU;
         let why = || {

@@ -4,15 +4,15 @@
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 
-use super::{Environment, Kepler, MagneticField, OrbitPosition};
+use super::magnetic_field::PlanetField;
+use super::{Environment, Kepler, OrbitPosition, SunPath};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrbitEnvironment {
     orbit: Option<Kepler>,
-    field: Option<MagneticField>,
-    /// Direction to the Sun in inertial axes.
-    sun: Option<Vector>,
+    field: Option<PlanetField>,
+    sun: Option<SunPath>,
     /// Intervals in which the planet hides the Sun.
     shadows: Vec<[Instant; 2]>,
 }
@@ -29,8 +29,7 @@ pub struct EnvironmentObservation {
 impl OrbitEnvironment {
     /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
-        let sun = environment.sun.map(|sun| sun.direction(epoch_ns.unwrap_or(0)));
-        let dated = |field: MagneticField| epoch_ns.map_or(field, |ns| field.at_epoch(ns));
+        let sun = environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0)));
         let shadows = match (&environment.orbit, &sun) {
             (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
             _ => Vec::new(),
@@ -38,7 +37,7 @@ impl OrbitEnvironment {
         let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         Self {
             orbit: environment.orbit,
-            field: environment.magnetic_field.map(dated),
+            field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
             sun,
             shadows: shadows.into_iter().map(|shadow| shadow.map(instant)).collect(),
         }
@@ -54,8 +53,8 @@ impl OrbitEnvironment {
         self.orbit.as_ref()
     }
 
-    /// Returns the direction to the Sun in inertial axes, in the light or not.
-    pub fn sun(&self) -> Option<&Vector> {
+    /// Returns the path of the Sun, in the light or not.
+    pub fn sun(&self) -> Option<&SunPath> {
         self.sun.as_ref()
     }
 
@@ -86,9 +85,30 @@ impl OrbitEnvironment {
         self.field.is_some()
     }
 
+    /// Returns the highest degree of the spherical harmonics of the magnetic field, 1 of a dipole; 0 without a field.
+    pub fn field_degree(&self) -> usize {
+        self.field.as_ref().map_or(0, PlanetField::degree)
+    }
+
+    /// Returns the environment with the degrees of the magnetic field up to `degree`.
+    #[must_use]
+    pub fn with_field_degree(&self, degree: usize) -> Self {
+        Self { field: self.field.as_ref().map(|field| field.truncated(degree)), ..self.clone() }
+    }
+
+    /// Returns the rotation rate of the planet whose magnetic field turns with it (rad/s); 0 without a field.
+    pub(super) fn field_rotation(&self) -> f64 {
+        self.field.as_ref().map_or(0.0, |field| field.rotation.abs())
+    }
+
+    /// Returns the magnetic field at the body in inertial axes (T) at a time since the start (s).
+    pub fn field_at(&self, t: f64) -> Option<Vector> {
+        self.field.as_ref().and_then(|field| Some(field.at(&self.position(t)?.position, t)))
+    }
+
     /// Returns the observable environment at a time since the start (s).
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
-        let field = self.field.as_ref().and_then(|_| self.field(&self.position(t)?, t));
-        EnvironmentObservation { field, sun: self.sun.filter(|_| self.is_lit(t)) }
+        let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
+        EnvironmentObservation { field: self.field_at(t), sun: sun.map(|sun| sun.direction(t)) }
     }
 }

@@ -14,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::to_body;
+use super::sun::Sunlight;
 
 /// Pressure of sunlight: one `force` at a point, or `plates`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,7 +29,8 @@ pub struct SolarPressure {
     /// Plates that sunlight presses on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<SolarPlate>,
-    /// Pressure of sunlight on the plates (N/m²); default: that at 1 au.
+    /// Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun = "epoch"` it falls with the
+    /// square of the Sun's distance at the date.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Positive>,
     /// Intervals \[from, to\] without sunlight (s), in addition to the shadow of the orbit's planet.
@@ -102,20 +104,26 @@ impl SolarPressure {
     }
 
     /// Returns the torque in sunlight about the centre of mass `centre` (m) on a body of the given attitude, in its
-    /// axes (N m); `sun` is the direction to the Sun in inertial axes.
-    pub(super) fn torque(&self, attitude: &Quaternion<f64>, sun: Option<&Vector>, centre: &Vector) -> Vector {
+    /// axes (N m); `light` has its direction in inertial axes.
+    pub(super) fn torque(
+        &self,
+        attitude: &Quaternion<f64>,
+        light: Option<Sunlight>,
+        centre: &Vector,
+    ) -> Vector {
         if let (Some(force), Some(position)) = (&self.force, &self.at) {
             return (vector(position) - centre).cross(&to_body(attitude, &vector(force)));
         }
-        let Some(sun) = sun.map(|sun| to_body(attitude, sun)) else { return Vector::zeros() };
-        let pressure = self.pressure();
+        let Some(light) = light else { return Vector::zeros() };
+        let sun = to_body(attitude, &light.direction);
+        let pressure = self.pressure() * light.pressure;
         self.plates.iter().fold(Vector::zeros(), |sum, plate| {
             sum + (vector(&plate.at) - centre).cross(&(plate.force(&sun) * pressure))
         })
     }
 
-    /// Returns an upper bound of the torque (N m).
-    pub(super) fn bound(&self, centre: &Vector) -> f64 {
+    /// Returns an upper bound of the torque (N m); `nearest` is the largest pressure relative to that at 1 au.
+    pub(super) fn bound(&self, centre: &Vector, nearest: f64) -> f64 {
         if let (Some(force), Some(position)) = (&self.force, &self.at) {
             return vector(force).norm() * (vector(position) - centre).norm();
         }
@@ -123,7 +131,7 @@ impl SolarPressure {
             let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();
             part * plate.area.get() * (vector(&plate.at) - centre).norm()
         };
-        self.pressure() * self.plates.iter().map(most).sum::<f64>()
+        self.pressure() * nearest * self.plates.iter().map(most).sum::<f64>()
     }
 
     fn pressure(&self) -> f64 {
@@ -171,13 +179,14 @@ mod tests {
     fn plates_absorb_and_reflect() {
         // Plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
         let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
+        let light = Sunlight { direction: sun, pressure: 1.0 };
         let centre = Vector::new(0.1, 0.0, 0.0);
         let torque = |parts: &str, by: Vector| {
             let keys = format!("plates = [{{ area = 2, normal = [0, 0, 4], at = [0.6, 0, 0] {parts} }}]");
             let pressure = pressed(&keys);
             assert_eq!(pressure.fault(true), None);
-            let found = pressure.torque(&rotation(&by), Some(&sun), &centre);
-            assert!(found.norm() <= pressure.bound(&centre));
+            let found = pressure.torque(&rotation(&by), Some(light), &centre);
+            assert!(found.norm() <= pressure.bound(&centre, 1.0));
             found / (4.539_807_335_646_65e-6 * 2.0 * 0.5)
         };
         let arm = Vector::new(0.5, 0.0, 0.0);

@@ -7,7 +7,9 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::AxialDipole;
 use super::orbit::to_body;
-use super::{Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure};
+use super::{
+    Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure, SunPath,
+};
 use crate::body::craft::Bending;
 
 /// Environment of a body during a run.
@@ -41,7 +43,9 @@ impl SurroundingsState {
         [inertia, spinning]: [Matrix3<f64>; 2],
         centre: &Vector,
     ) -> Self {
-        let pressed = environment.solar_pressure.as_ref().map_or(0.0, |pressure| pressure.bound(centre));
+        let nearest = sky.sun().map_or(1.0, SunPath::most_pressure);
+        let pressed =
+            environment.solar_pressure.as_ref().map_or(0.0, |pressure| pressure.bound(centre, nearest));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
@@ -51,17 +55,17 @@ impl SurroundingsState {
         let axial = dipole.and_then(super::Dipole::own_field);
         let own =
             gradient.and_then(|gradient| gradient.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
-        let rotation_rate = environment.magnetic_field.map(|field| field.rotation.get().abs());
         let orbits = [own, axial.map(|orbit| orbit.rate), sky.orbit().map(Kepler::fastest)];
-        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + rotation_rate.unwrap_or(0.0);
+        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + sky.field_rotation();
         Self {
             environment: environment.clone(),
             axial,
             spinning,
             centre: *centre,
             bound: torque.norm() + pressed + pull + push + braked,
-            // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle.
-            frequency: 2.0 * fastest,
+            // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle; a field of
+            // degree n is of order n + 1.
+            frequency: (sky.field_degree() + 1).max(2) as f64 * fastest,
             torque,
             held: Vector::zeros(),
             heated: Vec::new(),
@@ -95,10 +99,7 @@ impl SurroundingsState {
         if self.held == Vector::zeros() {
             return Vector::zeros();
         }
-        self.sky
-            .observation(t)
-            .field
-            .map_or_else(Vector::zeros, |field| self.held.cross(&to_body(attitude, &field)))
+        self.sky.field_at(t).map_or_else(Vector::zeros, |field| self.held.cross(&to_body(attitude, &field)))
     }
 
     /// Returns the orbit, field and Sun.
@@ -131,17 +132,19 @@ impl Surroundings for SurroundingsState {
         if let Some(pressure) =
             solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t) && self.sky.is_lit(t))
         {
-            torque += pressure.torque(attitude, self.sky.sun(), &self.centre);
+            torque += pressure.torque(attitude, self.sky.sun().map(|sun| sun.light(t)), &self.centre);
         }
         if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
             torque += drag.torque(orbit, place, attitude, &self.centre);
         }
-        let field = place.and_then(|place| self.sky.field(&place, t));
+        let is_held = self.held != Vector::zeros();
+        let magnetic = place.filter(|_| is_held || dipole.is_some());
+        let field = magnetic.and_then(|place| self.sky.field(&place, t));
         if let Some(dipole) = dipole {
             let field = self.axial.map(|own| own.at(t)).or(field).unwrap_or_default();
             torque += dipole.torque(&field, attitude);
         }
-        if let Some(field) = field.filter(|_| self.held != Vector::zeros()) {
+        if let Some(field) = field.filter(|_| is_held) {
             torque += self.held.cross(&to_body(attitude, &field));
         }
         torque

@@ -335,3 +335,60 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     assert!(surroundings.torque(0.0, &quarter, &upright()).norm() < 1e-19);
     assert!(surroundings.change_times().map(Instant::seconds).eq([10.0, 20.0]));
 }
+
+/// Nanoseconds from 1970 to 2027-01-03T12:00:00Z, when the Earth is near its perihelion.
+const PERIHELION: u64 = 1_798_977_600_000_000_000;
+
+#[test]
+fn sunlight_presses_by_the_square_of_the_distance_of_the_sun() {
+    let text =
+        "sun = \"epoch\"\nsolar_pressure = { plates = [{ area = 2, normal = [1, 0, 0], at = [0, 0.5, 0] }] }";
+    let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
+    let duration = Span::from_seconds(2e7);
+    let sky = OrbitEnvironment::new(&environment, duration, Some(PERIHELION));
+    let state =
+        SurroundingsState::new(&environment, sky.clone(), [upright(), Matrix3::zeros()], &Vector::zeros());
+    // Half a year apart, at distances of 0.98333 and 1.01667 au, the plate faces the Sun.
+    for (t, distance) in [(0.0, 0.983_334), (1.577e7, 1.016_6)] {
+        let sun = sky.sun().expect("a Sun").direction(t);
+        let attitude = flexsc_numerics::attitude::from_axes(&[
+            sun,
+            Vector::z().cross(&sun).normalize(),
+            sun.cross(&Vector::z().cross(&sun).normalize()),
+        ]);
+        let torque = state.torque(t, &attitude, &upright());
+        let exact = 2.0 * 0.5 * 1361.0 / 299_792_458.0 / (distance * distance);
+        assert!((torque.z / exact - 1.0).abs() < 3e-4 && torque.norm() <= state.bound(), "{t} {torque}");
+    }
+}
+
+/// Along an orbit a field of degree n, and its rate, are within the bounds that the steps of the motion rely on.
+#[test]
+fn a_field_model_varies_as_its_degree_allows() {
+    for degree in [1, 4, 13] {
+        let text = format!(
+            "orbit = {{ semi_major_axis = 6.778e6, inclination = 1.5 }}\nmagnetic_field = {{ degree = {degree} }}"
+        );
+        let environment: Environment = flexsc_formats::document::from_text(&text).expect("an environment");
+        let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e4), Some(PERIHELION));
+        let orbit_rate = sky.orbit().expect("an orbit").fastest();
+        let mut state = SurroundingsState::new(
+            &environment,
+            sky.clone(),
+            [upright(), Matrix3::zeros()],
+            &Vector::zeros(),
+        );
+        state.set_magnetic_moment(Vector::new(3.0, -4.0, 12.0));
+        let (bound, frequency) = (sky.field_bound(), state.frequency());
+        assert!((frequency / (f64::from(degree + 1) * (orbit_rate + 7.292_115e-5)) - 1.0).abs() < 1e-14);
+        assert!((state.bound() / (13.0 * bound) - 1.0).abs() < 1e-14);
+        for t in (0..3000).map(|k| 2.0 * f64::from(k)) {
+            let [before, now, after] = [t - 1.0, t, t + 1.0].map(|t| sky.field_at(t).expect("a field"));
+            assert!(now.norm() <= bound, "{degree} {t}");
+            assert!((after - before).norm() / 2.0 <= frequency * bound, "{degree} {t}");
+            assert!((after - now * 2.0 + before).norm() <= frequency * frequency * bound, "{degree} {t}");
+            let torque = state.torque(t, &Quaternion::identity(), &upright());
+            assert!((torque - Vector::new(3.0, -4.0, 12.0).cross(&now)).norm() < 1e-18);
+        }
+    }
+}

@@ -12,7 +12,7 @@ use super::{AttitudeFilterState, AttitudeMeasurement, Correction, DelayedMeasure
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimator, SampleContext};
 use crate::part::{Occasion, Part, ReportContext};
-use crate::sensor::{Orientation, Reading};
+use crate::sensor::{Orientation, Reading, VectorMeasurement};
 use crate::state_estimate::StateEstimate;
 
 /// Run-time state of the attitude filter.
@@ -92,13 +92,15 @@ impl AttitudeFilterRun {
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
+            // A measurement at the start has no latency.
+            let exposed = if now == Instant::START { now } else { now.before(*latency) };
             let measured = match (reading.sight, reading.at) {
-                (Some(measurement), _) => AttitudeMeasurement::Vector(measurement),
+                (Some(measurement), _) => {
+                    AttitudeMeasurement::Vector(self.setting.with_reference(measurement, exposed))
+                }
                 (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
                 (None, Orientation::Angle(_)) => continue,
             };
-            // A measurement at the start has no latency.
-            let exposed = if now == Instant::START { now } else { now.before(*latency) };
             corrections.extend(history.add_measurement(DelayedMeasurement {
                 exposed,
                 measured,
@@ -154,6 +156,14 @@ impl FilterSetup {
         let all = self.roles.iter().zip(readings).enumerate();
         let wanted = all.filter(move |(_, (role, _))| wanted(role));
         wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
+    }
+
+    /// Returns a measured vector with the reference of the filter's model at its exposure: a measured magnetic field has
+    /// that of the model, other vectors keep theirs.
+    fn with_reference(&self, measurement: VectorMeasurement, exposed: Instant) -> VectorMeasurement {
+        let model = self.field_model.as_ref().filter(|_| !measurement.is_direction);
+        let field = model.and_then(|sky| sky.field_at(exposed.seconds()));
+        VectorMeasurement { inertial: field.unwrap_or(measurement.inertial), ..measurement }
     }
 }
 

@@ -7,6 +7,7 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::time::Span;
+use flexsc_spacecraft::environment::OrbitEnvironment;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,10 @@ pub struct AttitudeFilter {
     /// Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_noise: Option<Positive>,
+    /// Degree of the magnetic field that the filter takes as the reference of magnetometers, from 1 to that of the
+    /// environment's; default: the environment's field itself, without a model error.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field_degree: Option<u32>,
     /// Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun_noise: Option<Positive>,
@@ -109,6 +114,8 @@ pub struct FilterSetup {
     pub reach: Span,
     /// Elastic modes that the filter estimates, if any.
     pub modes: Option<Arc<FilterModes>>,
+    /// Environment with the magnetic field of the filter's model; `None` if the model is the true field.
+    pub field_model: Option<OrbitEnvironment>,
 }
 
 /// Body, points at which its sensors are mounted, and true if jets drive it.
@@ -125,13 +132,15 @@ impl AttitudeFilter {
         );
     }
 
-    /// Returns the setup for these sensors, with the law's period `cycle` and the sensors' mounts, if there are any.
+    /// Returns the setup for these sensors under a sky, with the law's period `cycle` and the sensors' mounts, if there
+    /// are any.
     ///
     /// # Errors
     /// A `ConfigError` with the key and the reason if the sensors do not suit the filter.
     pub fn setup(
         &self,
         sensors: &[SensorKind],
+        sky: &OrbitEnvironment,
         cycle: Option<Span>,
         mounted: Option<SensorMounts<'_>>,
     ) -> Result<FilterSetup, ConfigError> {
@@ -172,7 +181,28 @@ impl AttitudeFilter {
         }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
         let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
-        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, modes })
+        let field_model = self.field_model(sensors, sky)?;
+        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, modes, field_model })
+    }
+
+    /// Returns the environment with the magnetic field of the filter's model, if that is not the true field.
+    fn field_model(
+        &self,
+        sensors: &[SensorKind],
+        sky: &OrbitEnvironment,
+    ) -> Result<Option<OrbitEnvironment>, ConfigError> {
+        let Some(degree) = self.field_degree else { return Ok(None) };
+        if !sensors.iter().any(SensorKind::measures_field) {
+            let why = "is that of the field that a `magnetometer` measures, and there is none";
+            return Err(ConfigError::new("field_degree", why));
+        }
+        let highest = sky.field_degree();
+        if !(1..=highest).contains(&(degree as usize)) {
+            let range = if highest > 1 { format!("from 1 to {highest}") } else { "1".to_owned() };
+            let why = format!("must be {range}, the degree of `environment.magnetic_field`, got {degree}");
+            return Err(ConfigError::new("field_degree", why));
+        }
+        Ok(Some(sky.with_field_degree(degree as usize)))
     }
 
     /// Returns the model of the modes that the filter estimates of a body with sensors at these points.

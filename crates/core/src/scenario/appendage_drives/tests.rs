@@ -4,9 +4,15 @@ use super::*;
 
 /// Returns a spacecraft on an orbit whose panel tracks the Sun from the local axes.
 fn tracker(extra: &str) -> Scenario {
+    sun_tracker("", "[0.3, 1.0, 0.2]", extra)
+}
+
+/// Returns the spacecraft of [`tracker`] with keys of the run, under a Sun.
+fn sun_tracker(keys: &str, sun: &str, extra: &str) -> Scenario {
     let text = format!(
         r#"
 duration = 3000.0
+{keys}
 [spacecraft]
 mass = 500.0
 inertia = [[250, 0, 0], [0, 300, 0], [0, 0, 220]]
@@ -25,7 +31,7 @@ frame = "nadir"
 [law.open]
 [environment]
 orbit = {{ semi_major_axis = 6.878e6, eccentricity = 0.01, inclination = 1.7 }}
-sun = [0.3, 1.0, 0.2]
+sun = {sun}
 {extra}
 "#
     );
@@ -36,13 +42,18 @@ sun = [0.3, 1.0, 0.2]
 /// angles.
 #[test]
 fn a_drive_that_follows_the_sun_faces_it() {
-    let scenario = tracker("");
+    check_facing(&tracker(""));
+    // Under a Sun that moves, at 2e-7 rad/s.
+    check_facing(&sun_tracker("epoch = 2026-06-21T08:24:00Z", "\"epoch\"", ""));
+}
+
+fn check_facing(scenario: &Scenario) {
     let courses = &scenario.study.drives.as_ref().expect("drives").courses;
     let DriveProfile::Sun(following) = &courses.each[0] else { panic!("follows the Sun") };
     for t in [0.0, 100.0, 777.0, 2999.0] {
         let [angle, rate] = courses.at(0, t);
         let pose = scenario.study.profile.at(Instant::START + Span::from_seconds(t));
-        let sun: Vector = to_body(&pose.attitude, &following.sun);
+        let sun: Vector = to_body(&pose.attitude, &following.sun.direction(t));
         let turned = scenario.appendage[0].drive.as_ref().expect("one").rotation(angle);
         let across = Vector::y().cross(&(turned * Vector::z()));
         assert!(sun.dot(&across).abs() < 1e-14 && sun.dot(&(turned * Vector::z())) > 0.0, "{t}");

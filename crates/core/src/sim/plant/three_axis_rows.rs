@@ -101,8 +101,8 @@ impl dyn ThreeAxisQuantities + '_ {
         let place = sky.position(t)?;
         let here = |v: Vector| to_body(self.attitude(), &v);
         let nowhere = Vector::repeat(f64::NAN);
-        let (nadir, field) = (here(place.local[2]), sky.observation(t).field.map_or(nowhere, here));
-        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
+        let (nadir, field) = (here(place.local[2]), sky.field_at(t).map_or(nowhere, here));
+        let sun = sky.sun().map_or(nowhere, |sun| here(sun.direction(t)));
         let axis = |axis: usize| OrbitAxis {
             position_m: place.position[axis],
             velocity_m_s: place.velocity[axis],
