@@ -68,8 +68,23 @@ impl FrequencyResponse {
         finite(x)
     }
 
+    /// Returns the number of states.
+    pub fn order(&self) -> usize {
+        self.transfer.a.nrows()
+    }
+
+    /// Returns the input and the output matrix in the basis of the Hessenberg form.
+    pub fn in_hessenberg_basis(&self) -> (&DMatrix<Complex<f64>>, DMatrix<Complex<f64>>) {
+        (&self.input, complex(&self.output))
+    }
+
+    /// Returns the feedthrough matrix.
+    pub fn feedthrough(&self) -> DMatrix<Complex<f64>> {
+        complex(&self.transfer.d)
+    }
+
     /// Solves (z - H) x = b by elimination with pivots; `None` at a pole.
-    fn solve(&self, z: Complex<f64>, mut x: DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
+    pub fn solve(&self, z: Complex<f64>, mut x: DMatrix<Complex<f64>>) -> Option<DMatrix<Complex<f64>>> {
         let (order, count) = x.shape();
         let mut matrix: Vec<Complex<f64>> =
             self.hessenberg.iter().map(|entry| Complex::new(-entry, 0.0)).collect();

@@ -9,6 +9,7 @@ mod frequency_grid;
 pub(in crate::analysis) mod frequency_response;
 mod independent_gain;
 mod loci;
+mod modal_response;
 pub(in crate::analysis) mod poles;
 mod root_locus;
 mod sample_components;
@@ -30,6 +31,7 @@ use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use frequency_grid::coarse_frequency_grid;
 pub(super) use frequency_response::{largest_direction, largest_gain, modulus, unit_circle};
 pub(super) use loci::eigenvalues_of;
+pub(super) use modal_response::ModalResponse;
 pub(super) use poles::ROUNDING;
 pub(super) use sample_components::LoopSamples;
 
@@ -166,7 +168,7 @@ impl StabilityMargins {
             signals.push((own, transfer));
         }
         let samples = LoopSamples { period: opened.period, count: opened.samples };
-        let sensitivity = Sensitivity::new(&sensitivity, frequency_grid(&closed, &others), samples);
+        let sensitivity = Sensitivity::new(&sensitivity, (&closed, &others), samples);
         let loops = opened.signals.iter().zip(&signals).map(|(signal, (own, transfer))| {
             let response = FrequencyResponse::new(transfer);
             let (period, samples) = (opened.period, opened.samples);
@@ -219,9 +221,20 @@ struct Sensitivity {
 }
 
 impl Sensitivity {
-    fn new(transfer: &TransferMatrices, angles: Vec<f64>, samples: LoopSamples) -> Self {
+    /// Evaluates the sensitivity on the grid of the poles of the closed loop and of others.
+    fn new(
+        transfer: &TransferMatrices,
+        (closed, others): (&[Complex<f64>], &[Complex<f64>]),
+        samples: LoopSamples,
+    ) -> Self {
+        let angles = frequency_grid(closed, others);
         let response = FrequencyResponse::new(transfer);
-        let values = angles.iter().map(|angle| response.scan(unit_circle(*angle))).collect();
+        let modal = ModalResponse::new(&response, closed);
+        let at = |angle: &f64| {
+            let z = unit_circle(*angle);
+            modal.as_ref().map_or_else(|| response.scan(z), |modal| modal.at(z))
+        };
+        let values = angles.iter().map(at).collect();
         Self { response, angles, values, samples }
     }
 

@@ -4,8 +4,8 @@ use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 
 use crate::analysis::margins::{
-    FrequencyResponse, LoopSamples, coarse_frequency_grid, eigenvalues, eigenvalues_of, frequency_grid,
-    largest_direction, largest_gain, modulus, unit_circle,
+    FrequencyResponse, LoopSamples, ModalResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of,
+    frequency_grid, largest_direction, largest_gain, modulus, unit_circle,
 };
 use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
 
@@ -82,8 +82,10 @@ impl LoopSensitivity {
     /// Returns the angles (rad) and values of the local minima of 1/s1(S) that exceed the least by at most `within`.
     pub fn minima(&self, closed: &[Complex<f64>], within: f64) -> Vec<(f64, f64)> {
         let angles = coarse_frequency_grid(closed, &self.open_poles());
+        let modal = ModalResponse::new(&self.response, closed);
         let value = |angle: f64| {
-            let scanned = self.response.scan(unit_circle(angle));
+            let z = unit_circle(angle);
+            let scanned = modal.as_ref().map_or_else(|| self.response.scan(z), |modal| modal.at(z));
             scanned.as_ref().map_or(f64::INFINITY, |value| 1.0 / largest_gain(value))
         };
         let values: Vec<f64> = angles.iter().copied().map(value).collect();
