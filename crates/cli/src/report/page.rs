@@ -52,6 +52,7 @@ fn add_block(page: &mut String, block: &ReportBlock) {
         let class = if block.is_refused { " class=\"refused\"" } else { "" };
         let _ = writeln!(page, "<pre{class}>{}</pre>", escaped(&block.text));
     }
+    let _ = writeln!(page, "<p class=\"command\"><code>{}</code></p>", escaped(&block.command));
     if !block.figures.is_empty() {
         page.push_str("<div class=\"figures\">\n");
         for figure in &block.figures {
@@ -61,7 +62,6 @@ fn add_block(page: &mut String, block: &ReportBlock) {
         }
         page.push_str("</div>\n");
     }
-    let _ = writeln!(page, "<p class=\"command\"><code>{}</code></p>", escaped(&block.command));
 }
 
 /// Returns a text for HTML.

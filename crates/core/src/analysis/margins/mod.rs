@@ -9,8 +9,8 @@ mod frequency_grid;
 pub(in crate::analysis) mod frequency_response;
 mod independent_gain;
 mod loci;
-mod modal_response;
 pub(in crate::analysis) mod poles;
+mod residue_response;
 mod root_locus;
 mod sample_components;
 
@@ -31,8 +31,8 @@ use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use frequency_grid::coarse_frequency_grid;
 pub(super) use frequency_response::{largest_direction, largest_gain, modulus, unit_circle};
 pub(super) use loci::eigenvalues_of;
-pub(super) use modal_response::ModalResponse;
 pub(super) use poles::ROUNDING;
+pub(super) use residue_response::ResidueResponse;
 pub(super) use sample_components::LoopSamples;
 
 use crossings::SampledTransfer;
@@ -229,7 +229,7 @@ impl Sensitivity {
     ) -> Self {
         let angles = frequency_grid(closed, others);
         let response = FrequencyResponse::new(transfer);
-        let modal = ModalResponse::new(&response, closed);
+        let modal = ResidueResponse::new(&response, closed);
         let at = |angle: &f64| {
             let z = unit_circle(*angle);
             modal.as_ref().map_or_else(|| response.scan(z), |modal| modal.at(z))

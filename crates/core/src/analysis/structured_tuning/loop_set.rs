@@ -40,6 +40,7 @@ pub struct PlantMargin {
 }
 
 /// Loop of a plant with some parameters.
+#[derive(Clone, Debug)]
 struct PlantLoop {
     /// Period of the loop (s).
     period: f64,
@@ -53,6 +54,7 @@ struct PlantLoop {
 }
 
 /// Loops of all plants with some parameters.
+#[derive(Clone, Debug)]
 pub struct Evaluation(Vec<PlantLoop>);
 
 impl LoopSet<'_> {

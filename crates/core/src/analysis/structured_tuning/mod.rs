@@ -32,7 +32,11 @@ const LARGEST_TRUST: f64 = 0.5;
 const SMALLEST_TRUST: f64 = 1e-9;
 /// Factors on the trust region after a step that was taken, and after one that was not.
 const FACTORS: [f64; 2] = [1.5, 0.4];
-/// Largest number of linear programmes.
+/// Number of linear programmes after which the best searches alone go on.
+const FIRST_STEPS: usize = 8;
+/// Number of searches that go on to their ends.
+const CONTINUED: usize = 2;
+/// Largest number of linear programmes of a search.
 const MOST_STEPS: usize = 200;
 /// Increase of the margin below which steps no longer count.
 const LEAST_GAIN: f64 = 1e-11;
@@ -129,22 +133,33 @@ pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedL
         return Err(TuningFault::Unstable(plant, radius));
     }
     let before = TuningPoint::new(&start, &first);
-    let mut best = search(loops, parameters, (start.clone(), first), TRUSTS[0])?;
-    let mut steps = best.steps;
-    let elsewhere = (0..STARTS).map(|index| (point(parameters, index), TRUSTS[0]));
-    for (values, trust) in std::iter::once((start, TRUSTS[1])).chain(elsewhere) {
+    let mut searches = vec![
+        TuningSearch::new((start.clone(), first.clone()), TRUSTS[0]),
+        TuningSearch::new((start, first), TRUSTS[1]),
+    ];
+    for values in (0..STARTS).map(|index| point(parameters, index)) {
         // A point that the scenario does not accept is no start.
         let Ok(here) = loops.evaluate(&values) else { continue };
-        if here.unstable().is_some() {
-            continue;
-        }
-        let found = search(loops, parameters, (values, here), trust)?;
-        steps += found.steps;
-        if found.here.merit() > best.here.merit() + LEAST_GAIN {
-            best = found;
+        if here.unstable().is_none() {
+            searches.push(TuningSearch::new((values, here), TRUSTS[0]));
         }
     }
-    Ok(TunedLoop { before, after: TuningPoint::new(&best.values, &best.here), steps })
+    for search in &mut searches {
+        search.advance(loops, parameters, FIRST_STEPS)?;
+    }
+    searches.sort_by(|a, b| b.here.merit().total_cmp(&a.here.merit()));
+    let mut steps: usize = searches.iter().map(|search| search.steps).sum();
+    searches.truncate(CONTINUED);
+    for search in &mut searches {
+        let taken = search.steps;
+        search.advance(loops, parameters, MOST_STEPS)?;
+        steps += search.steps - taken;
+    }
+    let best = searches
+        .into_iter()
+        .reduce(|best, other| if other.here.merit() > best.here.merit() + LEAST_GAIN { other } else { best });
+    let after = best.map_or_else(|| before.clone(), |best| TuningPoint::new(&best.values, &best.here));
+    Ok(TunedLoop { before, after, steps })
 }
 
 /// Returns a point of the ranges: of a sequence that fills them evenly, with the golden ratio of that many dimensions.
@@ -159,48 +174,65 @@ fn point(parameters: &[TunedParameter], index: usize) -> Vec<f64> {
     each.collect()
 }
 
-/// End of a search.
-struct SearchEnd {
+/// Search from a point at which all loops are stable.
+struct TuningSearch {
     values: Vec<f64>,
     here: Evaluation,
+    /// Trust region, relative to the ranges; 0 of a search that has ended.
+    trust: f64,
+    /// Number of linear programmes.
     steps: usize,
 }
 
-/// Searches from a point at which all loops are stable.
-fn search(
-    loops: &LoopSet<'_>,
-    parameters: &[TunedParameter],
-    (mut values, mut here): (Vec<f64>, Evaluation),
-    mut trust: f64,
-) -> Result<SearchEnd, TuningFault> {
-    let width = |parameter: &TunedParameter| parameter.range[1] - parameter.range[0];
-    let mut steps = 0;
-    let mut slopes = loops.slopes(&here, &values, parameters)?;
-    while trust > SMALLEST_TRUST && steps < MOST_STEPS {
-        steps += 1;
-        let room = values.iter().zip(parameters).map(|(value, parameter)| {
-            let ([low, high], most) = (parameter.range, trust * width(parameter));
-            [(low - value).max(-most), (high - value).min(most)]
-        });
-        let (step, expected) = linear_step::largest_least(&slopes, &room.collect::<Vec<_>>());
-        if expected < here.merit() + LEAST_GAIN {
-            break;
-        }
-        let moved = values.iter().zip(&step).zip(parameters);
-        let tried: Vec<f64> = moved
-            .map(|((value, step), parameter)| (value + step).clamp(parameter.range[0], parameter.range[1]))
-            .collect();
-        // Values that the scenario does not accept, or of which the margins cannot be computed, are no step.
-        let there = loops.evaluate(&tried).ok();
-        match there.filter(|there| there.unstable().is_none() && there.merit() > here.merit()) {
-            Some(better) => {
-                (values, here) = (tried, better);
-                let Ok(next) = loops.slopes(&here, &values, parameters) else { break };
-                slopes = next;
-                trust = (trust * FACTORS[0]).min(LARGEST_TRUST);
-            }
-            None => trust *= FACTORS[1],
-        }
+impl TuningSearch {
+    fn new((values, here): (Vec<f64>, Evaluation), trust: f64) -> Self {
+        Self { values, here, trust, steps: 0 }
     }
-    Ok(SearchEnd { values, here, steps })
+
+    /// Searches until the end, or until a number of linear programmes.
+    fn advance(
+        &mut self,
+        loops: &LoopSet<'_>,
+        parameters: &[TunedParameter],
+        most: usize,
+    ) -> Result<(), TuningFault> {
+        let width = |parameter: &TunedParameter| parameter.range[1] - parameter.range[0];
+        if self.trust <= SMALLEST_TRUST || self.steps >= most {
+            return Ok(());
+        }
+        let mut slopes = loops.slopes(&self.here, &self.values, parameters)?;
+        while self.trust > SMALLEST_TRUST && self.steps < most {
+            self.steps += 1;
+            let room = self.values.iter().zip(parameters).map(|(value, parameter)| {
+                let ([low, high], most) = (parameter.range, self.trust * width(parameter));
+                [(low - value).max(-most), (high - value).min(most)]
+            });
+            let (step, expected) = linear_step::largest_least(&slopes, &room.collect::<Vec<_>>());
+            if expected < self.here.merit() + LEAST_GAIN {
+                self.trust = 0.0;
+                return Ok(());
+            }
+            let moved = self.values.iter().zip(&step).zip(parameters);
+            let tried: Vec<f64> = moved
+                .map(|((value, step), parameter)| {
+                    (value + step).clamp(parameter.range[0], parameter.range[1])
+                })
+                .collect();
+            // Values that the scenario does not accept, or of which the margins cannot be computed, are no step.
+            let there = loops.evaluate(&tried).ok();
+            match there.filter(|there| there.unstable().is_none() && there.merit() > self.here.merit()) {
+                Some(better) => {
+                    (self.values, self.here) = (tried, better);
+                    self.trust = (self.trust * FACTORS[0]).min(LARGEST_TRUST);
+                    let Ok(next) = loops.slopes(&self.here, &self.values, parameters) else {
+                        self.trust = 0.0;
+                        return Ok(());
+                    };
+                    slopes = next;
+                }
+                None => self.trust *= FACTORS[1],
+            }
+        }
+        Ok(())
+    }
 }

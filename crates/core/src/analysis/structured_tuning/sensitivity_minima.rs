@@ -4,7 +4,7 @@ use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 
 use crate::analysis::margins::{
-    FrequencyResponse, LoopSamples, ModalResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of,
+    FrequencyResponse, LoopSamples, ResidueResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of,
     frequency_grid, largest_direction, largest_gain, modulus, unit_circle,
 };
 use crate::analysis::open_loop::{OpenLoop, TransferMatrices};
@@ -82,7 +82,7 @@ impl LoopSensitivity {
     /// Returns the angles (rad) and values of the local minima of 1/s1(S) that exceed the least by at most `within`.
     pub fn minima(&self, closed: &[Complex<f64>], within: f64) -> Vec<(f64, f64)> {
         let angles = coarse_frequency_grid(closed, &self.open_poles());
-        let modal = ModalResponse::new(&self.response, closed);
+        let modal = ResidueResponse::new(&self.response, closed);
         let value = |angle: f64| {
             let z = unit_circle(angle);
             let scanned = modal.as_ref().map_or_else(|| self.response.scan(z), |modal| modal.at(z));

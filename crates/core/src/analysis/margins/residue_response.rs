@@ -15,7 +15,7 @@ const ITERATIONS: usize = 2;
 
 /// Poles of a transfer with their residues.
 #[derive(Clone, Debug)]
-pub struct ModalResponse {
+pub struct ResidueResponse {
     poles: Vec<Complex<f64>>,
     /// Residues of each pole, one of each entry, pole after pole.
     residues: Vec<Complex<f64>>,
@@ -23,7 +23,7 @@ pub struct ModalResponse {
     feedthrough: DMatrix<Complex<f64>>,
 }
 
-impl ModalResponse {
+impl ResidueResponse {
     /// Computes the residues of a transfer with these poles; `None` if its eigenvectors are no basis, within rounding.
     pub fn new(response: &FrequencyResponse, poles: &[Complex<f64>]) -> Option<Self> {
         let order = poles.len();
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
     use crate::analysis::open_loop::TransferMatrices;
 
-    fn modal(a: DMatrix<f64>) -> (FrequencyResponse, Option<ModalResponse>) {
+    fn modal(a: DMatrix<f64>) -> (FrequencyResponse, Option<ResidueResponse>) {
         let order = a.nrows();
         let poles = eigenvalues(&a).expect("values");
         let transfer = TransferMatrices {
@@ -101,7 +101,7 @@ mod tests {
             a,
         };
         let response = FrequencyResponse::new(&transfer);
-        let modal = ModalResponse::new(&response, &poles);
+        let modal = ResidueResponse::new(&response, &poles);
         (response, modal)
     }
 
