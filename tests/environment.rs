@@ -231,3 +231,32 @@ fn a_dated_satellite_flies_a_campaign() {
         assert!(row["rate_end_rad_s"].parse::<f64>().is_ok_and(f64::is_finite), "{row:?}");
     }
 }
+
+/// The camera of `ground-pass` follows the site: its boresight, from the truth, is along the line to the site within the
+/// pointing error, which is small only with the rates of the reference fed forward.
+#[test]
+fn a_camera_follows_a_ground_site() {
+    let dir = Dir::with(&["ground-pass"]);
+    dir.run("simulate ground-pass.toml").exits(0).says(&["goal           met", "requirement    met: pass"]);
+    let text = dir.text("ground-pass.toml");
+    let refused = |from: &str, to: &str, key: &str, why: &str| {
+        assert!(text.contains(from), "{from}");
+        let error = Scenario::parse("pass.toml", &text.replacen(from, to, 1)).expect_err(to).to_string();
+        assert!(error.contains(key) && error.contains(why), "{error}");
+    };
+    let named = "from = 0\nframe = \"nadir\"                                # s";
+    refused(
+        "from = 0                                # s",
+        named,
+        "target[0].frame",
+        "must be left out with `primary`",
+    );
+    refused("along = \"velocity\"", "along = \"nadir\"", "target[0].secondary.along", "is not defined there");
+    refused("height = 100", "height = 9e5", "target[1].primary.along", "below the orbit's perigee");
+    refused(
+        "secondary = { body = [1, 0, 0], along = \"velocity\" }",
+        "",
+        "target[0].primary",
+        "needs `secondary` too",
+    );
+}

@@ -31,6 +31,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "flexible-boom",
     "four-clamped-modes",
     "four-clamped-modes-faults",
+    "ground-pass",
     "half-turn",
     "iss-delay-limit",
     "iss-identification",

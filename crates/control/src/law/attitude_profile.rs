@@ -8,7 +8,7 @@ use flexsc_spacecraft::environment::OrbitEnvironment;
 use flexsc_spacecraft::manoeuvre::{AttitudeMotion, AttitudeTable, PlannedSlew, Slew, SlewProfile};
 use nalgebra::Quaternion;
 
-use super::{AttitudeTarget, Frame};
+use super::{AttitudeTarget, Frame, TargetFrame};
 
 /// Attitude profile through targets, in the order of their times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,7 +22,7 @@ pub struct AttitudeProfile {
 #[derive(Clone, Debug, PartialEq)]
 struct ProfileSegment {
     begins: Instant,
-    frame: Frame,
+    frame: TargetFrame,
     path: SegmentPath,
 }
 
@@ -76,7 +76,7 @@ impl AttitudeProfile {
     ) -> Result<Self, ConfigError> {
         let mut profile = Self { legs: Vec::new(), sky: sky.clone() };
         for (index, target) in targets.iter().enumerate() {
-            let (begins, frame) = (target.starts(), target.frame);
+            let (begins, frame) = (target.starts(), target.target_frame());
             let path = if target.is_shaped() {
                 let attitudes = [profile.seen_from(frame, begins), target.attitude()];
                 let turn =
@@ -109,9 +109,9 @@ impl AttitudeProfile {
     }
 
     /// Returns the attitude of the profile at an instant relative to a frame.
-    fn seen_from(&self, frame: Frame, now: Instant) -> Quaternion<f64> {
+    fn seen_from(&self, frame: TargetFrame, now: Instant) -> Quaternion<f64> {
         let current = self.at(now).attitude;
-        if frame == Frame::Inertial {
+        if frame == TargetFrame::INERTIAL {
             return current;
         }
         frame.state_at(&self.sky, now.seconds()).attitude.conjugate() * current
@@ -130,8 +130,8 @@ impl AttitudeProfile {
     }
 
     /// Converts a pose in a frame to inertial axes.
-    fn to_inertial(&self, frame: Frame, now: Instant, pose: AttitudeMotion) -> AttitudeMotion {
-        if frame == Frame::Inertial {
+    fn to_inertial(&self, frame: TargetFrame, now: Instant, pose: AttitudeMotion) -> AttitudeMotion {
+        if frame == TargetFrame::INERTIAL {
             return pose;
         }
         pose.compose(&frame.state_at(&self.sky, now.seconds()))
@@ -146,10 +146,10 @@ impl AttitudeProfile {
     }
 
     /// Returns the current target as written: the frame, and the attitude in it.
-    pub fn target_as_written(&self, now: Instant) -> (Frame, Quaternion<f64>) {
+    pub fn target_as_written(&self, now: Instant) -> (TargetFrame, Quaternion<f64>) {
         let leg = self.leg(now);
         leg.map_or_else(
-            || (Frame::Inertial, AttitudeTarget::INERTIAL.attitude()),
+            || (TargetFrame::INERTIAL, AttitudeTarget::INERTIAL.attitude()),
             |leg| (leg.frame, leg.path.to()),
         )
     }
@@ -209,7 +209,21 @@ impl AttitudeProfile {
 impl AttitudeTarget {
     /// Checks the target's keys against each other and the sky; returns the key and the reason.
     fn validate(&self, sky: &OrbitEnvironment) -> Option<ConfigError> {
-        if let Some(fault) = self.frame.validate(sky) {
+        let (given, missing) = match (&self.primary, &self.secondary) {
+            (Some(_), None) => ("primary", "secondary"),
+            (None, Some(_)) => ("secondary", "primary"),
+            _ => ("", ""),
+        };
+        if !given.is_empty() {
+            return Some(ConfigError::new(
+                given,
+                format!("needs `{missing}` too: two directions give the attitude"),
+            ));
+        }
+        if self.primary.is_some() && self.frame != Frame::Inertial {
+            return Some(ConfigError::new("frame", "must be left out with `primary` and `secondary`"));
+        }
+        if let Some(fault) = self.target_frame().validate(sky, self.from.get()) {
             return Some(fault);
         }
         let shaped = self.profile != SlewProfile::default();

@@ -18,8 +18,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable,
+    Authority, Command, ControlOutput, DecisionCause, DirectionPair, EstimateNeeds, Frame, Guards, Law,
+    LawSpec, LawState, Phase, PointedAxis, ReferenceNeeds, Setpoint, SwitchingLines, TargetFrame,
+    TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
@@ -73,6 +74,13 @@ pub struct AttitudeTarget {
     /// Frame relative to which the attitude is given.
     #[serde(default, skip_serializing_if = "is_inertial")]
     pub frame: Frame,
+    /// Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are relative to the attitude
+    /// that these two give.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub primary: Option<PointedAxis>,
+    /// Axis of the body that is as near to a direction as `primary` lets it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub secondary: Option<PointedAxis>,
     /// Roll (rad).
     #[serde(default, deserialize_with = "within_a_turn")]
     pub roll: Finite,
@@ -132,6 +140,8 @@ impl AttitudeTarget {
     pub const INERTIAL: Self = Self {
         from: Time::ZERO,
         frame: Frame::Inertial,
+        primary: None,
+        secondary: None,
         roll: Finite::ZERO,
         pitch: Finite::ZERO,
         yaw: Finite::ZERO,
@@ -144,7 +154,15 @@ impl AttitudeTarget {
         table: Vec::new(),
     };
 
-    /// Returns the attitude of the target.
+    /// Returns the frame relative to which the attitude is given.
+    pub fn target_frame(&self) -> TargetFrame {
+        match (self.primary, self.secondary) {
+            (Some(primary), Some(secondary)) => TargetFrame::Directions(DirectionPair { primary, secondary }),
+            _ => TargetFrame::Named(self.frame),
+        }
+    }
+
+    /// Returns the attitude of the target in its frame.
     pub fn attitude(&self) -> nalgebra::Quaternion<f64> {
         from_yaw_pitch_roll(self.roll.get(), self.pitch.get(), self.yaw.get())
     }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use flexsc_control::law::Frame;
+use flexsc_control::law::TargetFrame;
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::{OFF_HUB, Requirements, Rule};
 use flexsc_dynamics::three_axis::{ArticulatedBody, DriveAngles};
@@ -63,7 +63,7 @@ struct SunTracking {
     sky: OrbitEnvironment,
     sun: SunPath,
     /// Frame of the spacecraft's target, and (`attitude`) the target attitude in it.
-    frame: Frame,
+    frame: TargetFrame,
     attitude: Quaternion<f64>,
     /// Axes of the appendage with the drive at angle 0; in these axes, the drive's axis and the normal that faces the
     /// Sun.
@@ -184,8 +184,8 @@ impl ScenarioSpec {
             return Err(ConfigError::new("track", why));
         }
         let target = targets.first();
-        let frame = target.map_or(Frame::Inertial, |target| target.frame);
-        if frame.validate(&sky).is_some() {
+        let frame = target.map_or(TargetFrame::INERTIAL, flexsc_control::law::AttitudeTarget::target_frame);
+        if frame.validate(&sky, 0.0).is_some() {
             return Err(ConfigError::new("track", "needs the axes that the target is from"));
         }
         let following = SunTracking {

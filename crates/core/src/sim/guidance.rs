@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flexsc_control::law::{AttitudeProfile, Frame, ReferenceNeeds, Setpoint};
+use flexsc_control::law::{AttitudeProfile, ReferenceNeeds, Setpoint, TargetFrame};
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
@@ -101,7 +101,7 @@ impl Guidance {
 
     /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for
     /// one axis.
-    pub fn target_as_written(&self, now: Instant) -> Option<(Frame, Quaternion<f64>)> {
+    pub fn target_as_written(&self, now: Instant) -> Option<(TargetFrame, Quaternion<f64>)> {
         self.profile.as_ref().map(|way| way.target_as_written(now))
     }
 

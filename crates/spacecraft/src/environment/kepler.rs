@@ -85,7 +85,7 @@ impl Kepler {
     }
 
     /// Returns the least distance from the planet's centre (m).
-    pub(super) fn nearest(&self) -> f64 {
+    pub fn nearest(&self) -> f64 {
         self.semi_major_axis.get() * (1.0 - self.eccentricity.get())
     }
 
@@ -99,6 +99,19 @@ impl Kepler {
     pub fn fastest(&self) -> f64 {
         let e = self.eccentricity.get();
         f64::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest()
+    }
+
+    /// Returns the largest speed (m/s), at the perigee.
+    pub fn largest_speed(&self) -> f64 {
+        f64::sqrt(self.gravity.get() * (1.0 + self.eccentricity.get()) / self.nearest())
+    }
+
+    /// Returns an upper bound of the rate of the velocity's direction (rad/s): the largest acceleration over the least
+    /// speed.
+    pub fn fastest_velocity(&self) -> f64 {
+        let e = self.eccentricity.get();
+        let least = self.largest_speed() * (1.0 - e) / (1.0 + e);
+        self.gravity.get() / (self.nearest() * self.nearest() * least)
     }
 
     /// Returns the unit vectors P, Q and along the orbit's normal.

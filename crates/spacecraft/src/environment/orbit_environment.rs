@@ -4,6 +4,7 @@
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 
+use super::date::greenwich;
 use super::magnetic_field::PlanetField;
 use super::{Environment, Kepler, OrbitPosition, SunPath};
 
@@ -15,6 +16,10 @@ pub struct OrbitEnvironment {
     sun: Option<SunPath>,
     /// Intervals in which the planet hides the Sun.
     shadows: Vec<[Instant; 2]>,
+    /// Angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
+    greenwich: f64,
+    /// Duration of the run (s).
+    duration: f64,
 }
 
 /// Observable environment at an instant, in inertial axes.
@@ -40,12 +45,40 @@ impl OrbitEnvironment {
             field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
             sun,
             shadows: shadows.into_iter().map(|shadow| shadow.map(instant)).collect(),
+            greenwich: epoch_ns.map_or(0.0, greenwich),
+            duration: duration.seconds(),
         }
     }
 
     /// Returns the position at `t` seconds after the start, if the body is on an orbit.
     pub fn position(&self, t: f64) -> Option<OrbitPosition> {
         self.orbit.as_ref().map(|orbit| orbit.at(t))
+    }
+
+    /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
+    /// start, if the body is on an orbit.
+    pub fn orbit_motion(&self, t: f64) -> Option<[Vector; 4]> {
+        let place = self.position(t)?;
+        let (position, velocity) = (place.position, place.velocity);
+        let climb = 3.0 * position.dot(&velocity) / position.norm_squared();
+        let jerk = (position * climb - velocity) * place.tide;
+        Some([position, velocity, position * -place.tide, jerk])
+    }
+
+    /// Returns the angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
+    pub fn greenwich(&self) -> f64 {
+        self.greenwich
+    }
+
+    /// Returns the environment with another angle of Greenwich at the start (rad).
+    #[must_use]
+    pub fn with_greenwich(self, greenwich: f64) -> Self {
+        Self { greenwich, ..self }
+    }
+
+    /// Returns the duration of the run (s).
+    pub fn duration(&self) -> f64 {
+        self.duration
     }
 
     /// Returns the orbit.

@@ -99,7 +99,7 @@ impl SunPath {
     }
 
     /// Returns an upper bound of the rate of the direction (rad/s).
-    pub(super) fn fastest(&self) -> f64 {
+    pub fn fastest(&self) -> f64 {
         if self.moves() { Self::FASTEST } else { 0.0 }
     }
 

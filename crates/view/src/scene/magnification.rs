@@ -5,7 +5,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::AssignedMember;
-use flexsc_core::control::law::{Frame, TorqueConditions};
+use flexsc_core::control::law::{TargetFrame, TorqueConditions};
 use flexsc_core::dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_core::dynamics::three_axis::HarmonicLine;
 use flexsc_core::dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
@@ -80,7 +80,7 @@ pub fn expected_attitude_angle(scenario: &Scenario, body: &ThreeAxisModel) -> f6
         from_yaw_pitch_roll(roll, pitch, yaw)
     });
     // A target in orbital or Sun-pointing axes: the body rotates from its initial attitude to these axes.
-    let inertial = scenario.targets().iter().all(|target| target.frame == Frame::Inertial);
+    let inertial = scenario.targets().iter().all(|target| target.target_frame() == TargetFrame::INERTIAL);
     let at_start = scenario.study.profile.target(Instant::START).conjugate() * body.attitude.get();
     let start = if inertial { body.attitude.get() } else { at_start };
     let angle = |q: nalgebra::Quaternion<f64>| 2.0 * libm::acos(q.w.abs().min(1.0));

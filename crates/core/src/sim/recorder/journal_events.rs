@@ -1,6 +1,6 @@
 //! Detection of state changes for the journal: start and end, targets, arrivals, active damping, trust in estimators.
 
-use flexsc_control::law::Frame;
+use flexsc_control::law::TargetFrame;
 use flexsc_control::state_estimate::DampingStatus;
 use flexsc_numerics::attitude::{AXES, angles};
 use flexsc_numerics::time::Instant;
@@ -26,7 +26,7 @@ pub struct JournalEvents {
     journal: Journal,
     stage: JournalStage,
     opening: String,
-    target: Option<(Frame, Quaternion<f64>)>,
+    target: Option<(TargetFrame, Quaternion<f64>)>,
     /// True while the body turns towards the target and has not arrived.
     is_slewing: bool,
     /// Error about each axis below which the body has arrived at a target (rad).
@@ -152,7 +152,7 @@ impl JournalEvents {
     pub fn target(
         &mut self,
         now: Instant,
-        target: (Frame, Quaternion<f64>),
+        target: (TargetFrame, Quaternion<f64>),
         error: impl FnOnce() -> [f64; 3],
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {

@@ -1,0 +1,128 @@
+//! Directions to which a body points, as they move in inertial axes.
+
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::Finite;
+use flexsc_spacecraft::environment::{GroundSite, Kepler, OrbitEnvironment, SunPath};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Direction in the sky.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SkyDirection {
+    /// To the centre of the orbit's planet.
+    Nadir,
+    /// To the Sun, `environment.sun`.
+    Sun,
+    /// Along the velocity on the orbit.
+    Velocity,
+    /// Along the normal of the orbit.
+    OrbitNormal,
+    /// Direction of any length, constant in inertial axes.
+    Inertial([Finite; 3]),
+    /// To a site on the Earth.
+    Site(GroundSite),
+}
+
+/// Unit vector in inertial axes with its derivatives.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct DirectionMotion {
+    /// Direction.
+    pub direction: Vector,
+    /// Rate of change (1/s).
+    pub rate: Vector,
+    /// Rate of change of the rate (1/s²).
+    pub acceleration: Vector,
+}
+
+impl DirectionMotion {
+    /// Returns the direction of a vector with its derivatives, from the vector, its rate and its acceleration.
+    pub fn along([vector, rate, acceleration]: [Vector; 3]) -> Self {
+        let length = vector.norm();
+        let direction = vector / length;
+        let length_rate = direction.dot(&rate);
+        let turning = (rate - direction * length_rate) / length;
+        let length_acceleration = turning.dot(&rate) + direction.dot(&acceleration);
+        let turned = acceleration - turning * (2.0 * length_rate) - direction * length_acceleration;
+        Self { direction, rate: turning, acceleration: turned / length }
+    }
+
+    /// Returns a direction that does not move.
+    fn fixed(direction: Vector) -> Self {
+        Self { direction: direction.normalize(), rate: Vector::zeros(), acceleration: Vector::zeros() }
+    }
+}
+
+impl SkyDirection {
+    /// Returns the direction `t` (s) after the start, under a sky that defines it; z of the inertial axes otherwise.
+    pub fn motion(&self, sky: &OrbitEnvironment, t: f64) -> DirectionMotion {
+        self.defined_motion(sky, t).unwrap_or_else(|| DirectionMotion::fixed(Vector::z()))
+    }
+
+    fn defined_motion(&self, sky: &OrbitEnvironment, t: f64) -> Option<DirectionMotion> {
+        Some(match self {
+            Self::Nadir => {
+                let [position, velocity, acceleration, _] = sky.orbit_motion(t)?;
+                DirectionMotion::along([-position, -velocity, -acceleration])
+            }
+            Self::Velocity => {
+                let [_, velocity, acceleration, jerk] = sky.orbit_motion(t)?;
+                DirectionMotion::along([velocity, acceleration, jerk])
+            }
+            Self::OrbitNormal => {
+                let [position, velocity, acceleration, jerk] = sky.orbit_motion(t)?;
+                let rate = position.cross(&acceleration);
+                let change = velocity.cross(&acceleration) + position.cross(&jerk);
+                DirectionMotion::along([position.cross(&velocity), rate, change])
+            }
+            Self::Sun => {
+                let sun = sky.sun()?.motion(t);
+                DirectionMotion { direction: sun.direction, rate: sun.rate, acceleration: sun.acceleration }
+            }
+            Self::Inertial(direction) => DirectionMotion::fixed(vector(direction)),
+            Self::Site(site) => {
+                let [position, velocity, acceleration, _] = sky.orbit_motion(t)?;
+                let own = site.motion(sky.greenwich(), t);
+                DirectionMotion::along([own[0] - position, own[1] - velocity, own[2] - acceleration])
+            }
+        })
+    }
+
+    /// Returns an upper bound of the rate of the direction (rad/s) under a sky that defines it.
+    pub fn fastest(&self, sky: &OrbitEnvironment) -> f64 {
+        match self {
+            Self::Nadir => sky.orbit().map_or(0.0, Kepler::fastest),
+            Self::Velocity => sky.orbit().map_or(0.0, Kepler::fastest_velocity),
+            Self::OrbitNormal | Self::Inertial(_) => 0.0,
+            Self::Sun => sky.sun().map_or(0.0, SunPath::fastest),
+            // The line of sight turns at most at the relative speed over the least distance.
+            Self::Site(site) => sky.orbit().map_or(0.0, |orbit| {
+                (orbit.largest_speed() + site.speed()) / (orbit.nearest() - site.distance()).max(0.0)
+            }),
+        }
+    }
+
+    /// Returns true if the direction moves under a sky that defines it.
+    pub fn moves(&self, sky: &OrbitEnvironment) -> bool {
+        self.fastest(sky) > 0.0
+    }
+
+    /// Checks that a sky defines the direction; returns the key within the direction and the reason if not.
+    pub fn validate(&self, sky: &OrbitEnvironment) -> Option<ConfigError> {
+        let why = match self {
+            Self::Nadir | Self::Velocity | Self::OrbitNormal | Self::Site(_) if sky.orbit().is_none() => {
+                "needs `[environment.orbit]`, and there is none"
+            }
+            Self::Sun if sky.sun().is_none() => "points to `environment.sun`, and there is none",
+            Self::Inertial(direction) if vector(direction) == Vector::zeros() => {
+                "must be a direction, got the zero vector"
+            }
+            Self::Site(site) if sky.orbit().is_some_and(|orbit| orbit.nearest() <= site.distance()) => {
+                "must be below the orbit's perigee"
+            }
+            _ => return None,
+        };
+        Some(ConfigError::new("along", why))
+    }
+}

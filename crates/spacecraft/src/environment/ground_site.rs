@@ -1,0 +1,59 @@
+//! Sites on the Earth's surface, which turn with it: the ellipsoid of WGS 84.
+
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Finite;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Equatorial radius of the Earth (m), WGS 84.
+const RADIUS: f64 = 6_378_137.0;
+/// Flattening of the Earth, WGS 84.
+const FLATTENING: f64 = 1.0 / 298.257_223_563;
+/// Rotation rate of the Earth (rad/s).
+const ROTATION: f64 = 7.292_115e-5;
+
+/// Site that turns with the Earth.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GroundSite {
+    /// Geodetic latitude (rad).
+    pub latitude: Finite,
+    /// Longitude east of Greenwich (rad).
+    pub longitude: Finite,
+    /// Height above the ellipsoid (m).
+    #[serde(default)]
+    pub height: Finite,
+}
+
+impl GroundSite {
+    /// Returns the distance from the Earth's axis and along it (m).
+    fn meridian_position(&self) -> [f64; 2] {
+        let (sin, cos) = libm::sincos(self.latitude.get());
+        let squared = FLATTENING * (2.0 - FLATTENING);
+        let across = RADIUS / f64::sqrt(1.0 - squared * sin * sin);
+        let height = self.height.get();
+        [(across + height) * cos, (across * (1.0 - squared) + height) * sin]
+    }
+
+    /// Returns position (m), velocity (m/s) and acceleration (m/s²) in inertial axes at a time since the start (s), with
+    /// the angle of Greenwich at the start (rad).
+    pub fn motion(&self, greenwich: f64, t: f64) -> [Vector; 3] {
+        let [across, along] = self.meridian_position();
+        let (sin, cos) = libm::sincos(greenwich + self.longitude.get() + ROTATION * t);
+        let position = Vector::new(across * cos, across * sin, along);
+        let turned = |v: &Vector| Vector::new(-ROTATION * v.y, ROTATION * v.x, 0.0);
+        let velocity = turned(&position);
+        [position, velocity, turned(&velocity)]
+    }
+
+    /// Returns the distance from the Earth's centre (m).
+    pub fn distance(&self) -> f64 {
+        let [across, along] = self.meridian_position();
+        libm::hypot(across, along)
+    }
+
+    /// Returns the speed in inertial axes (m/s).
+    pub fn speed(&self) -> f64 {
+        ROTATION * self.meridian_position()[0].abs()
+    }
+}
