@@ -11,17 +11,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SkyDirection {
-    /// To the centre of the orbit's planet.
+    /// Direction to the centre of the orbit's planet.
     Nadir,
-    /// To the Sun, `environment.sun`.
+    /// Direction to the Sun, `environment.sun`.
     Sun,
-    /// Along the velocity on the orbit.
+    /// Direction of the velocity on the orbit.
     Velocity,
-    /// Along the normal of the orbit.
+    /// Direction of the orbit's normal.
     OrbitNormal,
     /// Direction of any length, constant in inertial axes.
     Inertial([Finite; 3]),
-    /// To a site on the Earth.
+    /// Direction to a site on the Earth, which turns with it.
     Site(GroundSite),
 }
 

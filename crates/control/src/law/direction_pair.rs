@@ -205,7 +205,7 @@ mod tests {
         }
     }
 
-    /// The bounds of the rates hold, and the nadir line comes to 0.0398 rad of the Sun's at 5495 s.
+    /// The bounds of the rates hold, and the least angle between nadir and Sun is 0.0398 rad, at 5495 s.
     #[test]
     fn the_least_angle_is_certified() {
         let sky = sky();

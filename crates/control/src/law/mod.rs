@@ -29,6 +29,7 @@ mod slew_tests;
 mod stages;
 mod state_space;
 mod switching_lines;
+mod target_checks;
 mod target_frame;
 mod three_axis_law;
 mod three_axis_state_space;

@@ -93,6 +93,7 @@ __all__ = [
     "HoldActuator",
     "Ideal",
     "Imbalance",
+    "Inertial",
     "Initial",
     "Integral",
     "Jets",
@@ -129,6 +130,7 @@ __all__ = [
     "PhasePlane",
     "Planar",
     "Point",
+    "PointedAxis",
     "Pointing",
     "Polynomial",
     "ProfileKind",
@@ -159,6 +161,8 @@ __all__ = [
     "Sine",
     "SineCommand",
     "Sinusoid",
+    "Site",
+    "SkyDirectionKind",
     "SmallAngles",
     "SolarPressure",
     "Spacecraft",
@@ -660,6 +664,9 @@ class AttitudeTarget(Part):
     Args:
         from_: Start time (s).
         frame: Frame relative to which the attitude is given.
+        primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
+            are relative to the attitude that these two give.
+        secondary: Axis of the body that is as near to a direction as `primary` lets it.
         roll: Roll (rad). Default: 0.0.
         pitch: Pitch (rad). Default: 0.0.
         yaw: Yaw (rad). Default: 0.0.
@@ -678,6 +685,12 @@ class AttitudeTarget(Part):
     """Start time (s)."""
     frame: Literal["inertial", "nadir", "sun"] | None = None
     """Frame relative to which the attitude is given."""
+    primary: PointedAxis | None = None
+    """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
+    relative to the attitude that these two give.
+    """
+    secondary: PointedAxis | None = None
+    """Axis of the body that is as near to a direction as `primary` lets it."""
     roll: float | None = None
     """Roll (rad). Default: 0.0."""
     pitch: float | None = None
@@ -1657,6 +1670,14 @@ class Imbalance(Part):
     """Position of each wheel relative to that point (m); default: at the point."""
 
 
+class Inertial(Part, kw_only=False):
+    """Direction of any length, constant in inertial axes."""
+
+    _tag: ClassVar[str | None] = "inertial"
+
+    value: Vector
+
+
 class Initial(Part):
     """Standard deviations of a filter's estimate at the start.
 
@@ -2499,6 +2520,20 @@ class Point(Part):
     """Ratio at that time."""
 
 
+class PointedAxis(Part):
+    """Axis of the body along a direction.
+
+    Args:
+        body: Axis in the body's axes, of any length.
+        along: Direction.
+    """
+
+    body: Vector
+    """Axis in the body's axes, of any length."""
+    along: SkyDirectionKind | Literal["nadir", "sun", "velocity", "orbit_normal"]
+    """Direction."""
+
+
 class Pointing(Part):
     """Pointing requirement over a part of the run.
 
@@ -3094,6 +3129,25 @@ class Sinusoid(Part):
     """Period (s)."""
     phase: float | None = None
     """Time shift of the cosine at the start of the run (s). Default: 0.0."""
+
+
+class Site(Part):
+    """Direction to a site on the Earth, which turns with it.
+
+    Args:
+        latitude: Geodetic latitude (rad).
+        longitude: Longitude east of Greenwich (rad).
+        height: Height above the ellipsoid (m). Default: 0.0.
+    """
+
+    _tag: ClassVar[str | None] = "site"
+
+    latitude: float
+    """Geodetic latitude (rad)."""
+    longitude: float
+    """Longitude east of Greenwich (rad)."""
+    height: float | None = None
+    """Height above the ellipsoid (m). Default: 0.0."""
 
 
 class SmallAngles(Part):
@@ -4052,6 +4106,8 @@ SensorKind: TypeAlias = (
 """The kinds of sensor."""
 ShaperKind: TypeAlias = Zv | Zvd | Zvdd | Ei
 """The kinds of shaper."""
+SkyDirectionKind: TypeAlias = Inertial | Site
+"""Direction in the sky."""
 
 
 class Keys(TypedDict, total=False):
