@@ -246,7 +246,8 @@ fn panels_visibly_bend() {
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
         // A rigid body has nothing to bend, drives and hinges turn wings by far more than they bend, 1e-4 N m bend
-        // nothing beside what wheels could, and a force bends two wings alike, which turns no hub to draw them against. The turns of a pass are too smooth.
+        // nothing beside what wheels could, a force bends two wings alike, which turns no hub to draw them against, and the
+        // turns of a pass are too smooth.
         let straight = "detumble-and-point sun-tracking panel-deployment adaptive-bandwidth bounded-jitter \
                         orbit-correction ground-pass";
         if straight.split(' ').any(|straight| straight == name) {
