@@ -42,7 +42,7 @@ pub use sun::{Sun, SunMotion, SunPath};
 pub use surroundings::SurroundingsState;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.
-const MOST_ORBITS: f64 = 1e6;
+const MOST_ORBITS: f64 = 1e5;
 
 /// The environment of a body with three axes. Its torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,6 +1,8 @@
 //! Environment that does not depend on the attitude: position on the orbit, magnetic field, Sun, and the planet's
 //! shadow.
 
+use std::sync::{Arc, OnceLock};
+
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 
@@ -15,11 +17,23 @@ pub struct OrbitEnvironment {
     field: Option<PlanetField>,
     sun: Option<SunPath>,
     /// Intervals in which the planet hides the Sun.
-    shadows: Vec<[Instant; 2]>,
+    shadows: Shadows,
     /// Angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
     greenwich: f64,
     /// Duration of the run (s).
     duration: f64,
+}
+
+/// Intervals in which the planet hides the Sun. They follow from orbit, Sun and duration, are searched where they are
+/// first needed, and are shared by copies.
+#[derive(Clone, Debug, Default)]
+struct Shadows(Arc<OnceLock<Vec<[Instant; 2]>>>);
+
+impl PartialEq for Shadows {
+    /// Returns true: orbit, Sun and duration are compared in place of what follows from them.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// Observable environment at an instant, in inertial axes.
@@ -34,17 +48,11 @@ pub struct EnvironmentObservation {
 impl OrbitEnvironment {
     /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
-        let sun = environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0)));
-        let shadows = match (&environment.orbit, &sun) {
-            (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
-            _ => Vec::new(),
-        };
-        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         Self {
             orbit: environment.orbit,
             field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
-            sun,
-            shadows: shadows.into_iter().map(|shadow| shadow.map(instant)).collect(),
+            sun: environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0))),
+            shadows: Shadows::default(),
             greenwich: epoch_ns.map_or(0.0, greenwich),
             duration: duration.seconds(),
         }
@@ -91,15 +99,25 @@ impl OrbitEnvironment {
         self.sun.as_ref()
     }
 
+    /// Returns the intervals in which the planet hides the Sun.
+    fn shadows(&self) -> &[[Instant; 2]] {
+        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
+        let (Some(orbit), Some(sun)) = (&self.orbit, &self.sun) else { return &[] };
+        self.shadows.0.get_or_init(|| {
+            orbit.shadows(sun, self.duration).into_iter().map(|shadow| shadow.map(instant)).collect()
+        })
+    }
+
     /// Returns the instants at which the shadow begins and ends.
     pub fn shadow_edges(&self) -> impl Iterator<Item = Instant> {
-        self.shadows.iter().flatten().copied()
+        self.shadows().iter().flatten().copied()
     }
 
     /// Returns true if the planet does not hide the Sun at a time since the start (s).
     pub fn is_lit(&self, t: f64) -> bool {
-        let past = self.shadows.partition_point(|[from, _]| from.seconds() <= t);
-        past.checked_sub(1).is_none_or(|last| t >= self.shadows[last][1].seconds())
+        let shadows = self.shadows();
+        let past = shadows.partition_point(|[from, _]| from.seconds() <= t);
+        past.checked_sub(1).is_none_or(|last| t >= shadows[last][1].seconds())
     }
 
     /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
@@ -143,5 +161,23 @@ impl OrbitEnvironment {
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
         let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
         EnvironmentObservation { field: self.field_at(t), sun: sun.map(|sun| sun.direction(t)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shadows of a long run take seconds: a scenario is read without them.
+    #[test]
+    fn shadows_are_searched_where_they_are_needed() {
+        let around: Environment =
+            flexsc_formats::document::from_text("orbit = { semi_major_axis = 7e6 }\nsun = \"epoch\"")
+                .unwrap();
+        let sky = OrbitEnvironment::new(&around, Span::from_seconds(1e5), Some(1_795_478_400_000_000_000));
+        let copy = sky.clone();
+        assert!(sky.position(5.0).is_some() && sky.shadows.0.get().is_none());
+        assert!(!sky.is_lit(sky.shadow_edges().next().unwrap().seconds()));
+        assert!(copy == sky && copy.shadows.0.get().is_some());
     }
 }

@@ -76,6 +76,9 @@ impl SurroundingsState {
     /// Adds thermal bending of the body by sunlight, relative to the state of light at the start.
     #[must_use]
     pub fn with_thermal_bending(self, bendings: &[Bending]) -> Self {
+        if bendings.is_empty() {
+            return self;
+        }
         let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
         let level = |edge: Instant| {
             let t = edge.seconds();
@@ -116,7 +119,7 @@ impl SurroundingsState {
     pub fn change_times(&self) -> impl Iterator<Item = Instant> {
         let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::shadow_times);
         let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
-        own.chain(self.sky.shadow_edges().filter(move |_| matters))
+        own.chain(matters.then(|| self.sky.shadow_edges()).into_iter().flatten())
     }
 }
 
