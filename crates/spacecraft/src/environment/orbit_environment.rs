@@ -1,14 +1,14 @@
 //! Environment that does not depend on the attitude: position on the orbit, magnetic field, Sun, and the planet's
 //! shadow.
 
-use std::sync::{Arc, OnceLock};
-
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 
 use super::date::greenwich;
+use super::deferred::Deferred;
+use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
-use super::{Environment, Kepler, OrbitPosition, SunPath};
+use super::{Environment, Kepler, OrbitPosition, ShadowShape, SunPath};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,24 +16,14 @@ pub struct OrbitEnvironment {
     orbit: Option<Kepler>,
     field: Option<PlanetField>,
     sun: Option<SunPath>,
-    /// Intervals in which the planet hides the Sun.
-    shadows: Shadows,
+    /// Shape of the planet's shadow.
+    shadow: ShadowShape,
+    /// Eclipses of the run.
+    eclipses: Deferred<Eclipses>,
     /// Angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
     greenwich: f64,
     /// Duration of the run (s).
     duration: f64,
-}
-
-/// Intervals in which the planet hides the Sun. They follow from orbit, Sun and duration, are searched where they are
-/// first needed, and are shared by copies.
-#[derive(Clone, Debug, Default)]
-struct Shadows(Arc<OnceLock<Vec<[Instant; 2]>>>);
-
-impl PartialEq for Shadows {
-    /// Returns true: orbit, Sun and duration are compared in place of what follows from them.
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 /// Observable environment at an instant, in inertial axes.
@@ -41,7 +31,7 @@ impl PartialEq for Shadows {
 pub struct EnvironmentObservation {
     /// Magnetic field (T), if there is one.
     pub field: Option<Vector>,
-    /// Direction to the Sun; `None` in shadow.
+    /// Direction to the Sun; `None` with less than half of its disc in view.
     pub sun: Option<Vector>,
 }
 
@@ -52,7 +42,8 @@ impl OrbitEnvironment {
             orbit: environment.orbit,
             field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
             sun: environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0))),
-            shadows: Shadows::default(),
+            shadow: environment.shadow.unwrap_or_default(),
+            eclipses: Deferred::default(),
             greenwich: epoch_ns.map_or(0.0, greenwich),
             duration: duration.seconds(),
         }
@@ -66,11 +57,18 @@ impl OrbitEnvironment {
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
     /// start, if the body is on an orbit.
     pub fn orbit_motion(&self, t: f64) -> Option<[Vector; 4]> {
-        let place = self.position(t)?;
-        let (position, velocity) = (place.position, place.velocity);
-        let climb = 3.0 * position.dot(&velocity) / position.norm_squared();
-        let jerk = (position * climb - velocity) * place.tide;
-        Some([position, velocity, position * -place.tide, jerk])
+        Some(self.orbit.as_ref()?.motion(t))
+    }
+
+    /// Returns the orbit's normal with its first two derivatives in inertial axes at `t` seconds after the start, if the
+    /// body is on an orbit; the length is any.
+    pub fn orbit_normal(&self, t: f64) -> Option<[Vector; 3]> {
+        if let Some(orbit) = self.orbit.as_ref().filter(|orbit| orbit.drifts()) {
+            return Some(orbit.normal_motion(t));
+        }
+        let [position, velocity, acceleration, jerk] = self.orbit_motion(t)?;
+        let change = velocity.cross(&acceleration) + position.cross(&jerk);
+        Some([position.cross(&velocity), position.cross(&acceleration), change])
     }
 
     /// Returns the angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
@@ -99,25 +97,35 @@ impl OrbitEnvironment {
         self.sun.as_ref()
     }
 
-    /// Returns the intervals in which the planet hides the Sun.
-    fn shadows(&self) -> &[[Instant; 2]] {
-        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
-        let (Some(orbit), Some(sun)) = (&self.orbit, &self.sun) else { return &[] };
-        self.shadows.0.get_or_init(|| {
-            orbit.shadows(sun, self.duration).into_iter().map(|shadow| shadow.map(instant)).collect()
-        })
+    /// Returns the eclipses of the run; `None` without an orbit or a Sun.
+    fn eclipses(&self) -> Option<&Eclipses> {
+        let (orbit, sun) = (self.orbit.as_ref()?, self.sun.as_ref()?);
+        Some(self.eclipses.get_or(|| Eclipses::new(self.shadow, orbit, sun, self.duration)))
     }
 
-    /// Returns the instants at which the shadow begins and ends.
+    /// Returns the instants at which the part of the Sun's disc in view is not smooth: the edges of penumbra and umbra, or
+    /// of the cylinder.
     pub fn shadow_edges(&self) -> impl Iterator<Item = Instant> {
-        self.shadows().iter().flatten().copied()
+        self.eclipses().into_iter().flat_map(|eclipses| eclipses.edges.iter().copied())
     }
 
-    /// Returns true if the planet does not hide the Sun at a time since the start (s).
+    /// Returns the part of the Sun's disc that the planet leaves in view at a time since the start (s), from 0 to 1.
+    pub fn part_in_view(&self, t: f64) -> f64 {
+        match (self.shadow, &self.orbit, &self.sun) {
+            (ShadowShape::Cone, Some(orbit), Some(sun)) => eclipses::part_in_view(orbit, sun, t),
+            _ if self.eclipses().is_some_and(|eclipses| eclipses.is_within(t)) => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Returns the rate (rad/s) with which the part of the Sun's disc in view varies at a time since the start (s).
+    pub(super) fn light_rate(&self, t: f64) -> f64 {
+        self.eclipses().map_or(0.0, |eclipses| eclipses.rate(t))
+    }
+
+    /// Returns true if at least half of the Sun's disc is in view at a time since the start (s).
     pub fn is_lit(&self, t: f64) -> bool {
-        let shadows = self.shadows();
-        let past = shadows.partition_point(|[from, _]| from.seconds() <= t);
-        past.checked_sub(1).is_none_or(|last| t >= shadows[last][1].seconds())
+        self.part_in_view(t) >= 0.5
     }
 
     /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
@@ -176,8 +184,8 @@ mod tests {
                 .unwrap();
         let sky = OrbitEnvironment::new(&around, Span::from_seconds(1e5), Some(1_795_478_400_000_000_000));
         let copy = sky.clone();
-        assert!(sky.position(5.0).is_some() && sky.shadows.0.get().is_none());
-        assert!(!sky.is_lit(sky.shadow_edges().next().unwrap().seconds()));
-        assert!(copy == sky && copy.shadows.0.get().is_some());
+        assert!(sky.position(5.0).is_some() && !sky.eclipses.is_known());
+        assert!(sky.shadow_edges().count() > 60);
+        assert!(copy == sky && copy.eclipses.is_known());
     }
 }
