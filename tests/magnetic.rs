@@ -232,7 +232,7 @@ fn an_appendage_snaps_as_its_closed_form_does() {
          [spacecraft]\nmass = 90.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\n\
          [[appendage]]\nname = \"mass\"\nmass = 10.0\nmodes = [{{ frequency = {o}, translation = [0, 0, {t}] }}]\n\
          thermal = {{ deflection = [{eta}], time_constant = {tau} }}\n\
-         [environment]\norbit = {{ semi_major_axis = 7e6, anomaly = 1.97 }}\nsun = [1, 0, 0]\n"
+         [environment]\norbit = {{ semi_major_axis = 7e6, anomaly = 1.97 }}\nsun = [1, 0, 0]\nshadow = \"cylinder\"\n"
     );
     let trace = traced(&Scenario::parse("snap.toml", &text).expect("a scenario"));
     let found = within(&trace, "/vibrations", "modes", "displacement");
@@ -256,8 +256,9 @@ fn an_appendage_snaps_as_its_closed_form_does() {
         most = most.max(exact.abs());
     }
     assert!(most > 0.05, "{most}");
-    let error =
-        Scenario::parse("dark.toml", &text.replace("sun = [1, 0, 0]", "")).expect_err("no Sun").to_string();
+    let error = Scenario::parse("dark.toml", &text.replace("sun = [1, 0, 0]\nshadow = \"cylinder\"", ""))
+        .expect_err("no Sun")
+        .to_string();
     assert!(error.contains("`appendage[0].thermal`") && error.contains("environment.sun"), "{error}");
     let error =
         Scenario::parse("two.toml", &text.replace("[0.05]", "[0.05, 1]")).expect_err("two").to_string();

@@ -19,6 +19,7 @@ mod craft;
 mod crossings;
 mod drifting_axes;
 mod drives;
+mod eclipses;
 mod environment;
 mod field_models;
 mod forces;

@@ -28,6 +28,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "detumble-and-point",
     "earth-observer",
     "earth-observer-lqg",
+    "eclipse-snap",
     "flexible-boom",
     "four-clamped-modes",
     "four-clamped-modes-faults",

@@ -52,9 +52,9 @@ states! {
     }
     /// Whether a body is in sunlight.
     Light {
-        /// The body is in shadow.
+        /// Less than half of the Sun's disc is in view.
         Shadow = "shadow",
-        /// The body is in sunlight.
+        /// At least half of the Sun's disc is in view.
         Lit = "lit",
     }
     /// How a filter used a sample.

@@ -70,12 +70,7 @@ impl SkyDirection {
                 let [_, velocity, acceleration, jerk] = sky.orbit_motion(t)?;
                 DirectionMotion::along([velocity, acceleration, jerk])
             }
-            Self::OrbitNormal => {
-                let [position, velocity, acceleration, jerk] = sky.orbit_motion(t)?;
-                let rate = position.cross(&acceleration);
-                let change = velocity.cross(&acceleration) + position.cross(&jerk);
-                DirectionMotion::along([position.cross(&velocity), rate, change])
-            }
+            Self::OrbitNormal => DirectionMotion::along(sky.orbit_normal(t)?),
             Self::Sun => {
                 let sun = sky.sun()?.motion(t);
                 DirectionMotion { direction: sun.direction, rate: sun.rate, acceleration: sun.acceleration }
@@ -94,7 +89,8 @@ impl SkyDirection {
         match self {
             Self::Nadir => sky.orbit().map_or(0.0, Kepler::fastest),
             Self::Velocity => sky.orbit().map_or(0.0, Kepler::fastest_velocity),
-            Self::OrbitNormal | Self::Inertial(_) => 0.0,
+            Self::OrbitNormal => sky.orbit().map_or(0.0, Kepler::plane_rate),
+            Self::Inertial(_) => 0.0,
             Self::Sun => sky.sun().map_or(0.0, SunPath::fastest),
             // The line of sight turns at most at the relative speed over the least distance.
             Self::Site(site) => sky.orbit().map_or(0.0, |orbit| {

@@ -30,8 +30,8 @@ impl Frame {
             Self::Inertial => inertial(),
             Self::Nadir => sky.position(t).map_or_else(inertial, |place| AttitudeMotion {
                 attitude: from_axes(&place.local),
-                rate: Vector::new(0.0, -place.turning[0], 0.0),
-                acceleration: Vector::new(0.0, -place.turning[1], 0.0),
+                rate: place.turning[0],
+                acceleration: place.turning[1],
             }),
             Self::Sun => sky.sun().map_or_else(inertial, |sun| sun_axes(&sun.motion(t))),
         }

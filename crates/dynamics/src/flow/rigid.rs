@@ -114,7 +114,7 @@ impl RigidBody {
             self.disturbance.as_ref().map_or((0.0, 0.0), |d| (d.bound(), d.frequency()));
         if let Some(around) = around {
             exerted += around.bound();
-            slow += around.frequency();
+            slow += around.frequency_at(t);
         }
         let push = torque.norm() + exerted;
         let spun = rotors.map_or(0.0, |(momentum, rate)| momentum.norm() + rate.norm() * h);

@@ -39,12 +39,13 @@ impl ThreeAxisMotion {
         for (arm, q) in self.loads.force_arms.iter().zip(&view.displacements) {
             torque += arm * *q;
         }
-        let (mut tide, mut thermal) = (None, (&[][..], 0.0));
+        let (mut tide, mut thermal) = (None, Vec::new());
         if let Some((surroundings, since)) = surroundings {
             let t = since + self.time;
             torque += surroundings.torque(t, &view.attitude, &(model.inertia + inertia_change));
             tide = if model.changes_inertia { surroundings.tidal_tensor(t, &view.attitude) } else { None };
-            thermal = (surroundings.thermal_forces(), t);
+            let forces = surroundings.thermal_forces().iter().enumerate();
+            thermal.extend(forces.map(|(index, of)| (of, surroundings.thermal_level(index, t))));
         }
         let mut stage = RotorStage::default();
         stage.at.extend(self.current.rotor_states.iter().map(|rotor: &RotorState| rotor.values));
@@ -68,8 +69,8 @@ impl ThreeAxisMotion {
             if let Some(tide) = &tide {
                 force += mode.tidal_force(tide);
             }
-            for source in thermal.0 {
-                force += source.forces[index] * source.level(thermal.1);
+            for (source, level) in &thermal {
+                force += source.forces[index] * level;
             }
             if let Some(damping) = &model.coupled_damping {
                 force -= view

@@ -97,7 +97,7 @@ impl ThreeAxisMotion {
         let [constant, bound, slow] = [
             self.loads.torque.norm(),
             surroundings.map_or(0.0, |(surroundings, _)| surroundings.bound()),
-            surroundings.map_or(0.0, |(surroundings, _)| surroundings.frequency()) + 2.0 * w0,
+            surroundings.map_or(0.0, |(around, since)| around.frequency_at(since + self.time)) + 2.0 * w0,
         ];
         let tide = surroundings.and_then(|(surroundings, since)| {
             surroundings.tidal_tensor(since + self.time, &self.view.attitude)

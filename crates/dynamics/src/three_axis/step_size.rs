@@ -14,8 +14,9 @@ use super::surroundings::{Surroundings, TimedSurroundings};
 impl ThreeAxisMotion {
     /// Determines the level of the next grid step.
     pub(super) fn level(&mut self, surroundings: TimedSurroundings) -> usize {
-        let (exerted, environment_rate) = surroundings
-            .map_or((0.0, 0.0), |(surroundings, _)| (surroundings.bound(), surroundings.frequency()));
+        let (exerted, environment_rate) = surroundings.map_or((0.0, 0.0), |(around, since)| {
+            (around.bound(), around.frequency_at(since + self.grid_time))
+        });
         let mut environment_rate =
             environment_rate + self.appendages.as_ref().map_or(0.0, |appendages| appendages.angles.fastest());
         let (mut rotors, mut change) = self.loads.rotors(self.grid_time);

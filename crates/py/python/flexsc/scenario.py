@@ -1267,6 +1267,7 @@ class Environment(Part):
         magnetic_field: The magnetic field of the orbit's planet.
         sun: Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet
             casts a shadow.
+        shadow: Shape of the shadow that the orbit's planet casts; default: a cone.
         gravity_gradient: Gravity gradient of a circular orbit.
         solar_pressure: Pressure of sunlight.
         dipole: A magnetic moment of the body in the field of its planet.
@@ -1282,6 +1283,8 @@ class Environment(Part):
     """Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a
     shadow.
     """
+    shadow: Literal["cone", "cylinder"] | None = None
+    """Shape of the shadow that the orbit's planet casts; default: a cone."""
     gravity_gradient: GravityGradient | None = None
     """Gravity gradient of a circular orbit."""
     solar_pressure: SolarPressure | None = None
@@ -1828,6 +1831,8 @@ class Kepler(Part):
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
             Default: 6378137.0.
+        j2: Coefficient J2 of the planet's oblateness, which turns the plane and the perigee at their mean
+            rates: `true` for that of the Earth, or a number; default: a sphere.
     """
 
     semi_major_axis: float
@@ -1846,6 +1851,10 @@ class Kepler(Part):
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
+    """
+    j2: bool | float | None = None
+    """Coefficient J2 of the planet's oblateness, which turns the plane and the perigee at their mean rates:
+    `true` for that of the Earth, or a number; default: a sphere.
     """
 
 

@@ -198,6 +198,8 @@ rows! {
         axes: Vec<OrbitAxis>,
         /// Whether the body is in sunlight.
         light: Light,
+        /// Part of the Sun's disc that the planet leaves in view, from 0 to 1.
+        sunlight: f64,
     }
     /// A drive that turns an appendage.
     DriveMotion {

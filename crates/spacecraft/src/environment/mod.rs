@@ -1,23 +1,28 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
 mod date;
+mod deferred;
 mod dipole;
 mod drag;
+mod eclipses;
 mod field_model;
 mod gravity_gradient;
 mod ground_site;
 mod igrf_14;
 mod kepler;
 mod magnetic_field;
+mod oblateness;
 mod orbit;
 mod orbit_environment;
 mod shadow;
+mod solar_disc;
 mod solar_pressure;
 mod spherical_harmonics;
 mod sun;
 mod surroundings;
 #[cfg(test)]
 mod tests;
+mod thermal_response;
 mod wmm_2025;
 
 use std::f64::consts::TAU;
@@ -27,14 +32,17 @@ use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use solar_disc::ASTRONOMICAL_UNIT;
 
 pub use dipole::Dipole;
 pub use drag::{Drag, DragPlate};
+pub use eclipses::ShadowShape;
 pub use field_model::FieldModel;
 pub use gravity_gradient::GravityGradient;
 pub use ground_site::GroundSite;
 pub use kepler::{Kepler, OrbitPosition};
 pub use magnetic_field::MagneticField;
+pub use oblateness::Oblateness;
 pub use orbit::to_body;
 pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
 pub use solar_pressure::{SolarPlate, SolarPressure};
@@ -42,7 +50,7 @@ pub use sun::{Sun, SunMotion, SunPath};
 pub use surroundings::SurroundingsState;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.
-const MOST_ORBITS: f64 = 1e6;
+const MOST_ORBITS: f64 = 1e5;
 
 /// The environment of a body with three axes. Its torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,6 +65,9 @@ pub struct Environment {
     /// Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a shadow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun: Option<Sun>,
+    /// Shape of the shadow that the orbit's planet casts; default: a cone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shadow: Option<ShadowShape>,
     /// Gravity gradient of a circular orbit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gravity_gradient: Option<GravityGradient>,
@@ -86,6 +97,13 @@ impl Environment {
         if self.magnetic_field.is_some() && self.orbit.is_none() {
             return Some(ConfigError::new("magnetic_field", "needs an `orbit`, and there is none"));
         }
+        if self.shadow.is_some() && (self.orbit.is_none() || self.sun.is_none()) {
+            let why = "is that of the orbit's planet: it needs `environment.orbit` and `environment.sun`";
+            return Some(ConfigError::new("shadow", why));
+        }
+        if let Some(fault) = self.shadow_fault() {
+            return Some(fault);
+        }
         if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
             return Some(fault.within("drag"));
         }
@@ -107,6 +125,19 @@ impl Environment {
             format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
         };
         (turns > MOST_ORBITS).then(|| ConfigError::new("orbit", why()))
+    }
+
+    /// Returns the key and the reason, if a conical shadow does not fit between the orbit and the Sun.
+    fn shadow_fault(&self) -> Option<ConfigError> {
+        let orbit = self.orbit.filter(|_| self.sun.is_some())?;
+        let (farthest, most) = (orbit.farthest(), 0.1 * ASTRONOMICAL_UNIT);
+        (self.shadow != Some(ShadowShape::Cylinder) && farthest > most).then(|| {
+            let why = format!(
+                "must keep the apogee, at {farthest} m, within {most:.3e} m for a conical shadow: write `shadow = \"cylinder\"`, or \
+                 leave out `sun`"
+            );
+            ConfigError::new("orbit.semi_major_axis", why)
+        })
     }
 
     /// Returns the key and the reason, if an orbit is given twice or is missing.

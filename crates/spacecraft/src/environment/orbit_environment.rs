@@ -5,8 +5,10 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 
 use super::date::greenwich;
+use super::deferred::Deferred;
+use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
-use super::{Environment, Kepler, OrbitPosition, SunPath};
+use super::{Environment, Kepler, OrbitPosition, ShadowShape, SunPath};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,8 +16,10 @@ pub struct OrbitEnvironment {
     orbit: Option<Kepler>,
     field: Option<PlanetField>,
     sun: Option<SunPath>,
-    /// Intervals in which the planet hides the Sun.
-    shadows: Vec<[Instant; 2]>,
+    /// Shape of the planet's shadow.
+    shadow: ShadowShape,
+    /// Eclipses of the run.
+    eclipses: Deferred<Eclipses>,
     /// Angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
     greenwich: f64,
     /// Duration of the run (s).
@@ -27,24 +31,19 @@ pub struct OrbitEnvironment {
 pub struct EnvironmentObservation {
     /// Magnetic field (T), if there is one.
     pub field: Option<Vector>,
-    /// Direction to the Sun; `None` in shadow.
+    /// Direction to the Sun; `None` with less than half of its disc in view.
     pub sun: Option<Vector>,
 }
 
 impl OrbitEnvironment {
     /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
-        let sun = environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0)));
-        let shadows = match (&environment.orbit, &sun) {
-            (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
-            _ => Vec::new(),
-        };
-        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         Self {
             orbit: environment.orbit,
             field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
-            sun,
-            shadows: shadows.into_iter().map(|shadow| shadow.map(instant)).collect(),
+            sun: environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0))),
+            shadow: environment.shadow.unwrap_or_default(),
+            eclipses: Deferred::default(),
             greenwich: epoch_ns.map_or(0.0, greenwich),
             duration: duration.seconds(),
         }
@@ -58,11 +57,18 @@ impl OrbitEnvironment {
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
     /// start, if the body is on an orbit.
     pub fn orbit_motion(&self, t: f64) -> Option<[Vector; 4]> {
-        let place = self.position(t)?;
-        let (position, velocity) = (place.position, place.velocity);
-        let climb = 3.0 * position.dot(&velocity) / position.norm_squared();
-        let jerk = (position * climb - velocity) * place.tide;
-        Some([position, velocity, position * -place.tide, jerk])
+        Some(self.orbit.as_ref()?.motion(t))
+    }
+
+    /// Returns the orbit's normal with its first two derivatives in inertial axes at `t` seconds after the start, if the
+    /// body is on an orbit; the length is any.
+    pub fn orbit_normal(&self, t: f64) -> Option<[Vector; 3]> {
+        if let Some(orbit) = self.orbit.as_ref().filter(|orbit| orbit.drifts()) {
+            return Some(orbit.normal_motion(t));
+        }
+        let [position, velocity, acceleration, jerk] = self.orbit_motion(t)?;
+        let change = velocity.cross(&acceleration) + position.cross(&jerk);
+        Some([position.cross(&velocity), position.cross(&acceleration), change])
     }
 
     /// Returns the angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
@@ -91,15 +97,35 @@ impl OrbitEnvironment {
         self.sun.as_ref()
     }
 
-    /// Returns the instants at which the shadow begins and ends.
-    pub fn shadow_edges(&self) -> impl Iterator<Item = Instant> {
-        self.shadows.iter().flatten().copied()
+    /// Returns the eclipses of the run; `None` without an orbit or a Sun.
+    fn eclipses(&self) -> Option<&Eclipses> {
+        let (orbit, sun) = (self.orbit.as_ref()?, self.sun.as_ref()?);
+        Some(self.eclipses.get_or(|| Eclipses::new(self.shadow, orbit, sun, self.duration)))
     }
 
-    /// Returns true if the planet does not hide the Sun at a time since the start (s).
+    /// Returns the instants at which the part of the Sun's disc in view is not smooth: the edges of penumbra and umbra, or
+    /// of the cylinder.
+    pub fn shadow_edges(&self) -> impl Iterator<Item = Instant> {
+        self.eclipses().into_iter().flat_map(|eclipses| eclipses.edges.iter().copied())
+    }
+
+    /// Returns the part of the Sun's disc that the planet leaves in view at a time since the start (s), from 0 to 1.
+    pub fn part_in_view(&self, t: f64) -> f64 {
+        match (self.shadow, &self.orbit, &self.sun) {
+            (ShadowShape::Cone, Some(orbit), Some(sun)) => eclipses::part_in_view(orbit, sun, t),
+            _ if self.eclipses().is_some_and(|eclipses| eclipses.is_within(t)) => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Returns the rate (rad/s) with which the part of the Sun's disc in view varies at a time since the start (s).
+    pub(super) fn light_rate(&self, t: f64) -> f64 {
+        self.eclipses().map_or(0.0, |eclipses| eclipses.rate(t))
+    }
+
+    /// Returns true if at least half of the Sun's disc is in view at a time since the start (s).
     pub fn is_lit(&self, t: f64) -> bool {
-        let past = self.shadows.partition_point(|[from, _]| from.seconds() <= t);
-        past.checked_sub(1).is_none_or(|last| t >= self.shadows[last][1].seconds())
+        self.part_in_view(t) >= 0.5
     }
 
     /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
@@ -143,5 +169,23 @@ impl OrbitEnvironment {
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
         let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
         EnvironmentObservation { field: self.field_at(t), sun: sun.map(|sun| sun.direction(t)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shadows of a long run take seconds: a scenario is read without them.
+    #[test]
+    fn shadows_are_searched_where_they_are_needed() {
+        let around: Environment =
+            flexsc_formats::document::from_text("orbit = { semi_major_axis = 7e6 }\nsun = \"epoch\"")
+                .unwrap();
+        let sky = OrbitEnvironment::new(&around, Span::from_seconds(1e5), Some(1_795_478_400_000_000_000));
+        let copy = sky.clone();
+        assert!(sky.position(5.0).is_some() && !sky.eclipses.is_known());
+        assert!(sky.shadow_edges().count() > 60);
+        assert!(copy == sky && copy.eclipses.is_known());
     }
 }

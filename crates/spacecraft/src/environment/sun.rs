@@ -15,6 +15,9 @@ use super::date::{DAY, J2000};
 /// Word of the scenario for the Sun at the date.
 const EPOCH: &str = "epoch";
 
+/// Rate of the Sun's mean anomaly (degrees a day).
+const ANOMALY_RATE: f64 = 0.985_600_3;
+
 /// Direction from the body to the Sun.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Sun {
@@ -103,17 +106,19 @@ impl SunPath {
         if self.moves() { Self::FASTEST } else { 0.0 }
     }
 
+    /// Returns the distance of the Sun at a time since the start (s) in au, and its rate (1/s).
+    pub(super) fn distance(&self, t: f64) -> [f64; 2] {
+        let Self::Dated(start) = self else { return [1.0, 0.0] };
+        let anomaly = anomaly((start + t) / DAY);
+        let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
+        let distance = 1.000_14 - 0.016_71 * cos - 0.000_14 * cos_twice;
+        [distance, (0.016_71 * sin + 0.000_28 * sin_twice) * ANOMALY_RATE.to_radians() / DAY]
+    }
+
     /// Returns the light of the Sun at a time since the start (s).
     pub(super) fn light(&self, t: f64) -> Sunlight {
-        let pressure = match self {
-            Self::Fixed(_) => 1.0,
-            Self::Dated(start) => {
-                let anomaly = anomaly((start + t) / DAY);
-                let distance = 1.000_14 - 0.016_71 * libm::cos(anomaly) - 0.000_14 * libm::cos(2.0 * anomaly);
-                1.0 / (distance * distance)
-            }
-        };
-        Sunlight { direction: self.direction(t), pressure }
+        let [distance, _] = self.distance(t);
+        Sunlight { direction: self.direction(t), pressure: 1.0 / (distance * distance) }
     }
 
     /// Returns an upper bound of the pressure of sunlight relative to that at 1 au.
@@ -124,7 +129,7 @@ impl SunPath {
 
 /// Returns the mean anomaly of the Sun (rad) at `days` after J2000.
 fn anomaly(days: f64) -> f64 {
-    (357.528 + 0.985_600_3 * days).to_radians()
+    (357.528 + ANOMALY_RATE * days).to_radians()
 }
 
 /// Returns the direction to the Sun at `seconds` after J2000, within 0.01 degrees from 1950 to 2050: the low-precision
@@ -136,7 +141,7 @@ fn almanac(seconds: f64) -> SunMotion {
     let longitude = 280.460 + 0.985_647_4 * days + 1.915 * sin + 0.020 * sin_twice;
     // Rate and acceleration of the longitude, from degrees a day and days. The obliquity's rate of 8e-14 rad/s is
     // negligible.
-    let mean = 0.985_600_3_f64.to_radians();
+    let mean = ANOMALY_RATE.to_radians();
     let rate = (0.985_647_4 + mean * (1.915 * cos + 0.040 * cos_twice)).to_radians() / DAY;
     let acceleration = (-mean * mean * (1.915 * sin + 0.080 * sin_twice)).to_radians() / (DAY * DAY);
     let (sin, cos) = libm::sincos(longitude.to_radians());
@@ -254,6 +259,8 @@ mod tests {
             assert!((rate - now.rate).norm() < 2e-13, "{day} {:e}", (rate - now.rate).norm());
             let acceleration = (after.rate - before.rate) / (2.0 * h);
             assert!((acceleration - now.acceleration).norm() < 1e-19, "{day}");
+            let [[nearer, _], [_, climb], [farther, _]] = [t - h, t, t + h].map(|t| path.distance(t));
+            assert!(((farther - nearer) / (2.0 * h) - climb).abs() < 1e-15, "{day} {climb:e}");
             assert!(now.rate.norm() <= path.fastest() && now.rate.norm() > 1.92e-7, "{day}");
             // The bound of the shadow's second derivative relies on this one.
             assert!(now.acceleration.norm() <= 1.1 * path.fastest() * path.fastest(), "{day}");

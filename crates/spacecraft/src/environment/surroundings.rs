@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::AxialDipole;
 use super::orbit::to_body;
+use super::thermal_response::ThermalResponse;
 use super::{
     Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure, SunPath,
 };
@@ -25,8 +26,9 @@ pub struct SurroundingsState {
     centre: Vector,
     /// Torque that is constant in inertial axes (N m).
     torque: Vector,
-    /// Thermal bending of the appendages.
+    /// Thermal bending of the appendages, and their levels over time.
     heated: Vec<ThermalForces>,
+    responses: Vec<ThermalResponse>,
     /// Magnetic moment of the torquers, in the body's axes (A m²).
     held: Vector,
     bound: f64,
@@ -69,6 +71,7 @@ impl SurroundingsState {
             torque,
             held: Vector::zeros(),
             heated: Vec::new(),
+            responses: Vec::new(),
             sky,
         }
     }
@@ -76,17 +79,11 @@ impl SurroundingsState {
     /// Adds thermal bending of the body by sunlight, relative to the state of light at the start.
     #[must_use]
     pub fn with_thermal_bending(self, bendings: &[Bending]) -> Self {
-        let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
-        let level = |edge: Instant| {
-            let t = edge.seconds();
-            [t, if self.sky.is_lit(t) { 1.0 - start } else { -start }]
-        };
-        let aims = || self.sky.shadow_edges().map(level);
         let heated =
-            |bending: &Bending| ThermalForces::new(bending.forces.clone(), bending.time_constant, aims());
-        let heated = bendings.iter().map(heated).collect();
+            bendings.iter().map(|bending| ThermalForces { forces: bending.forces.clone() }).collect();
+        let responses = bendings.iter().map(|bending| ThermalResponse::new(bending.time_constant)).collect();
         let fastest = bendings.iter().map(|bending| 1.0 / bending.time_constant).fold(0.0, f64::max);
-        Self { heated, frequency: self.frequency + fastest, ..self }
+        Self { heated, responses, frequency: self.frequency + fastest, ..self }
     }
 
     /// Sets the magnetic moment of the torquers from now on, in the body's axes (A m²).
@@ -112,11 +109,15 @@ impl SurroundingsState {
         self.sky.observation(t)
     }
 
+    /// Returns true if sunlight acts on the body.
+    fn depends_on_light(&self) -> bool {
+        self.environment.solar_pressure.is_some() || !self.heated.is_empty()
+    }
+
     /// Returns the instants at which a torque or bending by sunlight begins or ends.
     pub fn change_times(&self) -> impl Iterator<Item = Instant> {
         let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::shadow_times);
-        let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
-        own.chain(self.sky.shadow_edges().filter(move |_| matters))
+        own.chain(self.depends_on_light().then(|| self.sky.shadow_edges()).into_iter().flatten())
     }
 }
 
@@ -129,10 +130,12 @@ impl Surroundings for SurroundingsState {
             let pull = gradient.direction_and_strength(t, attitude, place.as_ref());
             torque += GravityGradient::torque(pull, &(inertia + self.spinning));
         }
-        if let Some(pressure) =
-            solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t) && self.sky.is_lit(t))
-        {
-            torque += pressure.torque(attitude, self.sky.sun().map(|sun| sun.light(t)), &self.centre);
+        if let Some(pressure) = solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t)) {
+            let part = self.sky.part_in_view(t);
+            if part > 0.0 {
+                let light = self.sky.sun().map(|sun| sun.light(t));
+                torque += pressure.torque(attitude, light, &self.centre) * part;
+            }
         }
         if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
             torque += drag.torque(orbit, place, attitude, &self.centre);
@@ -163,11 +166,19 @@ impl Surroundings for SurroundingsState {
         &self.heated
     }
 
+    fn thermal_level(&self, index: usize, t: f64) -> f64 {
+        self.responses.get(index).map_or(0.0, |response| response.level(&self.sky, t))
+    }
+
     fn bound(&self) -> f64 {
         self.bound + self.held.norm() * self.sky.field_bound()
     }
 
     fn frequency(&self) -> f64 {
         self.frequency
+    }
+
+    fn frequency_at(&self, t: f64) -> f64 {
+        if self.depends_on_light() { self.frequency + self.sky.light_rate(t) } else { self.frequency }
     }
 }

@@ -107,6 +107,10 @@ impl Surroundings for ExternalTorques {
         self.around.as_ref().map_or(&[], Surroundings::thermal_forces)
     }
 
+    fn thermal_level(&self, index: usize, t: f64) -> f64 {
+        self.around.as_ref().map_or(0.0, |around| around.thermal_level(index, t))
+    }
+
     fn bound(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::bound);
         let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.abs()).sum();
@@ -117,6 +121,11 @@ impl Surroundings for ExternalTorques {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::frequency);
         let fastest = self.sines.iter().map(|(_, sine)| sine.frequency).fold(0.0, f64::max);
         own + self.around.as_ref().map_or(0.0, Surroundings::frequency) + fastest
+    }
+
+    fn frequency_at(&self, t: f64) -> f64 {
+        let around = self.around.as_ref().map_or(0.0, |around| around.frequency_at(t) - around.frequency());
+        self.frequency() + around
     }
 }
 

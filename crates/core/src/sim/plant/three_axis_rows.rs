@@ -110,7 +110,11 @@ impl dyn ThreeAxisQuantities + '_ {
             field_t: field[axis],
             sun: sun[axis],
         };
-        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
+        Some(Orbit {
+            axes: [0, 1, 2].map(axis).into(),
+            light: sky.is_lit(t).into(),
+            sunlight: sky.part_in_view(t),
+        })
     }
 
     /// Returns the row of the modes.

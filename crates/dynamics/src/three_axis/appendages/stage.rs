@@ -126,8 +126,8 @@ impl ArticulatedMotion {
         }
         scratch.forces = self.basis.force_to_free(&forces);
         let Some((surroundings, since)) = sources.surroundings else { return };
-        for thermal in surroundings.thermal_forces() {
-            let level = thermal.level(since + t);
+        for (index, thermal) in surroundings.thermal_forces().iter().enumerate() {
+            let level = surroundings.thermal_level(index, since + t);
             for (index, force) in scratch.forces.iter_mut().enumerate() {
                 let row = self.basis.from_start.row(index);
                 *force += level * row.iter().zip(&thermal.forces).map(|(part, own)| part * own).sum::<f64>();

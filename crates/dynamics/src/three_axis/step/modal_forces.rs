@@ -116,10 +116,9 @@ impl IntegrationStep<'_> {
     /// Returns the thermal force on a mode (N/sqrt(kg)) `t` (s) after the start of the step.
     fn thermal_force(&self, mode: usize, t: f64) -> f64 {
         let Some((surroundings, since)) = self.surroundings else { return 0.0 };
-        surroundings
-            .thermal_forces()
-            .iter()
-            .fold(0.0, |sum, heated| sum + heated.forces[mode] * heated.level(since + t))
+        surroundings.thermal_forces().iter().enumerate().fold(0.0, |sum, (index, heated)| {
+            sum + heated.forces[mode] * surroundings.thermal_level(index, since + t)
+        })
     }
 }
 

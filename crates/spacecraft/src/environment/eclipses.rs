@@ -1,0 +1,93 @@
+//! Eclipses of the Sun by the planet during a run: the instants at which they begin and end, and the part of the Sun's
+//! disc in view.
+
+use flexsc_numerics::time::{Instant, Span};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::shadow::ShadowRegion;
+use super::solar_disc::{ASTRONOMICAL_UNIT, Discs};
+use super::{Kepler, SunPath};
+
+/// Shape of the planet's shadow.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ShadowShape {
+    /// Umbra, penumbra and antumbra of a Sun at its distance.
+    #[default]
+    Cone,
+    /// Cylinder without a penumbra.
+    Cylinder,
+}
+
+/// Intervals of a run in the planet's shadow, in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Eclipses {
+    /// Intervals in the cylinder or the penumbra.
+    pub outer: Vec<[Instant; 2]>,
+    /// Instants at which the part in view, or its derivative, is not smooth.
+    pub edges: Vec<Instant>,
+    /// Intervals between edges in which the part in view varies.
+    pub partial: Vec<[Instant; 2]>,
+}
+
+impl Eclipses {
+    /// Finds the eclipses on an orbit that begin before `duration` (s).
+    pub fn new(shape: ShadowShape, orbit: &Kepler, sun: &SunPath, duration: f64) -> Self {
+        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
+        let within = |region: ShadowRegion| -> Vec<[Instant; 2]> {
+            let passages = orbit.shadows(region, sun, duration);
+            passages.into_iter().map(|passage| passage.map(instant)).collect()
+        };
+        let (outer, core) = match shape {
+            ShadowShape::Cylinder => (within(ShadowRegion::Cylinder), Vec::new()),
+            ShadowShape::Cone => (within(ShadowRegion::Penumbra), within(ShadowRegion::Core)),
+        };
+        let mut edges: Vec<Instant> = outer.iter().chain(&core).flatten().copied().collect();
+        edges.sort_unstable();
+        edges.dedup();
+        let mut partial = Vec::new();
+        if shape == ShadowShape::Cone {
+            let varies = |[from, to]: [Instant; 2]| {
+                let part = part_in_view(orbit, sun, 0.5 * (from.seconds() + to.seconds()));
+                part > 0.0 && part < 1.0
+            };
+            partial.extend(edges.windows(2).map(|pair| [pair[0], pair[1]]).filter(|pair| varies(*pair)));
+        }
+        Self { outer, edges, partial }
+    }
+
+    /// Returns true if a time since the start (s) is in the cylinder or the penumbra.
+    pub fn is_within(&self, t: f64) -> bool {
+        interval_at(&self.outer, t).is_some()
+    }
+
+    /// Returns the rate (rad/s) with which the part in view varies at a time since the start (s): 4 pi/T in an interval of
+    /// the length T, in which its derivative is about 4/(pi T) at most.
+    pub fn rate(&self, t: f64) -> f64 {
+        // Times are rounded to nanoseconds.
+        let [from, to] = match interval_at(&self.partial, t + 1e-9) {
+            Some(interval) => interval.map(Instant::seconds),
+            None => return 0.0,
+        };
+        4.0 * std::f64::consts::PI / (to - from)
+    }
+}
+
+/// Returns the interval, of those in order, that contains a time since the start (s).
+fn interval_at(intervals: &[[Instant; 2]], t: f64) -> Option<[Instant; 2]> {
+    let past = intervals.partition_point(|[from, _]| from.seconds() <= t);
+    intervals.get(past.checked_sub(1)?).copied().filter(|[_, to]| t < to.seconds())
+}
+
+/// Returns the part of the Sun's disc in view at a time since the start (s), from 0 to 1.
+pub(super) fn part_in_view(orbit: &Kepler, sun: &SunPath, t: f64) -> f64 {
+    let (position, planet, [distance, _]) =
+        (orbit.at(t).position, orbit.planet_radius.get(), sun.distance(t));
+    let sun = sun.direction(t) * (distance * ASTRONOMICAL_UNIT);
+    // No shadow reaches the Sun's side of the planet by more than 0.11 of its radius.
+    if position.dot(&sun) > 0.11 * planet * sun.norm() {
+        return 1.0;
+    }
+    Discs::seen(&position, &sun, planet).part_in_view()
+}
