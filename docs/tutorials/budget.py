@@ -200,8 +200,9 @@ _ = axes.legend()
 # it as a scenario of its own. All points have the same noise.
 
 # %%
-for quantity in ({"requirement": "stability"}, {"margin": "modulus"}):
-    worst = tuned.scenario.worst(**quantity, points=60)
+stability = tuned.scenario.worst(requirement="stability", points=60)
+modulus = tuned.scenario.worst(margin="modulus", points=60)
+for worst in (stability, modulus):
     size, unit = (arcsec, " arcsec") if worst.unit == "rad" else (1.0, "")
     print(f"{worst.quantity}: {worst.nominal / size:.3f} -> {worst.value / size:.3f}{unit}")
 
