@@ -57,6 +57,8 @@ const SLOW: &[&str] = &[
     "map wheel-fast-mode.toml --frequency 0.05:0.5:10000 --period 0.1:0.5:1000",
     "map wheel-fast-mode.toml --frequency 0.05:0.5:10000 --period 0.1:0.5:1000 -o n.csv --figures n",
     "tune wheel-fast-mode.toml --frequency 0.05:0.5:10000 --gain=-3:3:6001 --json",
+    "worst rotation-robust.toml --metric residual_energy_j --points 1000000 --set duration=1000",
+    "report wheel-ekf.toml -o q.html --runs 50000",
     "plot p/relay-adaptive.mcap -o p",
     "plot p/relay-adaptive.mcap -o p/all.png",
     "export p/relay-adaptive.mcap --topic /attitude -o p/attitude.csv",
@@ -66,8 +68,9 @@ const SLOW: &[&str] = &[
 /// Returns the time from a signal to the end of a run (s).
 fn stopped(dir: &Dir, arguments: &str, signal: &str) -> f64 {
     // They ask for a yes, because they take long on purpose.
-    let asks =
-        ["simulate", "sweep", "identify", "tune", "map"].iter().any(|verb| arguments.starts_with(verb));
+    let asks = ["simulate", "sweep", "identify", "tune", "map", "worst"]
+        .iter()
+        .any(|verb| arguments.starts_with(verb));
     let mut run = dir.start(&format!("{arguments}{}", if asks { " --yes" } else { "" }));
     std::thread::sleep(Duration::from_millis(300));
     assert!(run.is_alive(), "flexsc {arguments}: not slow");

@@ -47,6 +47,8 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
         return Err(CliError::Arguments(why));
     }
     let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    // An interruption waits for the scratch directory to be removed.
+    let _files = stop::writing();
     let scratch = ScratchDirectory::new()?;
     let runner = ReportRunner::new(&args.scenario, &args.set, scratch.path());
     let mut sections = Vec::new();

@@ -1,13 +1,18 @@
 //! Sections of a report: each is the output of commands of this program, which are run as a user runs them.
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::{env, fs};
+use std::time::Duration;
+use std::{env, fs, thread};
 
 use crate::error::CliError;
-use crate::say;
+use crate::{say, stop};
+
+/// Period at which the end of a command is looked for.
+const POLL_PERIOD: Duration = Duration::from_millis(5);
 
 /// ReportSection of a report.
 pub struct ReportSection {
@@ -176,11 +181,29 @@ impl<'a> ReportRunner<'a> {
         command
     }
 
+    /// Runs a command to its end, or stops it if the user asks for it.
     fn output(&self, mut command: Command) -> Result<Output, CliError> {
-        let program = Path::new(&self.program[0]);
-        command
-            .output()
-            .map_err(|error| CliError::Arguments(format!("cannot run {}: {error}", program.display())))
+        let program = PathBuf::from(&self.program[0]);
+        let failed =
+            |error: io::Error| CliError::Arguments(format!("cannot run {}: {error}", program.display()));
+        // Files, and not pipes, whose reader would have to wait for the end.
+        let printed = ["stdout", "stderr"].map(|name| self.scratch.join(name));
+        let [out, err] = [0, 1].map(|which| File::create(&printed[which]));
+        command.stdout(out.map_err(failed)?).stderr(err.map_err(failed)?);
+        let mut child = command.spawn().map_err(failed)?;
+        let status = loop {
+            match child.try_wait().map_err(failed)? {
+                Some(status) => break status,
+                None if stop::stop_requested() => {
+                    // It may have ended in the meantime.
+                    let _ = child.kill().and_then(|()| child.wait());
+                    return Err(CliError::Interrupted(String::new()));
+                }
+                None => thread::sleep(POLL_PERIOD),
+            }
+        };
+        let [stdout, stderr] = [0, 1].map(|which| fs::read(&printed[which]));
+        Ok(Output { status, stdout: stdout.map_err(failed)?, stderr: stderr.map_err(failed)? })
     }
 }
 
