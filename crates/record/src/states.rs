@@ -1,4 +1,6 @@
-//! States of laws, filters, observers and dampers, with their names in a log.
+//! States of laws, filters, observers, dampers and bearings, with their names in a log.
+
+use flexsc_dynamics::three_axis::SlipDirection;
 
 use super::row::label_cells;
 use crate::enum_label::labels;
@@ -125,3 +127,27 @@ impl Phase {
 }
 
 label_cells!(Phase);
+
+labels! {
+    /// Whether a wheel turns in its bearing, and which way.
+    Sliding {
+        /// It turns at a negative speed.
+        Backward = "backward",
+        /// It is at rest relative to the body.
+        Stuck = "stuck",
+        /// It turns at a positive speed.
+        Forward = "forward",
+    }
+}
+
+label_cells!(Sliding);
+
+impl From<SlipDirection> for Sliding {
+    fn from(direction: SlipDirection) -> Self {
+        match direction {
+            SlipDirection::Backward => Self::Backward,
+            SlipDirection::Stuck => Self::Stuck,
+            SlipDirection::Forward => Self::Forward,
+        }
+    }
+}

@@ -7,7 +7,7 @@ mod three_axes;
 
 use super::foxglove::{self, LogLevel, Plumes};
 use super::row::{Topic, TopicRow};
-use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
+use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
 use crate::enum_label::LoggedEnum;
 
 pub use line_of_sight::*;

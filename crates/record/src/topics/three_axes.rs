@@ -1,35 +1,8 @@
 //! Topics of three-axis bodies.
 
-use flexsc_dynamics::three_axis::SlipDirection;
-
-use crate::enum_label::labels;
-use crate::row::{label_cells, rows};
-use crate::states::{Latch, Light, Trust, Use, Watch};
+use crate::row::rows;
+use crate::states::{Latch, Light, Sliding, Trust, Use, Watch};
 use crate::topics::one_angle::{Estimate, Torque};
-
-labels! {
-    /// Whether a wheel turns in its bearing, and which way.
-    Sliding {
-        /// It turns at a negative speed.
-        Backward = "backward",
-        /// It is at rest relative to the body.
-        Stuck = "stuck",
-        /// It turns at a positive speed.
-        Forward = "forward",
-    }
-}
-
-label_cells!(Sliding);
-
-impl From<SlipDirection> for Sliding {
-    fn from(direction: SlipDirection) -> Self {
-        match direction {
-            SlipDirection::Backward => Self::Backward,
-            SlipDirection::Stuck => Self::Stuck,
-            SlipDirection::Forward => Self::Forward,
-        }
-    }
-}
 
 rows! {
     package "flexsc.v1";
