@@ -110,7 +110,7 @@ impl BoxSearch {
     /// index of the worst one; none if no point has a value. `assess` returns the values of some points.
     ///
     /// # Errors
-    /// Those of `assess`.
+    /// Errors of `assess`.
     pub fn run<E>(
         &self,
         own: Vec<f64>,

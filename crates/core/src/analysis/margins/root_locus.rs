@@ -68,7 +68,7 @@ mod tests {
         };
         let found = root_locus(&opened, &[0.0, 1.0, 4.0]);
         let poles: Vec<Complex<f64>> = found.iter().map(|at| at.poles[0]).collect();
-        for (pole, expected) in poles.iter().zip([0.0, 0.8_f64.ln() / 0.5, 0.2_f64.ln() / 0.5]) {
+        for (pole, expected) in poles.iter().zip([0.0, libm::log(0.8) / 0.5, libm::log(0.2) / 0.5]) {
             assert!((pole.re - expected).abs() < 1e-14 && pole.im == 0.0, "{pole}");
         }
     }
