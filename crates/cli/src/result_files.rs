@@ -8,7 +8,7 @@ use flexsc_figure::Style;
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
-use crate::out::Out;
+use crate::out::{self, Out};
 use crate::results::Results;
 use crate::{files, say};
 
@@ -31,6 +31,20 @@ pub struct ResultOutput {
 }
 
 impl ResultOutput {
+    /// Returns the file FILE.toml of a scenario among the results, if the command was asked for one.
+    ///
+    /// # Errors
+    /// A file that is an input.
+    pub fn scenario_file(&self, inputs: &[&Path]) -> Result<Option<PathBuf>, CliError> {
+        let Some(out) = self.out.as_ref().filter(|out| out::ending(out) == Some("toml")) else {
+            return Ok(None);
+        };
+        match Out::new(out, &["toml"], inputs)? {
+            Out::File(path, _) => Ok(Some(path)),
+            Out::Directory(_) => Ok(None),
+        }
+    }
+
     /// Returns the target of the results, if the command was asked for one; `inputs` are the files that the results are
     /// made from.
     ///

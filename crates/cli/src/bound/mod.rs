@@ -3,7 +3,7 @@
 mod figures;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use flexsc_core::analysis::bound::{OutputBound, Verdict};
 use flexsc_core::formats::count::counted;
@@ -14,7 +14,6 @@ use serde_json::{Value as Json, json};
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits, outward_digits};
 use crate::number_table::NumberTable;
-use crate::out::Out;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::{files, say, scenario};
@@ -53,7 +52,7 @@ pub fn results(scenario: &Scenario, args: &BoundArgs) -> Result<OutputBounds, Cl
 
 pub fn run(args: &BoundArgs) -> Result<(), CliError> {
     let inputs = [args.scenario.scenario.as_path()];
-    let witness = witness_path(args, &inputs)?;
+    let witness = args.output.scenario_file(&inputs)?;
     let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
     let scenario = args.scenario.load()?;
     let found = results(&scenario, args)?;
@@ -69,19 +68,6 @@ pub fn run(args: &BoundArgs) -> Result<(), CliError> {
         return Err(CliError::Claims { failed, claims: found.bounds.len() });
     }
     Ok(())
-}
-
-/// Returns the file of the witness, if the command was asked for one.
-fn witness_path(args: &BoundArgs, inputs: &[&Path]) -> Result<Option<PathBuf>, CliError> {
-    let Some(out) =
-        args.output.out.as_ref().filter(|out| out.extension().is_some_and(|ending| ending == "toml"))
-    else {
-        return Ok(None);
-    };
-    match Out::new(out, &["svg", "png", "pdf", "csv", "toml"], inputs)? {
-        Out::File(path, "toml") => Ok(Some(path)),
-        _ => Ok(None),
-    }
 }
 
 impl OutputBounds {

@@ -3,7 +3,7 @@
 mod figures;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::ValueEnum;
 use flexsc_core::Scenario;
@@ -23,14 +23,10 @@ use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits};
 use crate::margins::{BreakPoint, print_table, texts};
 use crate::number_table::NumberTable;
-use crate::out::Out;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
 use crate::stop::{StopRecord, stop_requested};
 use crate::{files, say, scenario};
-
-/// Files that hold results.
-const FILES: [&str; 5] = ["svg", "png", "pdf", "csv", "toml"];
 
 #[derive(clap::Args)]
 pub struct WorstArgs {
@@ -104,7 +100,7 @@ pub struct WorstCases {
 
 pub fn run(args: &WorstArgs) -> Result<(), CliError> {
     let inputs = [args.scenario.scenario.as_path()];
-    let witness = witness_path(args, &inputs)?;
+    let witness = args.output.scenario_file(&inputs)?;
     let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
     let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.seed)?;
     if witness.is_some() && args.quantities(&scenario)?.len() > 1 {
@@ -175,20 +171,6 @@ pub fn fault(name: &str, fault: WorstCaseFault) -> CliError {
         WorstCaseFault::Scenario(error) => error.into(),
         WorstCaseFault::Request(why) => CliError::Arguments(format!("{name}: {why}")),
         WorstCaseFault::Interrupted => CliError::Interrupted(String::new()),
-    }
-}
-
-/// Returns the file of the witness, if the command was asked for one.
-fn witness_path(args: &WorstArgs, inputs: &[&Path]) -> Result<Option<PathBuf>, CliError> {
-    let Some(out) = args.output.out.as_ref().filter(|out| crate::out::ending(out) == Some("toml")) else {
-        return Ok(None);
-    };
-    match Out::new(out, &FILES, inputs)? {
-        Out::File(path, "toml") => {
-            files::refuse_existing(&path, args.output.force)?;
-            Ok(Some(path))
-        }
-        _ => Ok(None),
     }
 }
 
