@@ -4,7 +4,9 @@
 use flexsc_core::Scenario;
 use flexsc_core::analysis::margins::StabilityMargins;
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
-use flexsc_core::analysis::structured_tuning::{LoopSet, TunedLoop, TunedParameter, TuningFault, tune};
+use flexsc_core::analysis::structured_tuning::{
+    LoopSet, TunedLoop, TunedParameter, TunedPlant, TuningFault, TuningGoal, tune,
+};
 
 use crate::margins::yaw_axis;
 use crate::util::Dir;
@@ -21,15 +23,17 @@ fn tuned(corners: bool, bandwidth: Option<f64>) -> TunedLoop {
         parameter("notch", 1.5557, 1.0, 2.5),
         parameter("r", 0.9, 0.05, 0.98),
     ];
-    let loop_at = |values: &[f64], plant: usize| {
+    let plant_at = |values: &[f64], plant: usize| {
         let factor = |mode: usize| match plant.checked_sub(1) {
             None => 1.0,
             Some(corner) if (corner >> mode) & 1 == 1 => 1.1,
             Some(_) => 0.9,
         };
-        Ok(yaw_axis([0, 1, 2, 3].map(factor), [values[0], values[1], values[2]]))
+        let opened = yaw_axis([0, 1, 2, 3].map(factor), [values[0], values[1], values[2]]);
+        Ok(TunedPlant { opened, measures: Vec::new() })
     };
-    let set = LoopSet { loop_at: &loop_at, plants: if corners { 17 } else { 1 }, bandwidth };
+    let goal = TuningGoal { bandwidth, ..TuningGoal::default() };
+    let set = LoopSet { plant_at: &plant_at, plants: if corners { 17 } else { 1 }, goal };
     tune(&set, &parameters).expect("stable")
 }
 
@@ -86,8 +90,10 @@ fn a_bandwidth_is_kept() {
 
 #[test]
 fn an_unstable_loop_is_refused() {
-    let loop_at = |values: &[f64], _: usize| Ok(yaw_axis([1.0; 4], [values[0], 1.5557, 0.9]));
-    let set = LoopSet { loop_at: &loop_at, plants: 1, bandwidth: None };
+    let plant_at = |values: &[f64], _: usize| {
+        Ok(TunedPlant { opened: yaw_axis([1.0; 4], [values[0], 1.5557, 0.9]), measures: Vec::new() })
+    };
+    let set = LoopSet { plant_at: &plant_at, plants: 1, goal: TuningGoal::default() };
     let parameter = TunedParameter { key: "k_d".to_owned(), start: 1.0, range: [0.5, 2.0] };
     let fault = tune(&set, &[parameter]).expect_err("unstable");
     assert!(matches!(fault, TuningFault::Unstable(0, radius) if radius > 1.0), "{fault}");
@@ -142,4 +148,64 @@ fn uncertain_keys_are_corners() {
     assert_eq!(plants, if known == 0 { 1 } else { 1 + (1 << known) }, "{text}");
     let nominal = dir.run(&format!("{line} --nominal")).exits(0).json();
     assert_eq!(nominal["plants"].as_array().expect("plants").len(), 1);
+}
+
+/// The settling time falls until a limit of the margin binds. The tuned scenario has the numbers that the tuning states.
+#[test]
+fn a_settling_time_within_a_margin() {
+    let dir = Dir::with(&["attitude-hold"]);
+    let line = "tune attitude-hold.toml --vary law.per_axis.yaw.pd.k_p=5:200 --vary law.per_axis.yaw.pd.k_d=50:2000 \
+                --vary law.per_axis.roll.pd.k_p=5:200 --vary law.per_axis.roll.pd.k_d=50:2000 \
+                --vary law.per_axis.pitch.pd.k_p=5:200 --vary law.per_axis.pitch.pd.k_d=50:2000";
+    let told = dir.run(&format!("{line} --objective settling --keep margin>=0.9 --save tuned.toml")).exits(0);
+    told.says(&["settling (s)", "margin"]);
+    let longest = |path: &str| {
+        let found = dir.run(&format!("margins {path} --json")).exits(0).json();
+        let times = found["settling"].as_array().expect("times").iter();
+        let longest = times.map(|own| own["time_s"].as_f64().expect("settles")).fold(0.0, f64::max);
+        (longest, found["modulus"]["margin"].as_f64().expect("a margin"))
+    };
+    let (before, _) = longest("attitude-hold.toml");
+    let (after, margin) = longest("tuned.toml");
+    assert!(after < 0.5 * before, "{before} s before, {after} s tuned");
+    assert!((0.9 - 1e-6..0.91).contains(&margin), "{margin}");
+    // The other way round: the largest margin that settles as fast ends at the same point.
+    let limit = format!("--keep settling<={after}");
+    let object = dir.run(&format!("{line} {limit} --json")).exits(0).json();
+    let measure = &object["measures"][0];
+    assert_eq!(measure["name"], "settling");
+    assert!(measure["after"].as_f64().expect("finite") <= after * (1.0 + 1e-6), "{measure}");
+    let least = object["least_margin"].as_f64().expect("a margin");
+    assert!(least > 0.89, "{least}");
+}
+
+/// The rms of a pointing index, which `flexsc budget` gives for the tuned scenario, and a limit of it.
+#[test]
+fn a_pointing_index_is_minimised_and_limited() {
+    let dir = Dir::with(&["attitude-hold"]);
+    let text = std::fs::read_to_string(dir.path("attitude-hold.toml")).expect("a file");
+    let requirement = "\n[[requirement]]\nname = \"jitter\"\nquantity = \"pointing_error\"\naxis = \"y\"\n\
+                       index = \"RPE\"\nwindow = 10\nconvention = \"uniform\"\nfrom = 150\nlimit = 1e-4\n\
+                       level = 0.997\ninterpretation = \"mixed\"\n";
+    std::fs::write(dir.path("hold.toml"), format!("{text}{requirement}")).expect("a file");
+    let line = "tune hold.toml --vary law.per_axis.pitch.pd.k_p=10:60 --vary law.per_axis.pitch.pd.k_d=100:600";
+    let object = dir.run(&format!("{line} --objective jitter --save tuned.toml --json")).exits(0).json();
+    let measure = &object["measures"][0];
+    let (before, after) = (measure["before"].as_f64().expect("finite"), measure["after"].as_f64().expect("finite"));
+    assert!(after < 0.9 * before, "{before} {after}");
+    let budget = dir.run("budget tuned.toml --runs 2 --json").exits(0).json();
+    let noise = budget["budgets"][0]["linear_noise"].as_f64().expect("linear");
+    assert!((noise / after - 1.0).abs() < 1e-9, "{noise} {after}");
+    let middle = 3.0 * 0.5 * (before + after);
+    let limited = format!("{line} --keep jitter --set requirement[0].limit={middle} --json");
+    let object = dir.run(&limited).exits(0).json();
+    let kept = object["measures"][0]["after"].as_f64().expect("finite");
+    assert!(3.0 * kept <= middle * (1.0 + 1e-6), "{kept} {middle}");
+    for (arguments, told) in [
+        ("--objective jiter", "no requirement `jiter`"),
+        ("--keep margin<=0.5", "margin>=VALUE"),
+        ("--keep margin>=0", "margin>=VALUE"),
+    ] {
+        dir.run(&format!("{line} {arguments}")).exits(2).says(&[told]);
+    }
 }

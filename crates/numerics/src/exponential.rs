@@ -4,24 +4,81 @@ use nalgebra::DMatrix;
 
 use crate::lanes::{LaneFloat, Processor, SimdTask};
 
+/// Highest power of Taylor's series: the next term, 0.5^16/16!, is below the last bit of 1.
+const TERMS: u32 = 15;
+
 /// Returns exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the result has the same
 /// bits on every machine.
 pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let order = matrix.nrows();
-    let (squarings, scale) = scaling(matrix);
-    let small = matrix * scale;
-    let mut term = DMatrix::identity(order, order);
-    let mut sum = term.clone();
-    // The term 0.5^15/15! is below the last bit of 1.
-    for n in 1..=15 {
-        term = &term * &small / f64::from(n);
-        sum += &term;
+    match Processor::best() {
+        Some(processor) => processor.run::<1, _>(MatrixRows(matrix)),
+        None => MatrixRows(matrix).run(f64::NAN),
     }
-    for _ in 0..squarings {
-        sum = &sum * &sum;
-    }
-    sum
 }
+
+/// SIMD task for one matrix, with its rows side by side in lanes.
+struct MatrixRows<'a>(&'a DMatrix<f64>);
+
+impl SimdTask for MatrixRows<'_> {
+    type Output = DMatrix<f64>;
+
+    #[inline(always)]
+    fn run<R: LaneFloat>(self, kind: R) -> DMatrix<f64> {
+        let Self(matrix) = self;
+        let order = matrix.nrows();
+        let (squarings, scale) = scaling(matrix);
+        // Columns of whole registers; the rows that fill the last one have no meaning.
+        let height = order.next_multiple_of(R::LANES);
+        let mut small = vec![0.0; height * order];
+        for column in 0..order {
+            for row in 0..order {
+                small[column * height + row] = matrix[(row, column)] * scale;
+            }
+        }
+        let mut term = vec![0.0; height * order];
+        for row in 0..order {
+            term[row * height + row] = 1.0;
+        }
+        let mut sum = term.clone();
+        let mut product = vec![0.0; height * order];
+        for n in 1..=TERMS {
+            multiply_rows(kind, &term, &small, order, &mut product);
+            for first in (0..height * order).step_by(R::LANES) {
+                let entries = kind.load(&product[first..]) / kind.splat(f64::from(n));
+                entries.store(&mut term[first..]);
+                (kind.load(&sum[first..]) + entries).store(&mut sum[first..]);
+            }
+        }
+        for _ in 0..squarings {
+            multiply_rows(kind, &sum, &sum, order, &mut product);
+            std::mem::swap(&mut sum, &mut product);
+        }
+        let mut found = DMatrix::zeros(order, order);
+        for column in 0..order {
+            for row in 0..order {
+                found[(row, column)] = sum[column * height + row];
+            }
+        }
+        found
+    }
+}
+
+/// Multiplies square matrices stored by columns of whole registers, each sum in the order of nalgebra's.
+#[inline(always)]
+fn multiply_rows<R: LaneFloat>(kind: R, a: &[f64], b: &[f64], order: usize, into: &mut [f64]) {
+    let height = order.next_multiple_of(R::LANES);
+    for column in 0..order {
+        let factors = &b[column * height..column * height + order];
+        for first in (0..height).step_by(R::LANES) {
+            let mut sum = kind.load(&a[first..]) * factors[0];
+            for k in 1..order {
+                sum = kind.load(&a[k * height + first..]) * factors[k] + sum;
+            }
+            sum.store(&mut into[column * height + first..]);
+        }
+    }
+}
+
 /// Returns the number of squarings and the scale factor of the matrix.
 fn scaling(matrix: &DMatrix<f64>) -> (u32, f64) {
     let norm = matrix.row_iter().map(|row| row.iter().map(|m| m.abs()).sum::<f64>()).fold(0.0, f64::max);
@@ -75,7 +132,7 @@ impl SimdTask for MatrixBatch<'_> {
         }
         let mut sum = term.clone();
         let mut room = term.clone();
-        for n in 1..=15 {
+        for n in 1..=TERMS {
             multiply(&term, &small, order, &mut room);
             let divisor = kind.splat(f64::from(n));
             for index in 0..order * order {
@@ -121,6 +178,35 @@ pub fn multiply<R: LaneFloat>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Returns exp(M) by nalgebra's products.
+    fn by_products(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let order = matrix.nrows();
+        let (squarings, scale) = scaling(matrix);
+        let small = matrix * scale;
+        let mut term = DMatrix::identity(order, order);
+        let mut sum = term.clone();
+        for n in 1..=TERMS {
+            term = &term * &small / f64::from(n);
+            sum += &term;
+        }
+        for _ in 0..squarings {
+            sum = &sum * &sum;
+        }
+        sum
+    }
+
+    #[test]
+    fn the_bits_are_those_of_plain_products() {
+        for order in 1..=19 {
+            let size = libm::pow(10.0, f64::from(order % 5) - 2.0);
+            let matrix =
+                DMatrix::from_fn(order as usize, order as usize, |i, j| size * libm::sin((i * 17 + j * 7) as f64));
+            let expected = by_products(&matrix);
+            assert_eq!(exponential(&matrix), expected, "order {order}");
+            assert_eq!(MatrixRows(&matrix).run(f64::NAN), expected, "order {order}, no lanes");
+        }
+    }
 
     #[test]
     fn side_by_side_each_is_as_alone() {

@@ -4,10 +4,11 @@ use flexsc_core::ScenarioError;
 use flexsc_core::analysis::bound::{OutputBound, RangeRow};
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
-use flexsc_core::analysis::margins::StabilityMargins;
 use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
-use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
+use flexsc_core::analysis::open_loop::LoopBreak;
+use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault};
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::numerics::exponential::exponential as of_matrix;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
@@ -50,27 +51,34 @@ pub fn loop_break(name: &str) -> PyResult<LoopBreak> {
 /// The stability margins of a scenario's loop, cut open at a point.
 #[pyfunction]
 pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResult<String> {
-    let opened = OpenLoop::from_scenario(&scenario.inner, loop_break(opened)?).map_err(|fault| {
-        let origin = scenario.inner.name.clone();
-        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
-    })?;
-    let margins = aside(py, move |_| StabilityMargins::new(&opened))?;
+    let (inner, opened) = (scenario.inner.clone(), loop_break(opened)?);
+    let margins = aside(py, move |_| ScenarioMargins::from_scenario(&inner, opened))?;
     let name = &scenario.inner.name;
-    let margins = margins.map_err(|fault| PyValueError::new_err(format!("{name}: {fault}")))?;
+    let margins = margins.map_err(|fault| match fault {
+        MarginsFault::Key(ConfigError { key, why }) => {
+            scenario_error(ScenarioError::Key { origin: name.clone(), key, why })
+        }
+        MarginsFault::Unstable(unstable) => PyValueError::new_err(format!("{name}: {unstable}")),
+    })?;
     Ok(json!(margins).to_string())
 }
 
-/// Keys of a scenario tuned for the largest least modulus margin, as JSON, and the text of the tuned scenario.
+/// Keys of a scenario tuned for an objective within limits, as JSON, and the text of the tuned scenario.
 #[pyfunction]
 pub fn tuned_json(
     py: Python<'_>,
     scenario: &Scenario,
     keys: Vec<(String, [f64; 2])>,
     opened: &str,
+    goal: (String, Vec<String>),
     bandwidth: Option<f64>,
     is_nominal: bool,
 ) -> PyResult<(String, String)> {
-    let tuning = ScenarioTuning { keys, opened: loop_break(opened)?, bandwidth, is_nominal };
+    let (objective, limits) = goal;
+    let objective = objective.parse().map_err(|why: String| PyValueError::new_err(format!("objective: {why}")))?;
+    let limits = limits.iter().map(|limit| limit.parse()).collect::<Result<_, String>>();
+    let limits = limits.map_err(|why| PyValueError::new_err(format!("keep: {why}")))?;
+    let tuning = ScenarioTuning { keys, opened: loop_break(opened)?, objective, limits, bandwidth, is_nominal };
     let inner = scenario.inner.clone();
     let tuned = aside(py, move |_| {
         let tuned = tuning.run(&inner)?;

@@ -8,7 +8,10 @@ use std::io::Write;
 use clap::ValueEnum;
 use flexsc_core::analysis::margins::{DiskMargin, PeakMargin, SignalMargins, StabilityMargins};
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
+use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
+use flexsc_core::analysis::settling_time::SETTLING_BAND;
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
@@ -68,7 +71,7 @@ pub struct LoopMargins {
     /// Name of the scenario.
     name: String,
     opened: OpenLoop,
-    margins: StabilityMargins,
+    margins: ScenarioMargins,
     /// Least margins over the uncertain keys.
     worst: Vec<(MarginKind, WorstCase)>,
     units: Units,
@@ -77,10 +80,14 @@ pub struct LoopMargins {
 /// Computes the margins of the loop of a scenario.
 pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, CliError> {
     let name = scenario.name.clone();
-    let opened = OpenLoop::from_scenario(scenario, args.opened.loop_break())
-        .map_err(|fault| ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })?;
-    let margins =
-        StabilityMargins::new(&opened).map_err(|fault| CliError::Arguments(format!("{name}: {fault}")))?;
+    let key = |fault: ConfigError| {
+        CliError::from(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
+    };
+    let opened = OpenLoop::from_scenario(scenario, args.opened.loop_break()).map_err(key)?;
+    let margins = ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
+        MarginsFault::Key(fault) => key(fault),
+        MarginsFault::Unstable(unstable) => CliError::Arguments(format!("{name}: {unstable}")),
+    })?;
     let kinds = MarginKind::ALL.into_iter().filter(|_| args.worst);
     let least = |kind: MarginKind| {
         let search = MarginSearch { kind, opened: args.opened.loop_break(), most_loops: WORST_POINTS };
@@ -139,7 +146,7 @@ impl LoopMargins {
 
     /// Returns a delay; nothing for several samples in a period, where a delay is more than a phase.
     fn delay(&self, delay: Option<f64>) -> String {
-        if self.margins.samples > 1 { String::new() } else { number_or_none(delay, digits) }
+        if self.margins.stability.samples > 1 { String::new() } else { number_or_none(delay, digits) }
     }
 
     /// Returns the cells of the modulus margin and the disk margin, with their frequencies.
@@ -165,7 +172,7 @@ impl LoopMargins {
             texts(&["", "down", "up", "", "", "", "", "", "", "in the disk", "in the disk"]),
             texts(&["", gain, gain, phase, "s", "", frequency, "", frequency, gain, phase]),
         ];
-        for one in &self.margins.loops {
+        for one in &self.margins.stability.loops {
             let mut row = vec![
                 one.signal.clone(),
                 self.gain(Some(one.gain_below)),
@@ -176,17 +183,39 @@ impl LoopMargins {
             row.extend(self.peaks(&one.modulus, &one.disk));
             rows.push(row);
         }
-        if self.margins.loops.len() > 1 {
+        if self.margins.stability.loops.len() > 1 {
             let mut row = texts(&["all together", "", "", "", ""]);
-            row.extend(self.peaks(&self.margins.modulus, &self.margins.disk));
+            row.extend(self.peaks(&self.margins.stability.modulus, &self.margins.stability.disk));
             rows.push(row);
         }
-        if let Some(disk) = &self.margins.independent_disk {
+        if let Some(disk) = &self.margins.stability.independent_disk {
             let mut row = texts(&["all, independent", "", "", "", "", "", ""]);
-            row.extend(self.peaks(&self.margins.modulus, disk).into_iter().skip(2));
+            row.extend(self.peaks(&self.margins.stability.modulus, disk).into_iter().skip(2));
             rows.push(row);
         }
         print_table(&rows);
+        if rows.len() > 4 || self.margins.stability.samples > 1 {
+            let delay = number_or_none(self.margins.common_delay_s, |delay| format!("{} s", digits(delay)));
+            say!("  delay that all actuators together may add: {delay}");
+        }
+        if !self.margins.settling.is_empty() {
+            say!("  settling within {} % after a step of the target: {}", 100.0 * SETTLING_BAND, self.settling());
+        }
+    }
+
+    /// Returns the settling time after a step about each axis: the longest of all angles.
+    fn settling(&self) -> String {
+        let mut axes: Vec<&str> = self.margins.settling.iter().map(|own| own.step).collect();
+        axes.dedup();
+        let longest = |axis: &str| {
+            let own = self.margins.settling.iter().filter(|own| own.step == axis);
+            own.map(|own| own.time_s).fold(0.0, f64::max)
+        };
+        let each = axes.into_iter().map(|axis| {
+            let time = Some(longest(axis)).filter(|time| time.is_finite());
+            format!("{axis} {}", number_or_none(time, |time| format!("{} s", digits(time))))
+        });
+        each.collect::<Vec<_>>().join(", ")
     }
 
     /// Prints the crossings of all loops, by frequency.
@@ -196,7 +225,7 @@ impl LoopMargins {
             texts(&["loop", "crossing", "frequency", "phase", "delay", "gain"]),
             texts(&["", "", unit, self.phase().1, "s", self.gain_unit()]),
         ];
-        for one in &self.margins.loops {
+        for one in &self.margins.stability.loops {
             let mut crossings = self.crossings(one);
             crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (frequency, mut cells) in crossings {
@@ -258,14 +287,14 @@ impl Results for LoopMargins {
     }
 
     fn figures(&self) -> Vec<Named> {
-        let mut figures = figures::figures(&self.name, &self.margins.loops, self.margins.period_s);
-        figures.push(("singular-values".to_owned(), figures::singular_values(&self.name, &self.margins)));
+        let mut figures = figures::figures(&self.name, &self.margins.stability.loops, self.margins.stability.period_s);
+        figures.push(("singular-values".to_owned(), figures::singular_values(&self.name, &self.margins.stability)));
         figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.opened)));
         figures
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } = &self.margins;
+        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } = &self.margins.stability;
         let name = opened.name();
         let samples = match *samples {
             1 => String::new(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use flexsc_core::analysis::structured_tuning::{
-    LoopSensitivity, PlantMargin, ScenarioTuning, TunedScenario, TuningFault, TuningPoint,
+    LoopSensitivity, PlantMargin, ScenarioTuning, TunedLoop, TunedScenario, TuningFault, TuningLimit, TuningObjective, TuningPoint,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
@@ -29,13 +29,22 @@ const PRINTED: usize = 6;
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct StructuredArgs {
-    /// Maximise the least modulus margin over the values of a key, such as law.pd.k_d=10:400; repeat it for several keys
+    /// Vary a key within a range for the objective, such as law.pd.k_d=10:400; repeat it for several keys
     #[arg(
         long,
         value_name = "KEY=LO:HI",
         conflicts_with_all = ["frequency", "gain", "limit", "robust", "schedule", "band", "horizon", "dominant_alone"]
     )]
     vary: Vec<VariedKey>,
+    /// Quantity that is improved over all plants: `margin`, the least modulus margin; `settling`, the time after a step of
+    /// the target in which the angles settle within 5 %; or the name of a [[requirement]], the rms of its pointing index
+    /// under the noise of the loop
+    #[arg(long, value_name = "QUANTITY", default_value = "margin", requires = "vary")]
+    objective: TuningObjective,
+    /// Limit that all plants keep: `margin>=VALUE`, `settling<=SECONDS`, or the name of a [[requirement]] with its own
+    /// limit; repeat it for several
+    #[arg(long, value_name = "LIMIT", requires = "vary")]
+    keep: Vec<TuningLimit>,
     /// Point at which the loops are cut open
     #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "vary")]
     opened: BreakPoint,
@@ -99,6 +108,8 @@ impl StructuredArgs {
         let tuning = ScenarioTuning {
             keys: self.vary.iter().map(|varied| (varied.key.clone(), varied.range)).collect(),
             opened: self.opened.loop_break(),
+            objective: self.objective.clone(),
+            limits: self.keep.clone(),
             bandwidth: self.bandwidth,
             is_nominal: self.nominal,
         };
@@ -112,13 +123,15 @@ impl StructuredArgs {
         Ok(StructuredResults { name, found, units })
     }
 
-    /// Writes the tuned scenario, if it is to be.
-    pub fn save(&self, results: &StructuredResults) -> Result<(), CliError> {
+    /// Writes the tuned scenario, if it is to be, in place of another file if `force`.
+    pub fn save(&self, results: &StructuredResults, force: bool) -> Result<(), CliError> {
         let Some(path) = &self.save else { return Ok(()) };
         let text = results.found.scenario()?.to_toml();
-        if std::fs::read(path).is_ok_and(|content| content != text.as_bytes()) {
-            let why =
-                format!("--save {}: already exists, with other content; give another name", path.display());
+        if !force && std::fs::read(path).is_ok_and(|content| content != text.as_bytes()) {
+            let why = format!(
+                "--save {}: already exists, with other content; give another name, or --force to replace it",
+                path.display()
+            );
             return Err(CliError::Arguments(why));
         }
         files::write(path, text.as_bytes(), true)?;
@@ -168,6 +181,38 @@ impl StructuredResults {
         print_table(&rows);
     }
 
+    /// Prints the measures besides the margins, with their limits and the plants that have the largest values.
+    fn print_measures(&self) {
+        let goal = &self.found.goal;
+        if goal.measures.is_empty() && goal.least_margin.is_none() {
+            return;
+        }
+        let mut rows = vec![texts(&["", "before", "after", "limit", "", "worst plant"])];
+        let Self { found: TunedScenario { tuned: TunedLoop { before, after, .. }, .. }, .. } = self;
+        if let Some(least) = goal.least_margin {
+            let is_kept = after.least() >= least * (1.0 - LEAST_SHORTFALL);
+            let worst = after.worst().map_or(0, |worst| worst.plant);
+            let numbers = [before.least(), after.least(), least].map(digits);
+            rows.push([vec!["margin".to_owned()], numbers.to_vec(), vec![kept(is_kept), self.plant(worst)]].concat());
+        }
+        for (index, measure) in goal.measures.iter().enumerate() {
+            let ((was, _), (is, worst)) = (before.measures[index], after.measures[index]);
+            let quantity = self.units.common(&[was, is], measure.unit);
+            let cell = |value: f64| digits(value * quantity.0);
+            let is_kept = measure.limit.is_none_or(|limit| is <= limit * (1.0 + LEAST_SHORTFALL));
+            let name = if measure.unit == "s" { measure.name.clone() } else { format!("{} rms", measure.name) };
+            rows.push(vec![
+                format!("{name} ({})", quantity.1),
+                cell(was),
+                cell(is),
+                measure.limit.map_or_else(|| "none".to_owned(), cell),
+                kept(is_kept),
+                self.plant(worst),
+            ]);
+        }
+        print_table(&rows);
+    }
+
     fn print_plants(&self) {
         let (factor, unit) = self.units.frequency();
         let mut rows = vec![
@@ -182,6 +227,11 @@ impl StructuredResults {
         }
         print_table(&rows);
     }
+}
+
+/// Returns a mark for a limit that is not kept.
+fn kept(is_kept: bool) -> String {
+    if is_kept { String::new() } else { "not kept".to_owned() }
 }
 
 impl Results for StructuredResults {
@@ -237,6 +287,7 @@ impl Results for StructuredResults {
             counted(self.found.tuned.steps, "step"),
         );
         self.print_keys();
+        self.print_measures();
         self.print_plants();
         if let Some(gain) = self.found.tuned.after.bandwidth_gain {
             let reached = if gain < 1.0 - LEAST_SHORTFALL { ": the bandwidth is not reached" } else { "" };

@@ -9,6 +9,9 @@ use super::three_axis_state_space::CompensatorInput;
 use super::{AttitudeLaw, Differentiation, LawKind, OutputQuantity, Pd, StateSpace};
 use crate::linear_block::{BlockState, LinearBlock};
 
+/// End of the name of the angle of the sample before, which a differentiator remembers.
+pub const LAST_ANGLE: &str = "law_last_angle";
+
 /// Law in the form of a linear block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearLaw {
@@ -67,7 +70,7 @@ impl Pd {
                 b: dmatrix![1.0, 0.0],
                 c: dmatrix![k_d],
                 d: dmatrix![-(k_p + k_d), 0.0],
-                states: vec![BlockState::new(format!("{prefix}law_last_angle"), "rad")],
+                states: vec![BlockState::new(format!("{prefix}{LAST_ANGLE}"), "rad")],
             },
         };
         Ok(LinearLaw { period: self.period, block, is_acceleration: false, inertia: None })

@@ -66,7 +66,7 @@ pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use flexsc_record::Phase;
 pub use frame::Frame;
 pub use law_state::{LawState, ReferenceNeeds};
-pub use linear_law::LinearLaw;
+pub use linear_law::{LAST_ANGLE, LinearLaw};
 pub use open_loop::Open;
 pub use output_quantity::OutputQuantity;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};

@@ -16,5 +16,7 @@ pub mod one_axis_modes;
 pub mod open_loop;
 pub mod rigid_cycle;
 pub mod sampled_loop;
+pub mod scenario_margins;
+pub mod settling_time;
 pub mod spacecraft_modes;
 pub mod structured_tuning;

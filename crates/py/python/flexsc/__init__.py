@@ -72,7 +72,7 @@ if TYPE_CHECKING:
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
-    from flexsc._structured_tuning import TunedPlant, TunedScenario
+    from flexsc._structured_tuning import TunedMeasure, TunedPlant, TunedScenario
     from flexsc._worst_case import WorstCase
     from flexsc.structure import (
         StateSpace,
@@ -128,6 +128,7 @@ __all__ = [
     "ThreeAxisHold",
     "ThreeAxisLaw",
     "Topic",
+    "TunedMeasure",
     "TunedPlant",
     "TunedScenario",
     "WheelLines",
@@ -188,6 +189,7 @@ _LATER = {
     "StabilityMargins": "_loop_margins",
     "StateSpace": "structure",
     "Structure": "structure",
+    "TunedMeasure": "_structured_tuning",
     "TunedPlant": "_structured_tuning",
     "TunedScenario": "_structured_tuning",
     "WheelLines": "_noise",

@@ -163,6 +163,21 @@ class StabilityMargins:
     >>> margins.disk <= margins.independent_disk <= min(each.disk for each in margins.loops.values())
     True
     """
+    delay: float
+    """Smallest additional delay (s) of all actuators together that makes the loop unstable; infinite if none does.
+
+    >>> margins.delay > 1.0
+    True
+    """
+    settling: dict[str, float]
+    """Time (s) in which all angles settle within 5 % after a step of the target about each axis.
+
+    It is the time at which the sum of the terms of all poles falls below the band, which the true time does not exceed
+    at the samples, and infinite if a term does not decay.
+
+    >>> list(margins.settling), max(margins.settling.values()) < 100.0
+    (['roll', 'pitch', 'yaw'], True)
+    """
 
 
 StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
@@ -178,9 +193,20 @@ def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
         samples=found["samples"],
         spectral_radius=found["spectral_radius"],
         loops={each["signal"]: _loop(each, several) for each in found["loops"]},
+        delay=float("inf") if found["common_delay_s"] is None else found["common_delay_s"],
+        settling=_settling(found["settling"]),
         independent_disk=(found["independent_disk"] or {"alpha": float("nan")})["alpha"],
         **_peaks(found),
     )
+
+
+def _settling(rows: list[dict[str, Any]]) -> dict[str, float]:
+    """The longest settling time of all angles after a step about each axis."""
+    longest: dict[str, float] = {}
+    for row in rows:
+        time = float("inf") if row["time_s"] is None else row["time_s"]
+        longest[row["step"]] = max(time, longest.get(row["step"], 0.0))
+    return longest
 
 
 def _loop(found: dict[str, Any], several: bool) -> LoopMargins:

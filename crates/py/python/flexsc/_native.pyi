@@ -1396,6 +1396,7 @@ def tuned_json(
     scenario: Scenario,
     keys: list[tuple[str, tuple[float, float]]],
     opened: str,
+    goal: tuple[str, list[str]],
     bandwidth: float | None,
     is_nominal: bool,
 ) -> tuple[str, str]: ...

@@ -93,17 +93,23 @@ class ScenarioAnalysis(ScenarioFile):
         self,
         ranges: Mapping[str, tuple[float, float]],
         *,
+        objective: str = "margin",
+        keep: Sequence[str] = (),
         loop: Break = "command",
         bandwidth: float | None = None,
         corners: bool = True,
     ) -> TunedScenario:
-        """Return the scenario with the keys that maximise the least modulus margin: `flexsc tune --vary`.
+        """Return the scenario with the keys that are best for an objective, within limits: `flexsc tune --vary`.
 
-        The margin is that of all signals together, and the least one is taken over the nominal plant and the
-        corners of `[uncertain]`.
+        The worst of all plants counts: the nominal one, and the corners of `[uncertain]`.
 
         Args:
             ranges: The least and the largest value of each key, such as `{"law.pd.k_d": (10.0, 400.0)}`.
+            objective: `"margin"`, the least modulus margin of all signals together, is maximised. `"settling"`,
+                the time after a step of the target in which the angles settle within 5 %, is minimised, and so
+                is the rms of the pointing index of the `[[requirement]]` with another name.
+            keep: Limits that all plants keep: `"margin>=0.5"`, `"settling<=60"` (s), or the name of a
+                `[[requirement]]` with its own limit.
             loop: The point at which the loops are opened.
             bandwidth: A frequency (rad/s) at which the loop gain of the nominal plant stays 1 or more.
             corners: Whether there is a plant for each corner of the uncertain keys.
@@ -114,12 +120,14 @@ class ScenarioAnalysis(ScenarioFile):
         True
 
         Raises:
-            ScenarioError: A key cannot be tuned, or the loop is not linear: the key, and the reason.
-            ValueError: The loop of a plant is not stable with the keys of the scenario.
+            ScenarioError: A key cannot be tuned, the loop is not linear, or there is no requirement of the name: the
+                key, and the reason.
+            ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of `objective` or
+                `keep` is not one of these.
         """
         from flexsc._structured_tuning import tune
 
-        return tune(self._scenario, ranges, loop, bandwidth, corners)
+        return tune(self._scenario, ranges, loop, (objective, keep), bandwidth, corners)
 
     def spectrum(
         self,

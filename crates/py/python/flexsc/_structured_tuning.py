@@ -1,9 +1,9 @@
-"""Tuning of keys of a law for the largest least modulus margin over the plants of a scenario."""
+"""Tuning of keys of a law for a margin, a settling time or a pointing index over the plants of a scenario."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -63,6 +63,49 @@ class TunedPlant:
 
 
 @dataclass(frozen=True)
+class TunedMeasure:
+    """Quantity besides the margins that a tuning minimised or limited, with its largest value over the plants.
+
+    >>> scenario = flexsc.Scenario.example("attitude-hold")
+    >>> ranges = {"law.attitude.bandwidth": (0.05, 0.3)}
+    >>> measure = scenario.tune(ranges, objective="settling", keep=["margin>=0.5"]).measures["settling"]
+    >>> measure.value < measure.before
+    True
+    """
+
+    before: float
+    """Largest value with the keys of the scenario; infinite if it has no bound.
+
+    >>> measure.before > 10.0
+    True
+    """
+    value: float
+    """Largest value with the tuned keys; infinite if it has no bound.
+
+    >>> measure.value > 1.0
+    True
+    """
+    unit: str
+    """Unit.
+
+    >>> measure.unit
+    's'
+    """
+    limit: float | None
+    """Limit that was to be kept, if there was one.
+
+    >>> measure.limit is None
+    True
+    """
+    worst_plant: int
+    """Index of the plant with the largest value.
+
+    >>> measure.worst_plant
+    0
+    """
+
+
+@dataclass(frozen=True)
 class TunedScenario:
     """Tuned scenario, with the margins of its plants before and after.
 
@@ -101,6 +144,12 @@ class TunedScenario:
     >>> round(tuned.least_margin, 4)
     0.7425
     """
+    measures: dict[str, TunedMeasure]
+    """Quantities besides the margins that were minimised or limited, by their names.
+
+    >>> tuned.measures
+    {}
+    """
     plants: tuple[TunedPlant, ...]
     """The plants: the nominal one, then the corners of the uncertain keys.
 
@@ -115,19 +164,24 @@ class TunedScenario:
     """
 
 
-TunedScenario.__module__ = TunedPlant.__module__ = "flexsc"
+TunedScenario.__module__ = TunedMeasure.__module__ = TunedPlant.__module__ = "flexsc"
 
 
 def tune(
     scenario: Scenario,
     ranges: Mapping[str, tuple[float, float]],
     loop: Break,
+    goal: tuple[str, Sequence[str]],
     bandwidth: float | None,
     corners: bool,
 ) -> TunedScenario:
-    """Return the scenario with the keys that maximise the least modulus margin."""
+    """Return the scenario with the keys that are best for the goal: an objective, and limits."""
     keys = [(key, (float(low), float(high))) for key, (low, high) in ranges.items()]
-    table, text = engine.tuned_json(scenario._native, keys, loop, bandwidth, not corners)
+    objective, keep = goal
+    if isinstance(keep, str):
+        raise TypeError(f"keep: must be a sequence of texts, such as [{keep!r}], got a text")
+    kept = (objective, list(keep))
+    table, text = engine.tuned_json(scenario._native, keys, loop, kept, bandwidth, not corners)
     found = json.loads(table)
     return TunedScenario(
         scenario=type(scenario).parse(text, scenario.name),
@@ -135,6 +189,7 @@ def tune(
         keys_before={each["key"]: each["before"] for each in found["keys"]},
         least_margin_before=found["least_margin_before"],
         least_margin=found["least_margin"],
+        measures={each["name"]: _measure(each) for each in found["measures"]},
         plants=tuple(_plant(each) for each in found["plants"]),
         steps=found["steps"],
     )
@@ -150,3 +205,8 @@ def _plant(found: dict[str, Any]) -> TunedPlant:
         frequency=after["frequency_rad_s"],
         spectral_radius=after["spectral_radius"],
     )
+
+
+def _measure(found: dict[str, Any]) -> TunedMeasure:
+    before, value = (float("inf") if found[key] is None else found[key] for key in ("before", "after"))
+    return TunedMeasure(before, value, found["unit"], found["limit"], found["worst_plant"])

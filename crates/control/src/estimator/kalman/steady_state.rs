@@ -7,6 +7,8 @@ use super::filter::{KalmanFilter, Prediction};
 
 /// Largest number of samples until the gains settle.
 const MOST: usize = 2_000_000;
+/// Largest number of doublings of the time that a covariance needs to settle.
+const DOUBLINGS: usize = 60;
 /// Gains have settled if no sample changes them by more than this fraction of the largest.
 const SETTLED: f64 = 1e-13;
 
@@ -28,7 +30,8 @@ impl KalmanFilter {
         let Prediction::Linear(transition, input) = &self.tuning().prediction else { return None };
         let (order, tuning) = (input.len(), self.tuning());
         let noises: Vec<f64> = [Some(tuning.angle_noise), tuning.rate_noise].into_iter().flatten().collect();
-        let mut covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
+        let start = || DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
+        let mut covariance = settled_covariance(transition, self.noise(), &noises).unwrap_or_else(start);
         let mut before: Vec<DVector<f64>> = Vec::new();
         // A gain may pass through a stationary point: it has settled only after being constant for long.
         let mut still = 0;
@@ -65,4 +68,48 @@ impl KalmanFilter {
             gains: before.iter().map(|gain| gain.iter().copied().collect()).collect(),
         })
     }
+}
+
+/// Returns the covariance after a measurement that many samples lead to, by doubling their number in each step
+/// (\[ChuFanLinWang04\]); `None` without noise of a measurement, or if it does not settle. The samples that follow remove its
+/// rounding.
+fn settled_covariance(
+    transition: &DMatrix<f64>,
+    noise: &DMatrix<f64>,
+    measured: &[f64],
+) -> Option<DMatrix<f64>> {
+    let order = transition.nrows();
+    if measured.iter().any(|own| *own * *own <= 0.0) {
+        return None;
+    }
+    let information = DMatrix::from_fn(order, order, |row, column| {
+        let own = measured.get(row % 2).filter(|_| row % 2 == column % 2);
+        own.map_or(0.0, |own| 1.0 / (own * own))
+    });
+    let one = DMatrix::identity(order, order);
+    let (mut a, mut g, mut p) = (transition.transpose(), information.clone(), noise.clone());
+    let mut is_settled = false;
+    for _ in 0..DOUBLINGS {
+        let inverse = (&one + &g * &p).try_inverse()?;
+        let step = &a * &inverse;
+        let added = a.transpose() * &p * &inverse * &a;
+        g += &step * &g * a.transpose();
+        p += &added;
+        p = (&p + p.transpose()) * 0.5;
+        g = (&g + g.transpose()) * 0.5;
+        a = &step * &a;
+        if !p.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        is_settled = added.amax() <= SETTLED * p.amax();
+        if is_settled {
+            break;
+        }
+    }
+    if !is_settled {
+        return None;
+    }
+    // From the predicted covariance to that after the measurements.
+    let corrected = (one + &p * information).try_inverse()? * p;
+    Some((&corrected + corrected.transpose()) * 0.5)
 }

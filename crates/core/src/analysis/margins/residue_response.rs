@@ -60,6 +60,13 @@ impl ResidueResponse {
         COMPARED.into_iter().map(unit_circle).all(|z| modal.agrees(response, z)).then_some(modal)
     }
 
+    /// Returns the poles, each with its residues: one of each entry, column after column.
+    pub fn into_terms(self) -> Vec<(Complex<f64>, Vec<Complex<f64>>)> {
+        let count = self.feedthrough.len();
+        let residues = self.residues.chunks_exact(count).map(<[Complex<f64>]>::to_vec);
+        self.poles.into_iter().zip(residues).collect()
+    }
+
     /// Returns true if the sum is the transfer at a point of the plane.
     fn agrees(&self, response: &FrequencyResponse, z: Complex<f64>) -> bool {
         let (Some(found), Some(expected)) = (self.at(z), response.scan(z)) else { return false };

@@ -115,9 +115,16 @@ impl OpenLoop {
     /// # Errors
     /// A part that is not linear, or a combination that a linear loop does not have: its key, and the reason.
     pub fn from_scenario(scenario: &Scenario, opened: LoopBreak) -> Result<Self, ConfigError> {
-        let parts = LoopParts::from_scenario(scenario, opened)?;
+        Self::from_parts(&LoopParts::from_scenario(scenario, opened)?)
+    }
+
+    /// Returns the loop of these parts.
+    ///
+    /// # Errors
+    /// See [`OpenLoop::from_scenario`].
+    pub(in crate::analysis) fn from_parts(parts: &LoopParts<'_>) -> Result<Self, ConfigError> {
         let has_filter = parts.parts.attitude.is_some();
-        if has_filter { multi_rate::lifted_loop(&parts) } else { uniform_rate::sampled_loop(&parts) }
+        if has_filter { multi_rate::lifted_loop(parts) } else { uniform_rate::sampled_loop(parts) }
     }
 }
 

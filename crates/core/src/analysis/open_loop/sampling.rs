@@ -1,5 +1,8 @@
 //! Exact sampling of a linear system whose inputs are held over a period and act late (\[FranklinPowell98\]).
 
+use std::cell::RefCell;
+use std::collections::HashMap;
+
 use flexsc_numerics::exponential::exponential;
 use nalgebra::DMatrix;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
@@ -77,11 +80,40 @@ impl SampledSystem {
     }
 }
 
+/// Transition of a state over a time, and the response to inputs that are held.
+type HeldMotion = (DMatrix<f64>, DMatrix<f64>);
+
+/// Largest number of motions that a thread keeps.
+const MOST_KEPT: usize = 256;
+/// Largest order of a system whose motion is kept.
+const LARGEST_KEPT: usize = 64;
+
+thread_local! {
+    /// Latest motions, by the bits of the system and the time. A tuning forms the loop of one body with many laws.
+    static KEPT: RefCell<HashMap<Vec<u64>, HeldMotion>> = RefCell::default();
+}
+
 /// Returns the motion over a time (s): the transition of the state, and the response to inputs that are held.
 ///
 /// The system is balanced first, by powers of 2: an exponential loses the digits by which its norm exceeds the
 /// frequencies.
-pub fn held(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+pub fn held(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> HeldMotion {
+    if a.nrows() > LARGEST_KEPT {
+        return motion_over(a, b, time);
+    }
+    let sizes = [a.nrows() as u64, b.ncols() as u64, time.to_bits()];
+    let key: Vec<u64> =
+        sizes.into_iter().chain(a.iter().chain(b).map(|entry| entry.to_bits())).collect();
+    KEPT.with_borrow_mut(|kept| {
+        if kept.len() >= MOST_KEPT {
+            kept.clear();
+        }
+        kept.entry(key).or_insert_with(|| motion_over(a, b, time)).clone()
+    })
+}
+
+/// Computes the motion over a time (s).
+fn motion_over(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> HeldMotion {
     let (order, count) = b.shape();
     let mut balanced = a * time;
     let units = balance_parlett_reinsch(&mut balanced);

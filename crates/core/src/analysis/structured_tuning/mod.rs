@@ -1,13 +1,17 @@
-//! Structured tuning: parameters of a law of any form that maximise the least modulus margin over a set of plants.
+//! Structured tuning: parameters of a law of any form that maximise the least modulus margin over a set of plants, or
+//! minimise a settling time or a pointing index, within limits of the others.
 //!
 //! Each local minimum of 1/s1(S) over frequency, with the largest singular value s1 of the sensitivity S, is linearised in
 //! the parameters at its frequency: at a minimum, the change of the frequency has no effect to first order. A linear
 //! programme within a trust region maximises the least of them; a step is taken if it raises the least margin and leaves
-//! every loop stable. Such a search ends at a local optimum, so several are made.
+//! every loop stable. A settling time and a pointing index are linearised as they are. Such a search ends at a local optimum,
+//! so several are made.
 
+mod goal;
 mod linear_step;
 mod loop_set;
 mod scenario_loops;
+mod scenario_measure;
 mod scenario_tuning;
 mod sensitivity_minima;
 
@@ -15,7 +19,8 @@ use std::fmt;
 
 use flexsc_formats::document::ConfigError;
 
-pub use loop_set::{LoopSet, PlantMargin};
+pub use goal::{TunedMeasure, TuningGoal, TuningLimit, TuningObjective};
+pub use loop_set::{LoopSet, PlantMargin, TunedPlant};
 pub use scenario_loops::{MOST_UNCERTAIN, ScenarioLoops};
 pub use scenario_tuning::{MOST_TUNED, ScenarioTuning, TunedScenario};
 pub use sensitivity_minima::LoopSensitivity;
@@ -61,6 +66,8 @@ pub struct TuningPoint {
     pub plants: Vec<PlantMargin>,
     /// Least loop gain of the nominal plant at the bandwidth; none without one.
     pub bandwidth_gain: Option<f64>,
+    /// Largest value of each measure of the goal, and the plant that has it.
+    pub measures: Vec<(f64, usize)>,
 }
 
 /// Result of a tuning.
@@ -83,6 +90,8 @@ pub enum TuningFault {
     Unstable(usize, f64),
     /// The loop cannot be formed.
     Loop(String),
+    /// The objective has no finite value at the start: the name of its measure.
+    Unbounded(String),
 }
 
 impl fmt::Display for TuningFault {
@@ -95,6 +104,10 @@ impl fmt::Display for TuningFault {
             ),
             Self::Key(fault) => write!(f, "`{}`: {}", fault.key, fault.why),
             Self::Loop(why) => f.write_str(why),
+            Self::Unbounded(name) => write!(
+                f,
+                "`{name}` has no finite value above 0 at the start: a search for smaller values starts from one"
+            ),
         }
     }
 }
@@ -102,11 +115,12 @@ impl fmt::Display for TuningFault {
 impl std::error::Error for TuningFault {}
 
 impl TuningPoint {
-    fn new(values: &[f64], evaluation: &Evaluation) -> Self {
+    fn new(values: &[f64], evaluation: &Evaluation, measures: usize) -> Self {
         Self {
             values: values.to_vec(),
             plants: evaluation.margins(),
             bandwidth_gain: evaluation.bandwidth_gain(),
+            measures: (0..measures).map(|index| LoopSet::largest(evaluation, index)).collect(),
         }
     }
 
@@ -121,44 +135,56 @@ impl TuningPoint {
     }
 }
 
-/// Maximises the least modulus margin of a set of loops over parameters within their ranges: the best of searches from the
-/// start, with a narrow and a wide trust region, and from points of the ranges at which all loops are stable.
+/// Tunes the parameters of a set of loops within their ranges for a goal: the best of searches from the start, with a
+/// narrow and a wide trust region, and from points of the ranges at which all loops are stable.
 ///
 /// # Errors
-/// A loop that cannot be formed, or that is not stable at the start.
+/// A loop that cannot be formed, or that is not stable at the start; an objective without a finite value there.
 pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedLoop, TuningFault> {
     let start: Vec<f64> = parameters.iter().map(|parameter| parameter.start).collect();
     let first = loops.evaluate(&start)?;
     if let Some((plant, radius)) = first.unstable() {
         return Err(TuningFault::Unstable(plant, radius));
     }
-    let before = TuningPoint::new(&start, &first);
-    let mut searches = vec![
-        TuningSearch::new((start.clone(), first.clone()), TRUSTS[0]),
-        TuningSearch::new((start, first), TRUSTS[1]),
-    ];
+    let measures = loops.goal.measures.len();
+    let before = TuningPoint::new(&start, &first, measures);
+    // A minimised measure in units of its value at the start has the size of a margin.
+    let unit = loops.goal.minimised.map_or(1.0, |index| before.measures[index].0);
+    if !(unit > 0.0 && unit.is_finite()) {
+        let index = loops.goal.minimised.unwrap_or(0);
+        return Err(TuningFault::Unbounded(loops.goal.measures[index].name.clone()));
+    }
+    let problem = TuningProblem { loops, parameters, unit };
+    let search = |values: Vec<f64>, here: Evaluation, trust: f64| TuningSearch {
+        merit: loops.merit(&here, unit),
+        values,
+        here,
+        trust,
+        steps: 0,
+    };
+    let mut searches =
+        vec![search(start.clone(), first.clone(), TRUSTS[0]), search(start, first, TRUSTS[1])];
     for values in (0..STARTS).map(|index| point(parameters, index)) {
         // A point that the scenario does not accept is no start.
         let Ok(here) = loops.evaluate(&values) else { continue };
         if here.unstable().is_none() {
-            searches.push(TuningSearch::new((values, here), TRUSTS[0]));
+            searches.push(search(values, here, TRUSTS[0]));
         }
     }
     for search in &mut searches {
-        search.advance(loops, parameters, FIRST_STEPS)?;
+        search.advance(&problem, FIRST_STEPS)?;
     }
-    searches.sort_by(|a, b| b.here.merit().total_cmp(&a.here.merit()));
+    searches.sort_by(|a, b| b.merit.total_cmp(&a.merit));
     let mut steps: usize = searches.iter().map(|search| search.steps).sum();
     searches.truncate(CONTINUED);
     for search in &mut searches {
         let taken = search.steps;
-        search.advance(loops, parameters, MOST_STEPS)?;
+        search.advance(&problem, MOST_STEPS)?;
         steps += search.steps - taken;
     }
-    let best = searches
-        .into_iter()
-        .reduce(|best, other| if other.here.merit() > best.here.merit() + LEAST_GAIN { other } else { best });
-    let after = best.map_or_else(|| before.clone(), |best| TuningPoint::new(&best.values, &best.here));
+    let best =
+        searches.into_iter().reduce(|best, other| if other.merit > best.merit + LEAST_GAIN { other } else { best });
+    let after = best.map_or_else(|| before.clone(), |best| TuningPoint::new(&best.values, &best.here, measures));
     Ok(TunedLoop { before, after, steps })
 }
 
@@ -174,10 +200,20 @@ fn point(parameters: &[TunedParameter], index: usize) -> Vec<f64> {
     each.collect()
 }
 
+/// Loops with the parameters of a tuning.
+struct TuningProblem<'a> {
+    loops: &'a LoopSet<'a>,
+    parameters: &'a [TunedParameter],
+    /// Unit of a minimised measure.
+    unit: f64,
+}
+
 /// Search from a point at which all loops are stable.
 struct TuningSearch {
     values: Vec<f64>,
     here: Evaluation,
+    /// Merit of the point.
+    merit: f64,
     /// Trust region, relative to the ranges; 0 of a search that has ended.
     trust: f64,
     /// Number of linear programmes.
@@ -185,22 +221,14 @@ struct TuningSearch {
 }
 
 impl TuningSearch {
-    fn new((values, here): (Vec<f64>, Evaluation), trust: f64) -> Self {
-        Self { values, here, trust, steps: 0 }
-    }
-
     /// Searches until the end, or until a number of linear programmes.
-    fn advance(
-        &mut self,
-        loops: &LoopSet<'_>,
-        parameters: &[TunedParameter],
-        most: usize,
-    ) -> Result<(), TuningFault> {
+    fn advance(&mut self, problem: &TuningProblem<'_>, most: usize) -> Result<(), TuningFault> {
+        let TuningProblem { loops, parameters, unit } = *problem;
         let width = |parameter: &TunedParameter| parameter.range[1] - parameter.range[0];
         if self.trust <= SMALLEST_TRUST || self.steps >= most {
             return Ok(());
         }
-        let mut slopes = loops.slopes(&self.here, &self.values, parameters)?;
+        let mut slopes = loops.slopes(&self.here, unit, &self.values, parameters)?;
         while self.trust > SMALLEST_TRUST && self.steps < most {
             self.steps += 1;
             let room = self.values.iter().zip(parameters).map(|(value, parameter)| {
@@ -208,7 +236,7 @@ impl TuningSearch {
                 [(low - value).max(-most), (high - value).min(most)]
             });
             let (step, expected) = linear_step::largest_least(&slopes, &room.collect::<Vec<_>>());
-            if expected < self.here.merit() + LEAST_GAIN {
+            if expected < self.merit + LEAST_GAIN {
                 self.trust = 0.0;
                 return Ok(());
             }
@@ -219,12 +247,13 @@ impl TuningSearch {
                 })
                 .collect();
             // Values that the scenario does not accept, or of which the margins cannot be computed, are no step.
-            let there = loops.evaluate(&tried).ok();
-            match there.filter(|there| there.unstable().is_none() && there.merit() > self.here.merit()) {
-                Some(better) => {
-                    (self.values, self.here) = (tried, better);
+            let there = loops.evaluate(&tried).ok().filter(|there| there.unstable().is_none());
+            let better = there.map(|there| (loops.merit(&there, unit), there)).filter(|(merit, _)| *merit > self.merit);
+            match better {
+                Some((merit, better)) => {
+                    (self.values, self.here, self.merit) = (tried, better, merit);
                     self.trust = (self.trust * FACTORS[0]).min(LARGEST_TRUST);
-                    let Ok(next) = loops.slopes(&self.here, &self.values, parameters) else {
+                    let Ok(next) = loops.slopes(&self.here, unit, &self.values, parameters) else {
                         self.trust = 0.0;
                         return Ok(());
                     };

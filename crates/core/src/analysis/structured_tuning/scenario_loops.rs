@@ -3,6 +3,8 @@
 use flexsc_formats::document::{ConfigError, Document, key};
 use toml::{Table, Value};
 
+use super::loop_set::TunedPlant;
+use super::scenario_measure::ScenarioMeasure;
 use crate::analysis::open_loop::{LoopBreak, OpenLoop};
 use crate::scenario::Scenario;
 use crate::uncertain::{UncertainBox, UncertainKey};
@@ -96,8 +98,26 @@ impl ScenarioLoops {
     /// # Errors
     /// A value that the scenario does not accept, and a scenario without a linear loop.
     pub fn loop_at(&self, values: &[f64], plant: usize) -> Result<OpenLoop, String> {
+        self.opened(&self.scenario(values, plant)?)
+    }
+
+    /// Returns the loop of a plant with values of the keys, and its measures.
+    ///
+    /// # Errors
+    /// A value that the scenario does not accept, and a scenario without a linear loop or without a measure.
+    pub fn plant_at(
+        &self,
+        values: &[f64],
+        plant: usize,
+        measures: &[ScenarioMeasure],
+    ) -> Result<TunedPlant, String> {
         let scenario = self.scenario(values, plant)?;
-        OpenLoop::from_scenario(&scenario, self.opened)
+        let measures = measures.iter().map(|measure| measure.values(&scenario)).collect::<Result<_, _>>()?;
+        Ok(TunedPlant { opened: self.opened(&scenario)?, measures })
+    }
+
+    fn opened(&self, scenario: &Scenario) -> Result<OpenLoop, String> {
+        OpenLoop::from_scenario(scenario, self.opened)
             .map_err(|fault| format!("{}: `{}` {}", self.origin, fault.key, fault.why))
     }
 }

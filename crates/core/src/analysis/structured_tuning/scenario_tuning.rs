@@ -4,8 +4,10 @@ use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use serde_json::{Map, Value as Json, json};
 use toml::Value;
 
+use super::goal::{TunedMeasure, TuningGoal, TuningLimit, TuningObjective};
 use super::loop_set::{LoopSet, PlantMargin};
 use super::scenario_loops::ScenarioLoops;
+use super::scenario_measure::ScenarioMeasure;
 use super::{TunedLoop, TunedParameter, TuningFault, TuningPoint, tune};
 use crate::analysis::open_loop::LoopBreak;
 use crate::scenario::Scenario;
@@ -20,6 +22,10 @@ pub struct ScenarioTuning {
     pub keys: Vec<(String, [f64; 2])>,
     /// Point at which the loops are cut open.
     pub opened: LoopBreak,
+    /// Quantity that is improved.
+    pub objective: TuningObjective,
+    /// Quantities that are kept within limits.
+    pub limits: Vec<TuningLimit>,
     /// Frequency (rad/s) at which the loop gain of the nominal plant stays 1 or more.
     pub bandwidth: Option<f64>,
     /// True for the nominal plant alone, without the corners of the uncertain keys.
@@ -33,6 +39,8 @@ pub struct TunedScenario {
     pub loops: ScenarioLoops,
     /// Tuned keys.
     pub parameters: Vec<TunedParameter>,
+    /// Goal, with the measures that the plants have besides the margins.
+    pub goal: TuningGoal,
     /// Values and margins before and after.
     pub tuned: TunedLoop,
     scenario: Scenario,
@@ -81,8 +89,9 @@ impl ScenarioTuning {
             }
             parameters.push(TunedParameter { key: key.clone(), start, range: [*low, *high] });
         }
-        let loop_at = |values: &[f64], plant: usize| loops.loop_at(values, plant);
-        let set = LoopSet { loop_at: &loop_at, plants: loops.plants(), bandwidth: self.bandwidth };
+        let (goal, measures) = self.goal(scenario).map_err(TuningFault::Key)?;
+        let plant_at = |values: &[f64], plant: usize| loops.plant_at(values, plant, &measures);
+        let set = LoopSet { plant_at: &plant_at, plants: loops.plants(), goal: goal.clone() };
         let tuned = tune(&set, &parameters).map_err(|fault| match fault {
             TuningFault::Unstable(plant, radius) if plant > 0 => {
                 let values = loops.plant(plant).into_iter().map(|(key, value)| format!("{key} = {value}"));
@@ -94,7 +103,44 @@ impl ScenarioTuning {
             }
             fault => fault,
         })?;
-        Ok(TunedScenario { loops, parameters, tuned, scenario: scenario.clone(), opened: self.opened })
+        Ok(TunedScenario { loops, parameters, goal, tuned, scenario: scenario.clone(), opened: self.opened })
+    }
+
+    /// Returns the goal, and the measures of the scenario's loop that it names.
+    fn goal(&self, scenario: &Scenario) -> Result<(TuningGoal, Vec<ScenarioMeasure>), ConfigError> {
+        let mut goal = TuningGoal { bandwidth: self.bandwidth, ..TuningGoal::default() };
+        let (mut measures, mut limits): (Vec<ScenarioMeasure>, Vec<(Option<f64>, bool)>) = Default::default();
+        let mut place = |measure: ScenarioMeasure| {
+            measures.iter().position(|own| *own == measure).unwrap_or_else(|| {
+                measures.push(measure);
+                limits.push((None, false));
+                measures.len() - 1
+            })
+        };
+        let objective = match &self.objective {
+            TuningObjective::Margin => None,
+            TuningObjective::Settling => Some(ScenarioMeasure::Settling),
+            TuningObjective::Index(name) => Some(ScenarioMeasure::for_requirement(scenario, name)?),
+        };
+        goal.minimised = objective.map(&mut place);
+        let mut given = Vec::new();
+        for limit in &self.limits {
+            match limit {
+                TuningLimit::Margin(least) => goal.least_margin = Some(*least),
+                TuningLimit::Settling(most) => given.push((place(ScenarioMeasure::Settling), (Some(*most), true))),
+                TuningLimit::Index(name) => {
+                    given.push((place(ScenarioMeasure::for_requirement(scenario, name)?), (None, true)));
+                }
+            }
+        }
+        for (index, limit) in given {
+            limits[index] = limit;
+        }
+        let described = measures.iter().zip(limits);
+        goal.measures = described
+            .map(|(measure, (limit, is_limited))| measure.describe(scenario, limit, is_limited))
+            .collect::<Vec<TunedMeasure>>();
+        Ok((goal, measures))
     }
 }
 
@@ -134,8 +180,23 @@ impl TunedScenario {
                 })
             })
             .collect();
+        let measures = self.goal.measures.iter().enumerate().map(|(index, measure)| {
+            let (before, after) = (self.tuned.before.measures[index], self.tuned.after.measures[index]);
+            json!({
+                "name": measure.name,
+                "unit": measure.unit,
+                "is_objective": self.goal.minimised == Some(index),
+                "before": finite(before.0),
+                "after": finite(after.0),
+                "limit": measure.limit,
+                "worst_plant": after.1,
+            })
+        });
+        let measures: Vec<Json> = measures.collect();
         json!({
             "loop": self.opened.name(),
+            "measures": measures,
+            "margin_limit": self.goal.least_margin,
             "least_margin_before": self.tuned.before.least(),
             "least_margin": self.tuned.after.least(),
             "bandwidth_gain_before": self.tuned.before.bandwidth_gain,
@@ -145,6 +206,11 @@ impl TunedScenario {
             "plants": plants,
         })
     }
+}
+
+/// Returns a number as JSON, with null for one that is not finite.
+fn finite(value: f64) -> Json {
+    if value.is_finite() { json!(value) } else { Json::Null }
 }
 
 fn margin_json(margin: &PlantMargin) -> Json {
