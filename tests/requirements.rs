@@ -328,3 +328,46 @@ fn the_linear_noise_of_a_budget_is_that_of_its_runs() {
     }
     dir.run("budget hold.toml --runs 2").exits(0).says(&["noise of the linear loop at rest"]);
 }
+
+#[test]
+fn a_metric_that_runs_do_not_have_is_refused() {
+    let dir = Dir::with(&["attitude-hold"]);
+    let text = std::fs::read_to_string(dir.path("attitude-hold.toml")).expect("a file");
+    for (quantity, told) in [
+        ("fuel_kg", "runs of this scenario do not have"),
+        ("settling_time_s", "runs of this scenario do not have"),
+    ] {
+        let requirement = format!("\n[[requirement]]\nname = \"r\"\nquantity = \"{quantity}\"\nlimit = 1.0\n");
+        std::fs::write(dir.path("limited.toml"), format!("{text}{requirement}")).expect("a file");
+        for verb in ["simulate", "check", "budget", "worst"] {
+            dir.run(&format!("{verb} limited.toml")).exits(2).says(&["limited.toml", "requirement[0].quantity", told]);
+        }
+    }
+}
+
+/// An empty collector, by which requirements are checked, has the metrics of the run.
+#[test]
+fn the_metrics_of_a_scenario_are_known_before_its_run() {
+    for name in [
+        "relay-fixed",
+        "relay-adaptive",
+        "wheel-ekf",
+        "iss-manoeuvre",
+        "attitude-hold",
+        "earth-observer",
+        "thruster-phase-plane",
+        "momentum-unloading",
+        "orbit-correction",
+        "agile-observer",
+        "wheel-friction",
+        "rotation-sine",
+        "panel-deployment",
+    ] {
+        let scenario = crate::open_loops::scenario(name);
+        let names = |metrics: &Metrics| metrics.0.iter().map(|(meaning, _)| meaning.name).collect::<Vec<_>>();
+        let mut run = MetricsCollector::new(&scenario);
+        Simulation::new(&scenario, 0).run(&mut run).expect("a run");
+        let before = names(&MetricsCollector::new(&scenario).finish(&scenario));
+        assert_eq!(before, names(&run.finish(&scenario)), "{name}");
+    }
+}

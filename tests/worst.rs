@@ -143,3 +143,20 @@ fn what_has_no_worst_case_is_refused() {
     refused("slew-wheel-lqg.toml --margin modulus --points 0", "0 is not in");
     refused("relay-sampled.toml --metric itae", "No such file");
 }
+
+/// The guaranteed ranges stand beside the searched worst case, and alone for a scenario without requirements.
+#[test]
+fn claims_stand_beside_requirements() {
+    let dir = Dir::with(&["bounded-jitter"]);
+    let told = dir.run("worst bounded-jitter.toml").exits(0);
+    told.says(&["guaranteed ranges of [[bound]], in which no law acts", "guaranteed", ": proved"]);
+    let claims = dir.run("bound bounded-jitter.toml --json").exits(0).json();
+    let text = std::fs::read_to_string(dir.path("bounded-jitter.toml")).expect("a file");
+    let more = "\n[[requirement]]\nname = \"rate\"\nquantity = \"rate_error\"\nlimit = 1.0\n\n\
+                [uncertain]\n\"disturbance[0].torque\" = { uniform = [1e-4, 3e-4] }\n";
+    std::fs::write(dir.path("both.toml"), format!("{text}{more}")).expect("a file");
+    let object = dir.run("worst both.toml --points 4 --json").exits(0).json();
+    assert_eq!(object["cases"].as_array().map(Vec::len), Some(1));
+    assert_eq!(object["bounds"], claims["bounds"]);
+    dir.run("worst bounded-jitter.toml --set bound[0].limits=[-5e-6,5e-6]").exits(3).says(&["violated"]);
+}

@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::requirement_verdict::validate_metrics;
 use flexsc_core::{Document, LONGEST, Scenario};
 
 use crate::error::CliError;
@@ -59,6 +60,7 @@ pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result
         document.set_text(key.trim(), value.trim())?;
     }
     let mut scenario = Scenario::from_document(&document)?;
+    validate_metrics(&scenario).map_err(|fault| document.at_key(&fault))?;
     scenario.written.seed = seed.unwrap_or(scenario.seed);
     Ok(scenario)
 }

@@ -1,10 +1,11 @@
 //! Verdicts on the requirements of a scenario, over one run or the runs of a campaign.
 
+use flexsc_formats::document::{ConfigError, nearest};
 use serde_json::{Value as Json, json};
 
-use crate::metrics::{MetricValue, Metrics};
+use crate::metrics::{MetricValue, Metrics, MetricsCollector};
 use crate::order_statistics::{confidence, order_statistic, runs_needed};
-use crate::scenario::{AssessedRequirement, Interpretation, Scenario};
+use crate::scenario::{AssessedRequirement, Interpretation, RequirementSource, Scenario};
 use crate::statistics::wilson;
 
 /// Part of a level by which a mean of shares may be below it because of rounding.
@@ -112,6 +113,30 @@ impl RequirementRuns {
         let each = self.requirements.into_iter().zip(self.values.into_iter().zip(self.shares));
         each.map(|(requirement, (values, shares))| verdict(requirement, values, &shares)).collect()
     }
+}
+
+/// Checks that runs of a scenario have the metrics that its requirements limit.
+///
+/// # Errors
+/// A requirement on a metric that they do not have.
+pub fn validate_metrics(scenario: &Scenario) -> Result<(), ConfigError> {
+    let metric = |requirement: &AssessedRequirement| match &requirement.source {
+        RequirementSource::Metric(name, _) => Some((requirement.name.clone(), name.clone())),
+        RequirementSource::Error(_) => None,
+    };
+    let mut limited = scenario.study.requirements.iter().filter_map(metric).peekable();
+    if limited.peek().is_none() {
+        return Ok(());
+    }
+    // A collector without samples has the metrics of a run.
+    let known = MetricsCollector::new(scenario).finish(scenario);
+    let Some((name, metric)) = limited.find(|(_, metric)| known.get(metric).is_none()) else { return Ok(()) };
+    let index = scenario.written.requirement.iter().position(|own| own.name == name);
+    let key = index.map_or_else(|| "reference.pointing.rms".to_owned(), |at| format!("requirement[{at}].quantity"));
+    let names: Vec<&str> = known.0.iter().map(|(meaning, _)| meaning.name).collect();
+    let hint = nearest(&metric, &names).map_or_else(String::new, |close| format!("; did you mean `{close}`?"));
+    let why = format!("is a metric that runs of this scenario do not have, got `{metric}`{hint}");
+    Err(ConfigError::new(key, why))
 }
 
 /// Returns the verdicts on one run, of which no confidence is asked for.

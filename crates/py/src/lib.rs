@@ -34,9 +34,11 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::dynamics::axis_model::AxisModel;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::metrics;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, Trace};
+use flexsc_core::requirement_verdict::validate_metrics;
 use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
@@ -122,7 +124,15 @@ impl PartialEq for Scenario {
 
 impl Scenario {
     fn new(origin: &str, inner: Result<flexsc_core::Scenario, ScenarioError>) -> PyResult<Self> {
-        Ok(Self { inner: inner.map_err(scenario_error)?, origin: origin.to_owned() })
+        let checked = inner.and_then(|inner| {
+            validate_metrics(&inner).map_err(|ConfigError { key, why }| ScenarioError::Key {
+                origin: origin.to_owned(),
+                key,
+                why,
+            })?;
+            Ok(inner)
+        });
+        Ok(Self { inner: checked.map_err(scenario_error)?, origin: origin.to_owned() })
     }
 
     fn read(document: &Document) -> PyResult<Self> {
@@ -142,6 +152,7 @@ impl Scenario {
         let read = aside(py, move |_| {
             let document = Document::load(&path)?;
             let inner = flexsc_core::Scenario::from_document(&document)?;
+            validate_metrics(&inner).map_err(|fault| document.at_key(&fault))?;
             Ok(Self { inner, origin: document.origin().to_owned() })
         })?;
         read.map_err(scenario_error)

@@ -4,6 +4,7 @@ use flexsc_core::ScenarioError;
 use flexsc_core::analysis::bound::{OutputBound, RangeRow};
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
+use flexsc_core::analysis::margins::SingularValues;
 use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
@@ -60,7 +61,14 @@ pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResu
         }
         MarginsFault::Unstable(unstable) => PyValueError::new_err(format!("{name}: {unstable}")),
     })?;
-    Ok(json!(margins).to_string())
+    let mut object = json!(margins);
+    let column = |of: fn(&SingularValues) -> f64| margins.stability.singular_values.iter().map(of).collect::<Vec<f64>>();
+    object["singular_values"] = json!({
+        "frequency": column(|at| at.frequency_rad_s),
+        "sensitivity": column(|at| at.sensitivity),
+        "complementary": column(|at| at.complementary),
+    });
+    Ok(object.to_string())
 }
 
 /// Keys of a scenario tuned for an objective within limits, as JSON, and the text of the tuned scenario.

@@ -39,15 +39,20 @@ pub struct OutputBounds {
     units: Units,
 }
 
-/// Computes the ranges of all claims of a scenario.
+/// Computes the ranges of all claims of a scenario, as the command does.
 pub fn results(scenario: &Scenario, args: &BoundArgs) -> Result<OutputBounds, CliError> {
+    claims(scenario, args.units.units)
+}
+
+/// Computes the ranges of all claims of a scenario.
+pub fn claims(scenario: &Scenario, units: Units) -> Result<OutputBounds, CliError> {
     let name = scenario.name.clone();
     let bounds = OutputBound::from_scenario(scenario).map_err(|fault| ScenarioError::Key {
         origin: name.clone(),
         key: fault.key,
         why: fault.why,
     })?;
-    Ok(OutputBounds { name, bounds, units: args.units.units })
+    Ok(OutputBounds { name, bounds, units })
 }
 
 pub fn run(args: &BoundArgs) -> Result<(), CliError> {
@@ -63,14 +68,31 @@ pub fn run(args: &BoundArgs) -> Result<(), CliError> {
         target.save(&found)?;
     }
     show(&found, None, args.scenario.json)?;
-    let failed = found.bounds.iter().filter(|bound| bound.fails()).count();
-    if failed > 0 {
-        return Err(CliError::Claims { failed, claims: found.bounds.len() });
-    }
-    Ok(())
+    found.require_proved()
 }
 
 impl OutputBounds {
+    /// Returns the claims with their ranges as JSON.
+    pub fn claims_json(&self) -> Json {
+        json!(self.bounds)
+    }
+
+    /// Prints the claims with their ranges.
+    pub fn print_claims(&self) {
+        for bound in &self.bounds {
+            self.print_bound(bound);
+        }
+    }
+
+    /// Fails if a claim is violated or undecided.
+    pub fn require_proved(&self) -> Result<(), CliError> {
+        let failed = self.bounds.iter().filter(|bound| bound.fails()).count();
+        if failed > 0 {
+            return Err(CliError::Claims { failed, claims: self.bounds.len() });
+        }
+        Ok(())
+    }
+
     /// Writes the scenario of the first witness.
     fn write_witness(&self, scenario: &Scenario, path: &Path, force: bool) -> Result<(), CliError> {
         let refused = |why: &str| CliError::Arguments(format!("-o {}: {why}", path.display()));
@@ -133,7 +155,7 @@ impl OutputBounds {
 
 impl Results for OutputBounds {
     fn json(&self) -> Vec<Json> {
-        vec![with_scenario_name(&self.name, json!({ "bounds": self.bounds }))]
+        vec![with_scenario_name(&self.name, json!({ "bounds": self.claims_json() }))]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -152,9 +174,7 @@ impl Results for OutputBounds {
 
     fn print(&self) -> Result<(), CliError> {
         say!("{}   {}", self.name, counted(self.bounds.len(), "claim"));
-        for bound in &self.bounds {
-            self.print_bound(bound);
-        }
+        self.print_claims();
         Ok(())
     }
 }

@@ -18,6 +18,7 @@ use flexsc_core::{ScenarioError, campaign::Design};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use crate::bound::{self, OutputBounds};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits};
@@ -95,6 +96,8 @@ impl WorstMargin {
 pub struct WorstCases {
     name: String,
     cases: Vec<(WorstCase, Option<AssessedRequirement>)>,
+    /// Guaranteed ranges of the claims of the scenario, if it has any.
+    bounds: Option<OutputBounds>,
     units: Units,
 }
 
@@ -129,9 +132,12 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     if let Some(margin) = args.margin {
         let search = MarginSearch { kind: margin.kind(), opened: args.opened.loop_break(), most_loops: most };
         let case = search.run(scenario, stop_requested).map_err(|error| fault(&name, error))?;
-        return Ok(WorstCases { name, cases: vec![(case, None)], units: args.units.units });
+        return Ok(WorstCases { name, cases: vec![(case, None)], bounds: None, units: args.units.units });
     }
     let quantities = args.quantities(scenario)?;
+    if quantities.is_empty() {
+        return Ok(WorstCases { name, cases: Vec::new(), bounds: args.claims(scenario)?, units: args.units.units });
+    }
     let origin = args.scenario.scenario.display().to_string();
     let campaign = Campaign::from_design(scenario.clone(), &origin, Design::default())?;
     let runs = u64::from(args.points) * quantities.len() as u64;
@@ -159,7 +165,8 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
             search.run(scenario, &origin, work, stop_requested).map_err(|error| fault(&name, error))?;
         cases.push((case, requirement));
     }
-    Ok(WorstCases { name, cases, units: args.units.units })
+    let bounds = args.claims(scenario)?;
+    Ok(WorstCases { name, cases, bounds, units: args.units.units })
 }
 
 /// Returns the error of a search in a scenario.
@@ -187,14 +194,22 @@ impl WorstArgs {
             return Ok(Vec::new());
         }
         let all = &scenario.study.requirements;
-        if all.is_empty() {
+        if all.is_empty() && scenario.written.bound.is_empty() {
             return Err(CliError::Arguments(format!(
-                "{}: has no [[requirement]]\n\nhint: `--metric NAME` or `--margin MARGIN` gives the quantity; \
+                "{}: has no [[requirement]] and no [[bound]]\n\nhint: `--metric NAME` or `--margin MARGIN` gives the quantity; \
                  `flexsc schema --metrics` lists the metrics",
                 scenario.name
             )));
         }
         Ok(all.iter().map(|requirement| RunQuantity::Requirement(requirement.name.clone())).collect())
+    }
+}
+
+impl WorstArgs {
+    /// Returns the guaranteed ranges of the claims of a scenario, which stand beside its requirements.
+    fn claims(&self, scenario: &Scenario) -> Result<Option<OutputBounds>, CliError> {
+        let stands = !scenario.written.bound.is_empty() && self.metric.is_none() && self.requirement.is_none();
+        stands.then(|| bound::claims(scenario, self.units.units)).transpose()
     }
 }
 
@@ -206,7 +221,7 @@ impl WorstCases {
         Ok(())
     }
 
-    /// Fails if a requirement is not met at its worst point.
+    /// Fails if a requirement is not met at its worst point, or a claim is not proved.
     fn require_met(&self) -> Result<(), CliError> {
         let (mut all, mut missed) = (0, Vec::new());
         for (case, requirement) in &self.cases {
@@ -217,7 +232,7 @@ impl WorstCases {
             }
         }
         if missed.is_empty() {
-            return Ok(());
+            return self.bounds.as_ref().map_or(Ok(()), OutputBounds::require_proved);
         }
         let (count, all) = (missed.len(), counted(all, "requirement"));
         let names = missed.join(", ");
@@ -281,7 +296,11 @@ impl Results for WorstCases {
             object
         };
         let cases: Vec<Json> = self.cases.iter().map(case).collect();
-        vec![with_scenario_name(&self.name, json!({ "cases": cases }))]
+        let mut object = json!({ "cases": cases });
+        if let Some(bounds) = &self.bounds {
+            object["bounds"] = bounds.claims_json();
+        }
+        vec![with_scenario_name(&self.name, object)]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -310,16 +329,21 @@ impl Results for WorstCases {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Some((first, _)) = self.cases.first() else { return Ok(()) };
         let points: usize = self.cases.iter().map(|(case, _)| case.points.len()).sum();
-        say!(
-            "{}   worst of {} over {}",
-            self.name,
-            counted(points, "point"),
-            counted(first.ranges.keys.len(), "uncertain key"),
-        );
+        if let Some((first, _)) = self.cases.first() {
+            say!(
+                "{}   worst of {} over {}",
+                self.name,
+                counted(points, "point"),
+                counted(first.ranges.keys.len(), "uncertain key"),
+            );
+        }
         for (case, requirement) in &self.cases {
             self.print_case(case, requirement.as_ref());
+        }
+        if let Some(bounds) = &self.bounds {
+            say!("{}   guaranteed ranges of [[bound]], in which no law acts", self.name);
+            bounds.print_claims();
         }
         Ok(())
     }

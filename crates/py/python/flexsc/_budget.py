@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _native as engine
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from flexsc._scenario import Scenario
 
 
@@ -95,6 +97,26 @@ class IndexBudget:
     >>> list(index.sources)
     ['biases', 'amplitudes', 'noise']
     """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the levels of the index by campaign, convolution and rule, with the limit.
+
+        Args:
+            ax: The axes; if omitted, those of a new figure.
+
+        Returns:
+            The axes: probability against the level, in the unit of the index.
+
+        Raises:
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> index.plot().get_xlabel()
+        'probability'
+        """
+        from flexsc._review_figures import index_budget
+
+        return index_budget(self, ax)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from flexsc import _native as engine
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+    from matplotlib.axes import Axes
 
     from flexsc._open_loop import Break
     from flexsc._scenario import Scenario
@@ -163,21 +164,62 @@ class StabilityMargins:
     >>> margins.disk <= margins.independent_disk <= min(each.disk for each in margins.loops.values())
     True
     """
-    delay: float
-    """Smallest additional delay (s) of all actuators together that makes the loop unstable; infinite if none does.
+    frequency: npt.NDArray[np.float64]
+    """Frequencies (rad/s) of the singular values, up to pi / `period`, which follow the resonances.
 
-    >>> margins.delay > 1.0
+    With several samples of the law in a period, the motion at a frequency also has its aliases.
+
+    >>> bool((margins.frequency[1:] > margins.frequency[:-1]).all())
+    True
+    """
+    sensitivity: npt.NDArray[np.float64]
+    """Largest singular value of the sensitivity S = (1 + L)^-1 of all signals together at each frequency.
+
+    >>> bool(margins.sensitivity.max() <= 1.0001 / margins.modulus)
+    True
+    """
+    complementary: npt.NDArray[np.float64]
+    """Largest singular value of the complementary sensitivity T = 1 - S at each frequency.
+
+    >>> margins.complementary.shape == margins.frequency.shape
+    True
+    """
+    delay: float
+    """Smallest additional delay (s) of all actuators that makes the loop unstable; infinite without one.
+
+    >>> margins.delay > 0.5
     True
     """
     settling: dict[str, float]
     """Time (s) in which all angles settle within 5 % after a step of the target about each axis.
 
-    It is the time at which the sum of the terms of all poles falls below the band, which the true time does not exceed
-    at the samples, and infinite if a term does not decay.
+    It is the time at which the sum of the terms of all poles falls below the band, which the true time does
+    not exceed at the samples, and infinite if a term does not decay.
 
     >>> list(margins.settling), max(margins.settling.values()) < 100.0
     (['roll', 'pitch', 'yaw'], True)
     """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the largest singular values of sensitivity and complementary sensitivity over frequency.
+
+        Args:
+            ax: The axes; if omitted, those of a new figure.
+
+        Returns:
+            The axes: frequency (rad/s) against the largest singular value (dB). A point marks the largest
+            one of S, the inverse of the modulus margin.
+
+        Raises:
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> margins.plot().get_xlabel()
+        'frequency (rad/s)'
+        """
+        from flexsc._review_figures import singular_values
+
+        return singular_values(self, ax)
 
 
 StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
@@ -185,6 +227,8 @@ StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
 
 def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
     """Return the margins of the loop of a scenario, opened at a point."""
+    import numpy as np
+
     found = json.loads(engine.margins_json(scenario._native, loop))
     several = found["samples"] > 1
     return StabilityMargins(
@@ -193,6 +237,9 @@ def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
         samples=found["samples"],
         spectral_radius=found["spectral_radius"],
         loops={each["signal"]: _loop(each, several) for each in found["loops"]},
+        frequency=np.array(found["singular_values"]["frequency"]),
+        sensitivity=np.array(found["singular_values"]["sensitivity"]),
+        complementary=np.array(found["singular_values"]["complementary"]),
         delay=float("inf") if found["common_delay_s"] is None else found["common_delay_s"],
         settling=_settling(found["settling"]),
         independent_disk=(found["independent_disk"] or {"alpha": float("nan")})["alpha"],

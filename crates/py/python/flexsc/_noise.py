@@ -55,8 +55,8 @@ class OutputNoise:
     density: Values
     """One-sided power spectral density at the samples (unit² per Hz), of shape (frequencies,).
 
-    >>> noise.density.shape
-    (2044,)
+    >>> noise.density.ndim
+    1
     """
     density_by_source: dict[str, Values]
     """Density from each source (unit² per Hz), each of shape (frequencies,).
@@ -67,8 +67,8 @@ class OutputNoise:
     cumulative_rms: Values
     """Rms up to each frequency, of shape (frequencies,).
 
-    >>> noise.cumulative_rms.shape
-    (2044,)
+    >>> noise.cumulative_rms.ndim
+    1
     """
     window: dict[str, float] | None
     """Rms over windows that begin at a sample of the law, if a window is given: `mpe`, of the mean over the
@@ -170,8 +170,8 @@ class NoiseSpectrum:
     frequency: Values
     """Frequencies of the densities (Hz), up to the Nyquist frequency, of shape (frequencies,).
 
-    >>> spectrum.frequency.shape
-    (2044,)
+    >>> spectrum.frequency.shape == noise.density.shape
+    True
     """
     sources: tuple[str, ...]
     """Sources of noise: keys of the scenario.

@@ -11,6 +11,7 @@ from flexsc import _native as engine
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
+    from matplotlib.axes import Axes
 
     from flexsc._scenario import Scenario
 
@@ -171,6 +172,26 @@ class OutputBound:
     >>> list(bound.rows)
     ['time', 'low', 'high']
     """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the guaranteed range over time, with the limits and the points at which it is attained.
+
+        Args:
+            ax: The axes; if omitted, those of a new figure.
+
+        Returns:
+            The axes: time (s) against the output, in its unit.
+
+        Raises:
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> bound.plot().get_ylabel()
+        'roll, elastic (rad)'
+        """
+        from flexsc._review_figures import output_range
+
+        return output_range(self, ax)
 
 
 OutputBound.__module__ = Witness.__module__ = "flexsc"

@@ -99,15 +99,15 @@ class ScenarioAnalysis(ScenarioFile):
         bandwidth: float | None = None,
         corners: bool = True,
     ) -> TunedScenario:
-        """Return the scenario with the keys that are best for an objective, within limits: `flexsc tune --vary`.
+        """Return the scenario with the best keys for an objective, within limits: `flexsc tune --vary`.
 
         The worst of all plants counts: the nominal one, and the corners of `[uncertain]`.
 
         Args:
             ranges: The least and the largest value of each key, such as `{"law.pd.k_d": (10.0, 400.0)}`.
-            objective: `"margin"`, the least modulus margin of all signals together, is maximised. `"settling"`,
-                the time after a step of the target in which the angles settle within 5 %, is minimised, and so
-                is the rms of the pointing index of the `[[requirement]]` with another name.
+            objective: `"margin"`, the least modulus margin of all signals together, is maximised.
+                `"settling"`, the time after a step of the target in which the angles settle within 5 %, is
+                minimised, and so is the rms of the pointing index of the `[[requirement]]` of another name.
             keep: Limits that all plants keep: `"margin>=0.5"`, `"settling<=60"` (s), or the name of a
                 `[[requirement]]` with its own limit.
             loop: The point at which the loops are opened.
@@ -120,10 +120,10 @@ class ScenarioAnalysis(ScenarioFile):
         True
 
         Raises:
-            ScenarioError: A key cannot be tuned, the loop is not linear, or there is no requirement of the name: the
-                key, and the reason.
-            ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of `objective` or
-                `keep` is not one of these.
+            ScenarioError: A key cannot be tuned, the loop is not linear, or there is no requirement of the name:
+                the key, and the reason.
+            ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of `objective`
+                or `keep` is not one of these.
         """
         from flexsc._structured_tuning import tune
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _native as engine
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from flexsc._open_loop import Break
     from flexsc._scenario import Scenario
 
@@ -64,10 +66,10 @@ class TunedPlant:
 
 @dataclass(frozen=True)
 class TunedMeasure:
-    """Quantity besides the margins that a tuning minimised or limited, with its largest value over the plants.
+    """Quantity besides the margins that a tuning minimised or limited, with its largest value of all plants.
 
     >>> scenario = flexsc.Scenario.example("attitude-hold")
-    >>> ranges = {"law.attitude.bandwidth": (0.05, 0.3)}
+    >>> ranges = {"law.per_axis.roll.pd.k_d": (100.0, 900.0)}
     >>> measure = scenario.tune(ranges, objective="settling", keep=["margin>=0.5"]).measures["settling"]
     >>> measure.value < measure.before
     True
@@ -86,7 +88,7 @@ class TunedMeasure:
     True
     """
     unit: str
-    """Unit.
+    """Unit of the values and of the limit.
 
     >>> measure.unit
     's'
@@ -162,6 +164,26 @@ class TunedScenario:
     >>> tuned.steps > 8
     True
     """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the modulus margin of each plant before and after tuning.
+
+        Args:
+            ax: The axes; if omitted, those of a new figure.
+
+        Returns:
+            The axes: the plants, sorted by their margin before, against the margin.
+
+        Raises:
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> tuned.plot().get_ylabel()
+        'modulus margin'
+        """
+        from flexsc._review_figures import tuned_margins
+
+        return tuned_margins(self, ax)
 
 
 TunedScenario.__module__ = TunedMeasure.__module__ = TunedPlant.__module__ = "flexsc"

@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Literal
 from flexsc import _native as engine
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     import numpy.typing as npt
+    from matplotlib.axes import Axes
 
     from flexsc._open_loop import Break
     from flexsc._scenario import Scenario
@@ -105,6 +108,27 @@ class WorstCase:
     def __repr__(self) -> str:
         """Return the quantity with its values."""
         return f"WorstCase(quantity={self.quantity!r}, value={self.value:.4g}, nominal={self.nominal:.4g})"
+
+    def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+        """Draw the value at each point over each uncertain key, with the worst point in red.
+
+        Args:
+            axes: The axes, one for each key; if omitted, those of a new figure.
+
+        Returns:
+            The axes: the key against the quantity, in its unit.
+
+        Raises:
+            ValueError: The number of axes is not that of the keys.
+            ImportError: Matplotlib is not installed.
+
+        >>> import matplotlib; matplotlib.use("agg")
+        >>> [ax.get_xlabel()[-13:] for ax in worst.plot()]
+        ['[0].frequency', '[1].frequency']
+        """
+        from flexsc._review_figures import worst_points
+
+        return worst_points(self, axes)
 
 
 WorstCase.__module__ = "flexsc"
