@@ -69,6 +69,7 @@ mod rivals;
 mod saturation;
 mod several_actuators;
 mod several_sensors;
+mod linear_budgets;
 mod settling_times;
 mod shaped;
 mod spectra;

@@ -7,13 +7,15 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use flexsc_core::analysis::budget::{CampaignBudget, INTERPRETATIONS, LEVELS, linear_noise};
+use flexsc_core::analysis::budget::{
+    CampaignBudget, ErrorSources, INTERPRETATIONS, LEVELS, linear_noise, linear_sources,
+};
 use flexsc_core::analysis::noise::NoisyLoop;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::IndexRecord;
 use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
-use flexsc_core::scenario::{RequirementSource, Scenario};
+use flexsc_core::scenario::{Interpretation, RequirementSource, Scenario};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -176,6 +178,10 @@ impl CampaignSetup {
             let is_signed = error.is_component(scenario.axis_count());
             budgets.push(CampaignBudget {
                 linear_noise: noisy.as_ref().and_then(|noisy| linear_noise(noisy, error)),
+                linear_sources: noisy
+                    .as_ref()
+                    .filter(|_| is_signed)
+                    .and_then(|noisy| linear_sources(scenario, noisy, error)),
                 ..CampaignBudget::new(requirement.clone(), &values, is_signed)
             });
         }
@@ -198,17 +204,22 @@ impl Results for Budgets {
                 }
                 object
             };
-            let sources = budget
-                .sources
-                .as_ref()
-                .map(|of| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise }));
+            let sources =
+                |of: &ErrorSources| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise });
+            let linear_levels = budget.linear_sources.as_ref().map(|of| {
+                LEVELS.map(|level| {
+                    json!({ "level": level, "convolution": of.level(level, Interpretation::Mixed) })
+                })
+            });
             json!({
                 "name": budget.requirement.name,
                 "description": budget.requirement.description(),
                 "unit": budget.requirement.unit,
                 "limit": budget.requirement.limit,
-                "sources": sources,
+                "sources": budget.sources.as_ref().map(sources),
                 "linear_noise": budget.linear_noise,
+                "linear_sources": budget.linear_sources.as_ref().map(sources),
+                "linear_levels": linear_levels,
                 "levels": LEVELS.iter().zip(&budget.levels).map(level).collect::<Vec<_>>(),
             })
         };
@@ -269,6 +280,16 @@ impl Budgets {
         }
         if let Some(noise) = budget.linear_noise {
             say!("  noise of the linear loop at rest: {} rms", digits(noise * factor));
+        }
+        if let Some(sources) = &budget.linear_sources {
+            let deviation = digits(factor * sources.biases.iter().sum::<f64>());
+            let sines: Vec<String> = sources.amplitudes.iter().map(|value| digits(value * factor)).collect();
+            let sines = if sines.is_empty() { "none".to_owned() } else { sines.join(", ") };
+            let levels = LEVELS.map(|level| digits(factor * sources.level(level, Interpretation::Mixed)));
+            say!(
+                "  linear loop under its disturbances: deviation {deviation}, sines {sines}; with the noise {} (mixed)",
+                levels.join(", ")
+            );
         }
         let mut rows = vec![
             ["level", "temporal", "", "", "ensemble", "", "", "mixed", "", ""].map(str::to_owned).to_vec(),

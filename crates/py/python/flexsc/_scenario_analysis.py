@@ -120,10 +120,10 @@ class ScenarioAnalysis(ScenarioFile):
         True
 
         Raises:
-            ScenarioError: A key cannot be tuned, the loop is not linear, or there is no requirement of the name:
-                the key, and the reason.
-            ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of `objective`
-                or `keep` is not one of these.
+            ScenarioError: A key cannot be tuned, the loop is not linear, or there is no requirement of the
+                name: the key, and the reason.
+            ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of
+                `objective` or `keep` is not one of these.
         """
         from flexsc._structured_tuning import tune
 

@@ -25,6 +25,8 @@ pub struct CampaignBudget {
     pub magnitudes: Vec<f64>,
     /// Rms of the index under the noise of the linear loop; `None` without one.
     pub linear_noise: Option<f64>,
+    /// Sources of an error about one axis by the linear loop; `None` without one.
+    pub linear_sources: Option<ErrorSources>,
 }
 
 /// Level of the magnitude of an index at a probability, in three ways.
@@ -65,7 +67,7 @@ impl CampaignBudget {
             })
         };
         let levels = LEVELS.into_iter().map(level).collect();
-        Self { requirement, sources, levels, magnitudes, linear_noise: None }
+        Self { requirement, sources, levels, magnitudes, linear_noise: None, linear_sources: None }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::scenario::{ErrorAxis, IndexWindow, SampledError, SampledQuantity, Win
 /// Returns the rms of the index of an error under the noise of the loop, of the norm if the error has several components;
 /// `None` if the loop has no such output, or for a window that it does not have.
 pub fn linear_noise(noisy: &NoisyLoop, error: &SampledError) -> Option<f64> {
-    let outputs: Vec<usize> = names(error).iter().filter_map(|name| noisy.output(name)).collect();
+    let outputs: Vec<usize> = output_names(error).iter().filter_map(|name| noisy.output(name)).collect();
     if outputs.is_empty() {
         return None;
     }
@@ -17,7 +17,7 @@ pub fn linear_noise(noisy: &NoisyLoop, error: &SampledError) -> Option<f64> {
 }
 
 /// Returns the names that the outputs of an error may have: about each axis, and of a body with one angle.
-fn names(error: &SampledError) -> Vec<String> {
+pub(super) fn output_names(error: &SampledError) -> Vec<String> {
     let each = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(AXES);
     let chosen = each.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
     let (single, about): (&str, Vec<String>) = match &error.quantity {

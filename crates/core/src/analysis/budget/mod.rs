@@ -8,12 +8,14 @@
 mod campaign_budget;
 mod convolution;
 mod linear_noise;
+mod linear_sources;
 
 use crate::scenario::Interpretation;
 
 pub use campaign_budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS};
 pub use convolution::Sum;
 pub use linear_noise::linear_noise;
+pub use linear_sources::linear_sources;
 
 /// Levels at which a budget is stated: those of one, two and three standard deviations of a Gaussian number.
 pub const LEVELS: [f64; 3] = [0.683, 0.955, 0.997];

@@ -78,6 +78,18 @@ impl<'a> LineLoop<'a> {
         SineLoad { sine: DVector::zeros(cosine.len()), cosine }
     }
 
+    /// Returns the load of torques amplitude sin(w t + phase) (N m, rad), each with the axis of the actuators about which it
+    /// acts.
+    pub fn torques(&self, torques: &[(usize, f64, f64)]) -> SineLoad {
+        let body = &self.parts.body.b;
+        let mut load = SineLoad { cosine: DVector::zeros(body.nrows()), sine: DVector::zeros(body.nrows()) };
+        for (axis, amplitude, phase) in torques {
+            load.cosine += body.column(*axis) * (amplitude * libm::sin(*phase));
+            load.sine += body.column(*axis) * (amplitude * libm::cos(*phase));
+        }
+        load
+    }
+
     /// Computes the lines of some outputs under each load alone, all of one frequency (rad/s).
     ///
     /// # Errors
