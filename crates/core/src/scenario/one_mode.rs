@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use flexsc_control::actuator::AssignedActuator;
-use flexsc_control::law::LawKind;
-use flexsc_formats::document::ScenarioError;
+use flexsc_control::operation::ModeTarget;
+use flexsc_formats::document::{ConfigError, ScenarioError};
 
 use super::{Scenario, ScenarioSpec};
 
@@ -25,6 +25,15 @@ impl Scenario {
         };
         self.clone().with(|written| written.keep_mode(index))
     }
+
+    /// Returns the error of an analysis of one loop, for a scenario with several, one in each mode.
+    pub fn mode_choice_fault(&self) -> Option<ConfigError> {
+        let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
+        (!names.is_empty()).then(|| {
+            let why = format!("has several loops, one in each mode: choose one with `--mode`: {}", names.join(", "));
+            ConfigError::new("mode", why)
+        })
+    }
 }
 
 impl ScenarioSpec {
@@ -33,9 +42,8 @@ impl ScenarioSpec {
         let in_use = self.sensors_in_use(index);
         let has_targets = self.has_mode_targets();
         let mode = self.mode[index].clone();
-        let law: LawKind = mode.law;
         if has_targets {
-            self.target = mode.target.iter().map(flexsc_control::operation::ModeTarget::at_start).collect();
+            self.target = mode.target.iter().map(ModeTarget::at_start).collect();
         }
         if let Some(names) = &mode.actuators {
             let acts = |_: usize, of: &AssignedActuator| {
@@ -44,7 +52,7 @@ impl ScenarioSpec {
             self.actuator.retain(acts);
         }
         self.sensor.retain(|place, _| in_use[place]);
-        self.law = law;
+        self.law = mode.law;
         self.mode.clear();
         self.mode_targets.clear();
         self.keep_uncertain(index, &in_use);

@@ -130,6 +130,9 @@ impl<'a> LoopParts<'a> {
         scenario: &'a Scenario,
         opened: LoopBreak,
     ) -> Result<Self, ConfigError> {
+        if let Some(fault) = scenario.mode_choice_fault() {
+            return Err(fault);
+        }
         let model = LinearModel::from_scenario(scenario, 0.0)?;
         let axes = model.inputs.len();
         let body = BodyMatrices::new(model)?;
@@ -212,11 +215,6 @@ impl AxisLaws {
 
 /// Returns the law about three axes together, or those about each axis.
 fn linear_laws(scenario: &Scenario, axes: usize) -> Result<Vec<LinearLaw>, ConfigError> {
-    if !scenario.mode.is_empty() {
-        let names: Vec<String> = scenario.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
-        let why = format!("has several loops, one in each mode: choose one with `--mode`, {}", names.join(", "));
-        return Err(ConfigError::new("mode", why));
-    }
     let together = scenario.law.linear_about_three_axes();
     if let Some(law) = together.map_err(|fault| fault.within(&scenario.law.key_about(0)))? {
         return Ok(vec![law]);
