@@ -63,6 +63,7 @@ mod manoeuvres;
 mod margins;
 mod objectives;
 mod open_loops;
+mod operation;
 mod plants;
 mod relay;
 mod rivals;

@@ -60,6 +60,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "rotation-sine",
     "rotation-spin-up",
     "rotation-thrusters",
+    "safe-mode",
     "shaped-slew",
     "slew-wheel-lqg",
     "station-keeping",

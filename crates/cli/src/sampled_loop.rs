@@ -58,7 +58,7 @@ pub fn sampled(scenario: &Scenario) -> Result<(SampledLoop, &Pd), CliError> {
 }
 
 fn refused(name: &str) -> impl FnOnce(ConfigError) -> ScenarioError + '_ {
-    move |ConfigError { key, why }| ScenarioError::Key { origin: name.to_owned(), key, why }
+    move |ConfigError { key, why, .. }| ScenarioError::Key { origin: name.to_owned(), key, why }
 }
 
 /// Returns an error unless a number is positive.

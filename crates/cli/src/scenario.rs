@@ -20,6 +20,9 @@ pub struct ScenarioArgs {
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Mode of operation that acts throughout, of a scenario with several
+    #[arg(long, value_name = "NAME")]
+    pub mode: Option<String>,
     /// Print one JSON object to stdout
     #[arg(long)]
     pub json: bool,
@@ -28,7 +31,15 @@ pub struct ScenarioArgs {
 impl ScenarioArgs {
     /// Loads the scenario.
     pub fn load(&self) -> Result<Scenario, CliError> {
-        load(&self.scenario, &self.set, None)
+        self.in_mode(load(&self.scenario, &self.set, None)?)
+    }
+
+    /// Returns a scenario in the chosen mode of operation, if one is chosen.
+    pub fn in_mode(&self, scenario: Scenario) -> Result<Scenario, CliError> {
+        Ok(match &self.mode {
+            Some(name) => scenario.in_mode(name)?,
+            None => scenario,
+        })
     }
 }
 

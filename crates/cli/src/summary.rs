@@ -1,6 +1,7 @@
 //! Summary of a run for people.
 
 mod one_axis;
+mod operation;
 mod three_axes;
 
 use std::fmt::Write as _;
@@ -47,6 +48,7 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
         summary.rotation();
         summary.adaptation();
     }
+    summary.operation();
     requirements::print(&summary.requirements, units);
     for warning in warnings(scenario, metrics) {
         say!("  warning        {warning}");

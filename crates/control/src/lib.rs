@@ -14,6 +14,7 @@ pub mod law;
 pub mod linear_block;
 pub mod offers;
 pub mod one_or_many;
+pub mod operation;
 pub mod orientation;
 pub mod part;
 pub mod requirement;

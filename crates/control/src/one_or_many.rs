@@ -24,6 +24,15 @@ impl<T> OneOrMany<T> {
         Self { parts: vec![part], listed: false }
     }
 
+    /// Keeps the parts, each with its index, that a test selects; all of them if it selects none.
+    pub fn retain(&mut self, keeps: impl Fn(usize, &T) -> bool) {
+        let kept: Vec<bool> = self.parts.iter().enumerate().map(|(index, part)| keeps(index, part)).collect();
+        if kept.contains(&true) {
+            let mut kept = kept.into_iter();
+            self.parts.retain(|_| kept.next().unwrap_or(true));
+        }
+    }
+
     /// Returns the key of a part: `name` for a single part, else with its index.
     pub fn key(&self, name: &str, index: usize) -> String {
         if self.listed { format!("{name}[{index}]") } else { name.to_owned() }

@@ -56,6 +56,10 @@ metrics! {
         "Arguments of the cycle's Floquet multipliers, in the order of cycle_multipliers";
     CYCLE_MULTIPLIER_MAX = "cycle_multiplier_max", "",
         "Largest absolute value among the multipliers: below 1 the cycle is stable; null without a cycle";
+    MODE_TIMES = "mode_times_s", "s", "Time in each mode of operation, in the order of the scenario";
+    MODE_STARTS = "mode_starts_s", "s",
+        "First time at which each mode of operation begins, in the order of the scenario; null for a mode that never does";
+    MODE_CHANGES = "mode_changes", "", "Number of changes of the mode of operation";
     ARRIVAL_ANGLE = "arrival_angle_error_rad", "rad", "Error of the hub angle at the end of the manoeuvre";
     ARRIVAL_RATE = "arrival_rate_error_rad_s", "rad/s", "Error of the hub rate at the end of the manoeuvre";
     ANGLE_RESIDUAL = "angle_residual_rad", "rad",

@@ -32,7 +32,7 @@ fn allow(
 }
 
 fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(SampledLoop, &Pd, SettlingWindow, Scaling)> {
-    let refused = |ConfigError { key, why }: ConfigError| {
+    let refused = |ConfigError { key, why, .. }: ConfigError| {
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
     };

@@ -37,6 +37,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),
         ("/faults", !scenario.failures().is_empty()),
+        ("/mode", !scenario.mode.is_empty()),
         (
             "/thrusters",
             scenario

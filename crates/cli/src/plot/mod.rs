@@ -27,6 +27,7 @@ mod line_of_sight;
 mod magnetorquers;
 mod manoeuvre_torque;
 mod modes;
+mod operation;
 mod motion;
 mod orbit;
 mod outputs;
@@ -261,7 +262,7 @@ fn drawn_over(
             Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((kind.name(), failures::shaded(figure, &story)))
+        Some((kind.name(), failures::shaded(operation::shaded(figure, &story), &story)))
     });
     let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
     let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));

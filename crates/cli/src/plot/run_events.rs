@@ -5,7 +5,7 @@ use std::path::Path;
 
 use flexsc_core::campaign::CommandLog;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::record::{Columns, Log};
+use flexsc_core::record::{Column, Columns, Log};
 use flexsc_core::{Scenario, Simulation};
 
 use super::columns::{labels, rows, topics};
@@ -34,6 +34,15 @@ pub struct RunEvents {
     pub objective: Vec<WindowMean>,
     /// Steps of the adaptation.
     pub steps: Vec<AdaptationStep>,
+    /// Starts of the modes of operation.
+    pub modes: Vec<ModeStart>,
+}
+
+/// Start of a mode of operation.
+pub struct ModeStart {
+    pub time: f64,
+    /// Index of the mode in the scenario.
+    pub index: usize,
 }
 
 /// Switching of the law.
@@ -83,6 +92,13 @@ impl RunEvents {
         let decisions = labels(&adaptation, "decision");
         let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
         let steps = steps.map(|([time, gain], decision)| AdaptationStep { time, decision, gain }).collect();
+        let [mode] = topics(log, ["/mode"])?;
+        let indices = match mode.get("index") {
+            Some(Column::Counts(indices)) => indices.as_slice(),
+            _ => &[],
+        };
+        let starts = rows(&mode, ["time_s"]).zip(indices);
+        let modes = starts.map(|([time], index)| ModeStart { time, index: *index as usize }).collect();
         let reported = metadata.get("time_s").and_then(|time| time.parse().ok());
         let last = switchings
             .last()
@@ -95,7 +111,7 @@ impl RunEvents {
         };
         let commanded = log.commands().map_or(Some(CommandLog::default()), CommandLog::parse);
         let commanded = commanded.ok_or_else(|| unusable(path, "holds commands that are none".to_owned()))?;
-        Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps })
+        Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps, modes })
     }
 
     /// Returns the motion from a full log, or else from the repeated run, which keeps the whole motion only up to

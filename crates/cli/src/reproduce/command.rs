@@ -43,7 +43,7 @@ impl PageCommand {
 
 /// Returns the scenario of an analysis.
 pub fn analysed(args: &scenario::ScenarioArgs) -> Result<Scenario, CliError> {
-    shipped_scenarios::load(&args.scenario, &args.set, None)
+    args.in_mode(shipped_scenarios::load(&args.scenario, &args.set, None)?)
 }
 
 /// Splits a command into words as a shell does: at blanks, except within apostrophes.

@@ -115,7 +115,7 @@ impl StructuredArgs {
         };
         let name = scenario.name.clone();
         let found = tuning.run(scenario).map_err(|fault| match fault {
-            TuningFault::Key(ConfigError { key, why }) => {
+            TuningFault::Key(ConfigError { key, why, .. }) => {
                 CliError::from(ScenarioError::Key { origin: name.clone(), key, why })
             }
             fault => CliError::Arguments(format!("{name}: {fault}")),

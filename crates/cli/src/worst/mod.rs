@@ -172,7 +172,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
 /// Returns the error of a search in a scenario.
 pub fn fault(name: &str, fault: WorstCaseFault) -> CliError {
     match fault {
-        WorstCaseFault::Key(ConfigError { key, why }) => {
+        WorstCaseFault::Key(ConfigError { key, why, .. }) => {
             ScenarioError::Key { origin: name.to_owned(), key, why }.into()
         }
         WorstCaseFault::Scenario(error) => error.into(),

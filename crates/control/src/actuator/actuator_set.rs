@@ -25,6 +25,8 @@ pub struct ActuatorSet {
     demands: Vec<Demand>,
     /// For each stage of the law, its start and which actuators execute demands; empty if all do throughout.
     stages: Vec<(Instant, Vec<bool>)>,
+    /// Index of the mode of operation, if there are modes, whose stage is the one of this index.
+    mode: Option<usize>,
 }
 
 /// Returns the share of a demand. Magnetic moments are not shared: they are for magnetorquers alone.
@@ -46,6 +48,7 @@ impl ActuatorSet {
             unloader: None,
             demands: vec![Demand::Torque(0.0); axes],
             stages: Vec::new(),
+            mode: None,
         };
         for (kind, task, actuator) in members {
             match task {
@@ -70,9 +73,19 @@ impl ActuatorSet {
         Self { stages, ..self }
     }
 
+    /// Limits the execution of demands to some of the actuators in each mode of operation, from the first mode on.
+    #[must_use]
+    pub fn in_modes(self, modes: Vec<Vec<bool>>) -> Self {
+        let stages = modes.into_iter().map(|executing| (Instant::START, executing)).collect();
+        Self { stages, mode: Some(0), ..self }
+    }
+
     /// Returns true if an actuator executes demands at an instant.
     fn executes(&self, index: usize, now: Instant) -> bool {
-        let stage = self.stages.iter().rfind(|(from, _)| *from <= now);
+        let stage = match self.mode {
+            Some(mode) => self.stages.get(mode),
+            None => self.stages.iter().rfind(|(from, _)| *from <= now),
+        };
         stage.is_none_or(|(_, executing)| executing[index])
     }
 
@@ -157,6 +170,7 @@ impl Actuator for ActuatorSet {
                 self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
                 self.unloader.iter_mut().for_each(|unloader| unloader.actuator.update(now, event));
             }
+            ActuatorEvent::Mode(mode) => self.mode = self.mode.map(|_| mode),
             ActuatorEvent::Rotors(_) => {
                 self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
             }

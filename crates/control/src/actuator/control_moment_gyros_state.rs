@@ -234,7 +234,7 @@ impl Actuator for ControlMomentGyrosState {
         match event {
             ActuatorEvent::CounterTorque(torque) => self.against = torque,
             ActuatorEvent::Due(_) => self.serve(now),
-            ActuatorEvent::MagneticField(_) | ActuatorEvent::Rotors(_) => {}
+            ActuatorEvent::MagneticField(_) | ActuatorEvent::Rotors(_) | ActuatorEvent::Mode(_) => {}
         }
     }
 

@@ -15,6 +15,8 @@ pub enum ActuatorEvent<'a> {
     CounterTorque(Vector),
     /// State of the rotors in bearings, as computed by the motion.
     Rotors(&'a [RotorObservation]),
+    /// Index of the mode of operation from now on, before its first commands.
+    Mode(usize),
 }
 
 /// Effort of an actuator about an axis.

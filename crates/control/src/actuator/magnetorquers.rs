@@ -171,7 +171,7 @@ impl Actuator for MagnetorquersState {
                     }
                 }
             }
-            ActuatorEvent::CounterTorque(_) | ActuatorEvent::Rotors(_) => {}
+            ActuatorEvent::CounterTorque(_) | ActuatorEvent::Rotors(_) | ActuatorEvent::Mode(_) => {}
         }
     }
 

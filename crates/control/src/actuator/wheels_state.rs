@@ -321,7 +321,7 @@ impl Actuator for WheelsState {
                 self.observations.clear();
                 self.observations.extend_from_slice(rotors);
             }
-            ActuatorEvent::MagneticField(_) => {}
+            ActuatorEvent::MagneticField(_) | ActuatorEvent::Mode(_) => {}
         }
     }
 

@@ -83,21 +83,26 @@ impl AttitudeProfile {
                     target.slew(attitudes, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
                 SegmentPath::Shaped(turn)
             } else if target.table.is_empty() {
-                let to = target.attitude();
-                let rate_limit = target.rate_limit.map_or(f64::INFINITY, Positive::get);
-                SegmentPath::Turn(target.acceleration.map_or_else(
-                    || Slew::instantaneous(to),
-                    |acceleration| {
-                        let from = profile.seen_from(frame, begins);
-                        Slew::new([from, to], acceleration.get(), rate_limit, target.profile)
-                    },
-                ))
+                SegmentPath::Turn(turn_to(target, || profile.seen_from(frame, begins)))
             } else {
                 SegmentPath::Table(AttitudeTable::new(&target.table))
             };
             profile.legs.push(ProfileSegment { begins, frame, path });
         }
         Ok(profile)
+    }
+
+    /// Adds a target from `now` on, later than all others; it has no planned command and no table.
+    pub fn enter(&mut self, target: &AttitudeTarget, now: Instant) {
+        let frame = target.target_frame();
+        let from = self.seen_from(frame, now);
+        let path = SegmentPath::Turn(turn_to(target, || from));
+        self.legs.push(ProfileSegment { begins: now, frame, path });
+    }
+
+    /// Returns the part of the Sun's disc in view at an instant.
+    pub fn sunlight(&self, now: Instant) -> f64 {
+        self.sky.part_in_view(now.seconds())
     }
 
     /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
@@ -203,6 +208,16 @@ impl AttitudeProfile {
             }
         }
         None
+    }
+}
+
+/// Returns the turn to a target from an attitude in its frame.
+fn turn_to(target: &AttitudeTarget, from: impl FnOnce() -> Quaternion<f64>) -> Slew {
+    let to = target.attitude();
+    let rate_limit = target.rate_limit.map_or(f64::INFINITY, Positive::get);
+    match target.acceleration {
+        None => Slew::instantaneous(to),
+        Some(acceleration) => Slew::new([from(), to], acceleration.get(), rate_limit, target.profile),
     }
 }
 

@@ -146,6 +146,14 @@ impl Controllers {
         first
     }
 
+    /// Selects the laws of a mode, which decide at `now`.
+    pub fn enter_mode(&mut self, now: Instant, mode: usize) {
+        for held in &mut self.axes {
+            held.law.enter_mode(mode);
+            held.hold.until = Some(now);
+        }
+    }
+
     /// Sets the state of the single relay law, which starts at `now`, after a push that started at `pushed`.
     pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) {
         let [held] = &mut self.axes[..] else { return };

@@ -183,6 +183,9 @@ pub trait Law: Part {
         ReferenceNeeds::default()
     }
 
+    /// Selects the law of a mode, which starts without a past at its next decision.
+    fn enter_mode(&mut self, _mode: usize) {}
+
     /// Returns the relay law, if the law is one.
     fn as_relay(&mut self) -> Option<&mut Relay> {
         None

@@ -67,13 +67,23 @@ impl LawKind {
         if let Self::PhasePlane(law) = self { law.damping.as_ref() } else { None }
     }
 
+    /// Returns true for the laws of modes of operation, which are written in the modes.
+    pub fn is_of_modes(&self) -> bool {
+        matches!(self, Self::Stages(laws) if laws.are_modes())
+    }
+
+    /// Returns the key of the law: `law.pd` and the like, or `mode` for the laws of modes.
+    pub fn key(&self) -> String {
+        if self.is_of_modes() { "mode".to_owned() } else { format!("law.{}", self.kind()) }
+    }
+
     /// Returns the key of the law about an axis.
     pub fn key_about(&self, axis: usize) -> String {
         match self {
             Self::PerAxis(laws) => {
                 format!("law.per_axis.{}.{}", flexsc_numerics::attitude::AXES[axis], laws.about(axis).kind())
             }
-            law => format!("law.{}", law.kind()),
+            law => law.key(),
         }
     }
 

@@ -9,7 +9,7 @@ impl LawKind {
     pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
         let is_per_axis = matches!(self, Self::PerAxis(_));
         if is_per_axis {
-            needs.set_part(format!("law.{}", self.kind()));
+            needs.set_part(self.key());
             offers.require_three_axes(needs, Rule::AxisLaws, "", "");
         }
         let observes = offers.estimator.is_some_and(|of| of.dominant_mode || of.is_assessed_only);

@@ -15,14 +15,20 @@ use super::{
 use crate::actuator::ActuatorName;
 use crate::custom::PartError;
 use crate::offers::{LawOffers, LawPlace, Offers};
+use crate::operation::OperatingMode;
 use crate::part::{Part, ReportContext};
 use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
-/// Laws that act one after another.
+/// Laws that act one after another, or in modes of operation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Stages(Vec<Stage>);
+pub struct Stages {
+    list: Vec<Stage>,
+    /// True for the laws of modes, which a sequence of modes selects.
+    #[serde(skip)]
+    of_modes: bool,
+}
 
 /// A law that acts from a given time on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -51,56 +57,79 @@ impl Stage {
 }
 
 impl Stages {
-    /// Returns the stages in the order of their start times.
+    /// Returns the laws of modes of operation.
+    pub fn from_modes(modes: &[OperatingMode]) -> Self {
+        let stage = |mode: &OperatingMode| Stage {
+            from: Time::ZERO,
+            law: mode.law.clone(),
+            actuators: mode.actuators.clone(),
+        };
+        Self { list: modes.iter().map(stage).collect(), of_modes: true }
+    }
+
+    /// Returns true for the laws of modes.
+    pub fn are_modes(&self) -> bool {
+        self.of_modes
+    }
+
+    /// Returns the stages in the order of their start times, or of the modes.
     pub fn as_slice(&self) -> &[Stage] {
-        &self.0
+        &self.list
     }
 
     /// Creates the run-time state of the laws about an axis, each with the authority of the actuators of its stage.
     pub fn start_with(&self, authorities: &[Authority]) -> Box<dyn Law> {
-        let laws = self.0.iter().zip(authorities);
+        let laws = self.list.iter().zip(authorities);
         let stages = laws.map(|(stage, authority)| (stage.begins(), stage.law.start(authority)));
-        let places = (0..self.0.len()).map(|index| self.place(index)).collect();
-        Box::new(StagesState { stages: stages.collect(), active: 0, places, tuned: None })
+        let stages: Vec<_> = stages.collect();
+        let places = (0..self.list.len()).map(|index| self.place(index)).collect();
+        let unused = stages.iter().filter(|_| self.of_modes).map(|(_, law)| law.clone()).collect();
+        let mode = self.of_modes.then_some(0);
+        Box::new(StagesState { stages, active: 0, places, tuned: None, unused, mode, restarts: false })
     }
 
     /// Iterates over the laws.
     pub fn laws(&self) -> impl Iterator<Item = &LawKind> {
-        self.0.iter().map(|stage| &stage.law)
+        self.list.iter().map(|stage| &stage.law)
     }
 
     /// Returns the key prefix of the law of a stage: `[0].law.pd.` and the like.
     fn place(&self, index: usize) -> String {
-        format!("[{index}].law.{}.", self.0[index].law.kind())
+        format!("[{index}].law.{}.", self.list[index].law.kind())
     }
 
     /// Returns the start time of the last stage.
     pub fn last_start(&self) -> Instant {
-        self.0.last().map_or(Instant::START, Stage::begins)
+        self.list.last().map_or(Instant::START, Stage::begins)
     }
 
     /// Checks the stages; returns a key within them and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
-        let Some(first) = self.0.first() else {
+        let Some(first) = self.list.first() else {
             return Some(ConfigError::new("", "must have one law or more, got none"));
         };
-        if first.from != Time::ZERO {
+        if !self.of_modes && first.from != Time::ZERO {
             let why = format!("must be 0, or left out, for the first, got {}", first.from.get());
             return Some(ConfigError::new("[0].from", why));
         }
-        if let Some(late) = self.0.windows(2).position(|pair| pair[0].from >= pair[1].from) {
-            let why = format!("must be later than the one before, got {}", self.0[late + 1].from.get());
+        let late = self.list.windows(2).position(|pair| pair[0].from >= pair[1].from);
+        if let Some(late) = late.filter(|_| !self.of_modes) {
+            let why = format!("must be later than the one before, got {}", self.list[late + 1].from.get());
             return Some(ConfigError::new(format!("[{}].from", late + 1), why));
         }
         let inertia = self.laws().find_map(LawKind::inertia);
-        self.0.iter().enumerate().find_map(|(index, stage)| {
+        self.list.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
             match &stage.law {
                 law if law.inertia().is_some_and(|own| Some(own) != inertia) => {
-                    Some(ConfigError::new(format!("{key}.inertia"), "must be that of the stages before"))
+                    Some(ConfigError::new(format!("{key}.inertia"), "must be that of the laws before"))
                 }
                 law if law.offers().is_three_axis => {
-                    let why = "acts about three axes together: a stage has a law about each axis";
+                    let why = if self.of_modes {
+                        "acts about three axes together: a mode has a law about each axis"
+                    } else {
+                        "acts about three axes together: a stage has a law about each axis"
+                    };
                     Some(ConfigError::new(key, why))
                 }
                 law @ (LawKind::BDot(_)
@@ -126,7 +155,7 @@ impl LawSpec for Stages {
     }
 
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
-        self.start_with(&vec![*authority; self.0.len()])
+        self.start_with(&vec![*authority; self.list.len()])
     }
 
     /// Returns the shortest period of the laws, and the most that one of them reads.
@@ -137,13 +166,13 @@ impl LawSpec for Stages {
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         if let Some(index) = self.laws().position(|law| law.offers().commands_moments) {
-            require_field(&format!("[{index}].law.{}", self.0[index].law.kind()), offers, needs);
+            require_field(&format!("[{index}].law.{}", self.list[index].law.kind()), offers, needs);
         }
     }
 
     /// Returns the error band of the last law.
     fn expected_band(&self) -> ErrorBand {
-        self.0.last().map_or(ErrorBand::None, |stage| stage.law.expected_band())
+        self.list.last().map_or(ErrorBand::None, |stage| stage.law.expected_band())
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -164,6 +193,12 @@ struct StagesState {
     /// Key prefix of each law among the stages, and index of the one tuned last.
     places: Vec<String>,
     tuned: Option<usize>,
+    /// Laws of modes as they start, without a past; empty for stages.
+    unused: Vec<Box<dyn Law>>,
+    /// Index of the mode, if the stages are those of modes.
+    mode: Option<usize>,
+    /// True from the start of a mode until its first decision.
+    restarts: bool,
 }
 
 impl Part for StagesState {
@@ -184,11 +219,13 @@ impl Law for StagesState {
         goal: &Setpoint,
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
-        let due = self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
-        let cause = if due == self.active { cause } else { DecisionCause::Start };
+        let by_time = || self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
+        let due = self.mode.unwrap_or_else(by_time);
+        let is_new = due != self.active || std::mem::take(&mut self.restarts);
+        let cause = if is_new { DecisionCause::Start } else { cause };
         self.active = due;
         let hold = self.stages[due].1.decide(now, cause, goal, state_estimate);
-        let next = self.stages.get(due + 1).map(|(begins, _)| *begins);
+        let next = self.stages.get(due + 1).filter(|_| self.mode.is_none()).map(|(begins, _)| *begins);
         ControlOutput { until: [hold.until, next].into_iter().flatten().min(), ..hold }
     }
 
@@ -202,6 +239,13 @@ impl Law for StagesState {
         ReferenceNeeds { tracks_manoeuvre, ..ReferenceNeeds::default() }
     }
 
+    fn enter_mode(&mut self, mode: usize) {
+        if let Some(unused) = self.unused.get(mode) {
+            self.stages[mode].1 = unused.clone();
+            (self.mode, self.restarts) = (Some(mode), true);
+        }
+    }
+
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
@@ -210,6 +254,9 @@ impl Law for StagesState {
         let own = |(index, place): (usize, &String)| Some((index, key.strip_prefix(place.as_str())?));
         if let Some((index, key)) = self.places.iter().enumerate().find_map(own) {
             self.stages[index].1.tune(key, value);
+            if let Some(unused) = self.unused.get_mut(index) {
+                unused.tune(key, value);
+            }
             self.tuned = Some(index);
         }
     }

@@ -7,6 +7,7 @@ mod filter;
 pub mod goal;
 mod index_record;
 mod line_of_sight;
+mod operation;
 mod pointing_index;
 mod requirements;
 mod rotation;
@@ -39,6 +40,7 @@ use attitude::AttitudeMetrics;
 use envelope::EnvelopeMetrics;
 use filter::FilterMetrics;
 use line_of_sight::LineOfSightMetrics;
+use operation::ModeMetrics;
 use requirements::RequirementMetrics;
 use rotation::ManoeuvreMetrics;
 pub use rotation::{LaneManoeuvreMetrics, LanePiece};
@@ -63,6 +65,7 @@ pub struct MetricsCollector {
     windows: Option<EnvelopeMetrics>,
     tracked: ObserverMetrics,
     sights: LineOfSightMetrics,
+    operation: Option<ModeMetrics>,
     requirements: RequirementMetrics,
 }
 
@@ -104,6 +107,7 @@ impl MetricsCollector {
             windows: EnvelopeMetrics::if_not_collected_elsewhere(scenario),
             tracked: ObserverMetrics::new(scenario),
             sights: LineOfSightMetrics::new(scenario),
+            operation: ModeMetrics::new(scenario),
             requirements,
         }
     }
@@ -129,6 +133,7 @@ impl MetricsCollector {
             RunKind::Rotation(rotation) => rotation.finish(),
             RunKind::ThreeAxis(rotation) => rotation.finish(),
         };
+        metrics.extend(self.operation.into_iter().flat_map(ModeMetrics::finish));
         metrics.extend(self.sights.finish());
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
@@ -191,6 +196,9 @@ impl Record for MetricsCollector {
             adapted.observe(now, sample);
         }
         sample.get().into_iter().for_each(|errors| self.requirements.observe(errors));
+        if let (Some(operation), Some(event)) = (&mut self.operation, sample.get()) {
+            operation.observe(now, event);
+        }
         match &mut self.kind {
             RunKind::Switchings(switchings) => switchings.record(now, sample),
             RunKind::Rotation(rotation) => rotation.record(now, sample),
@@ -200,6 +208,7 @@ impl Record for MetricsCollector {
                 } else {
                     sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
+                    sample.get().into_iter().for_each(|event| rotation.observe_mode(now, event));
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));
                 }

@@ -4,7 +4,7 @@ use flexsc_control::actuator::{JetCycle, Saturation};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
-    Accelerations, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle, WheelEvent,
+    Accelerations, ModeEvent, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle, WheelEvent,
 };
 
 use super::goal::GoalMetrics;
@@ -71,6 +71,8 @@ pub struct ThreeAxisMetrics {
     bands: [f64; 3],
     outside: Option<f64>,
     end: f64,
+    /// True for modes of operation that have a target.
+    retargeting: Vec<bool>,
 }
 
 impl ThreeAxisMetrics {
@@ -114,12 +116,21 @@ impl ThreeAxisMetrics {
             magnetic: scenario.actuator.magnetorquers().is_some(),
             saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
             slews: (f64::NAN, 0.0, 0),
-            has_slews: scenario.study.profile.has_slews(),
+            has_slews: scenario.study.profile.has_slews() || slews_to_mode(scenario),
+            retargeting: scenario.mode.iter().map(|mode| mode.target.is_some()).collect(),
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
             steered: (!scenario.study.gimbals.is_empty()).then(SteeringRecord::unknown),
             pointing_window: scenario.reference.pointing.clone(),
             pointing: (0.0, 0),
+        }
+    }
+
+    /// Observes the start of a mode of operation: the goal begins with its target.
+    pub fn observe_mode(&mut self, now: Instant, event: &ModeEvent) {
+        if self.retargeting.get(event.index as usize) == Some(&true) {
+            self.verdict = GoalMetrics::new(now.seconds(), self.verdict.band());
+            self.outside = None;
         }
     }
 
@@ -293,4 +304,9 @@ fn limits(saturation: &Saturation) -> Vec<NamedMetric> {
         metrics.push((&LATE_SHARE, MetricValue::Number(saturation.late_share())));
     }
     metrics
+}
+
+/// Returns true if a mode of operation has a target that is reached by a slew.
+fn slews_to_mode(scenario: &Scenario) -> bool {
+    scenario.mode.iter().any(|mode| mode.target.as_ref().is_some_and(|target| target.acceleration.is_some()))
 }

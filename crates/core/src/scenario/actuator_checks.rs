@@ -60,7 +60,7 @@ impl ScenarioSpec {
     fn validate_selection(&self, offers: &Offers) -> Option<ConfigError> {
         let selects = |stage: &Stage| stage.actuators.is_some();
         let index = self.law.stages().iter().position(selects)?;
-        let at = |why: &str| Some(ConfigError::new(format!("law.stages[{index}].actuators"), why));
+        let at = |why: &str| Some(ConfigError::new(format!("{}[{index}].actuators", self.law.key()), why));
         if offers.body.has_manoeuvre {
             return at(
                 "must be left out with a `[manoeuvre]`, whose torque all actuators execute from its begin to its end",
@@ -76,7 +76,7 @@ impl ScenarioSpec {
 
     /// Checks the actuators that a stage of the law selects.
     fn validate_stage(&self, index: usize, stage: &Stage, offers: &Offers) -> Option<ConfigError> {
-        let key = format!("law.stages[{index}].actuators");
+        let key = format!("{}[{index}].actuators", self.law.key());
         let at = |key: String, why: String| Some(ConfigError::new(key, why));
         for (entry, name) in stage.actuators.iter().flatten().enumerate() {
             let (key, name) = (format!("{key}[{entry}]"), name.as_str());

@@ -19,7 +19,7 @@ impl Scenario {
             return Some(fault.within(&place));
         }
         let why = adaptation.start_error(number.value)?;
-        Some(ConfigError::new(adaptation.tunes(), why).within(&format!("law.{}", self.law.kind())))
+        Some(ConfigError::new(adaptation.tunes(), why).within(&self.law.key()))
     }
 
     /// Returns the reason why the law has no parameter `tunes`.

@@ -109,7 +109,8 @@ impl ScenarioSpec {
         offers: &Offers,
         unmet: &Requirements,
     ) -> Result<(), ConfigError> {
-        let checks: [&dyn Fn() -> Option<ConfigError>; 17] = [
+        let checks: [&dyn Fn() -> Option<ConfigError>; 18] = [
+            &|| self.validate_modes(model, offers),
             &|| unmet.first_of(Rule::AxisLaws..=Rule::MomentAxes),
             &|| self.validate_one_axis_tables(),
             &|| unmet.first_of(Rule::SensorPoint..=Rule::OneNumber),

@@ -22,6 +22,8 @@ mod file_name;
 mod line_of_sight;
 mod log;
 mod meant;
+mod mode_checks;
+mod one_mode;
 mod pace;
 mod reference_values;
 mod remarks;
@@ -122,13 +124,18 @@ impl Scenario {
             return Err(error);
         }
         written.inherit_custom_parts(own, document);
+        if !written.mode.is_empty() && document.has("law") {
+            let why = "must be left out with `[[mode]]`: each mode has a law of its own";
+            return Err(document.at_key(&ConfigError::new("law", why)));
+        }
+        written.adopt_modes();
         if written.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let model = written.assemble(document, parent, directory)?;
-        if written.law.offers().is_open && !document.has("law") && written.manoeuvre.is_none() {
+        if written.law.offers().is_open && !document.has("law") && written.manoeuvre.is_none() && written.mode.is_empty() {
             return Err(document.missing("law"));
         }
         Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
@@ -136,7 +143,8 @@ impl Scenario {
 
     /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
     /// the manoeuvre.
-    fn fitted(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
+    fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
+        written.adopt_modes();
         let offers = written.offers(&model);
         let unmet = written.unmet_requirements(&offers);
         written.validate_compatibility(&model, &offers, &unmet)?;

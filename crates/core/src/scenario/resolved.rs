@@ -319,7 +319,13 @@ impl ResolvedScenario {
             (stage.begins(), executing().map(|member| stage.selects(member.kind.kind())).collect())
         };
         let stages = scenario.law.stages().iter().filter(|_| scenario.law.selects_actuators());
-        Box::new(ActuatorSet::new(settings.len(), started).in_stages(stages.map(in_stage).collect()))
+        let stages: Vec<_> = stages.map(in_stage).collect();
+        let several = ActuatorSet::new(settings.len(), started);
+        Box::new(if scenario.law.is_of_modes() && !stages.is_empty() {
+            several.in_modes(stages.into_iter().map(|(_, executing)| executing).collect())
+        } else {
+            several.in_stages(stages)
+        })
     }
 }
 

@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use flexsc_control::actuator::AssignedActuator;
 use flexsc_control::adaptation::AdaptationKind;
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::{AttitudeTarget, LawKind};
+use flexsc_control::law::{AttitudeTarget, LawKind, Stages};
 use flexsc_control::one_or_many::OneOrMany;
+use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
@@ -66,9 +67,15 @@ pub struct ScenarioSpec {
     /// The planned manoeuvre.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub manoeuvre: Option<Manoeuvre>,
-    /// The control law. Only a scenario with a manoeuvre can omit it.
-    #[serde(default)]
+    /// The control law. Only a scenario with a manoeuvre or with modes can omit it.
+    #[serde(default, skip_serializing_if = "LawKind::is_of_modes")]
     pub law: LawKind,
+    /// Modes of operation, each with a law of its own; a run begins in the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mode: Vec<OperatingMode>,
+    /// Target of the first mode, at the start of the run.
+    #[serde(skip)]
+    pub(super) mode_targets: Vec<AttitudeTarget>,
     /// The actuator, which executes the commanded torque, or an array of several.
     #[serde(default)]
     pub actuator: OneOrMany<AssignedActuator>,
@@ -126,8 +133,26 @@ impl ScenarioSpec {
         format!("body.{}.damping_matrix", self.body_kind())
     }
 
-    /// Returns the target attitudes of a three-axis body.
+    /// Takes the laws, and the first target, from the modes of operation, if there are any.
+    pub(super) fn adopt_modes(&mut self) {
+        if self.mode.is_empty() {
+            return;
+        }
+        self.law = LawKind::Stages(Stages::from_modes(&self.mode));
+        let first = self.mode.first().and_then(|mode| mode.target.as_ref());
+        self.mode_targets = first.map(ModeTarget::at_start).into_iter().collect();
+    }
+
+    /// Returns true if modes have targets, which replace those of the scenario.
+    pub fn has_mode_targets(&self) -> bool {
+        self.mode.iter().any(|mode| mode.target.is_some())
+    }
+
+    /// Returns the target attitudes of a three-axis body whose times are known before the run.
     pub fn targets(&self) -> &[AttitudeTarget] {
+        if self.has_mode_targets() {
+            return &self.mode_targets;
+        }
         let own = self.law.own_targets();
         if own.is_empty() { &self.target } else { own }
     }

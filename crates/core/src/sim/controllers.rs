@@ -189,6 +189,11 @@ impl ControlLaws {
         self.laws.begin(phase, now, pushed);
     }
 
+    /// Selects the laws of a mode, which decide at `now`.
+    pub fn enter_mode(&mut self, now: Instant, mode: usize) {
+        self.laws.enter_mode(now, mode);
+    }
+
     /// Returns the command about each axis.
     pub fn outputs(&self) -> [Command; 3] {
         self.laws.outputs()

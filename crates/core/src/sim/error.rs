@@ -50,6 +50,21 @@ pub enum SimulationError {
         /// Shortest duration of that many switchings that is no error (s).
         span: f64,
     },
+    /// The modes of operation change endlessly.
+    #[error(
+        "chatter: the mode of operation changed {count} times within a second, up to t = {at} s, between `{before}` and `{after}`: \
+         give their conditions different limits, or a dwell `for`"
+    )]
+    ModeChatter {
+        /// Instant of the last change.
+        at: Instant,
+        /// Number of changes.
+        count: usize,
+        /// Name of the mode before the last change.
+        before: String,
+        /// Name of the mode after it.
+        after: String,
+    },
     /// Wheels slip and stick endlessly.
     #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
     WheelChatter {

@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use flexsc_control::law::{AttitudeProfile, ReferenceNeeds, Setpoint, TargetFrame};
+use flexsc_control::law::{AttitudeProfile, AttitudeTarget, ReferenceNeeds, Setpoint, TargetFrame};
+use flexsc_control::operation::ModeTarget;
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
@@ -21,6 +22,8 @@ pub struct Guidance {
     planned: Option<PlannedManoeuvre>,
     /// Sequence of targets of a three-axis body.
     profile: Option<AttitudeProfile>,
+    /// Target of each mode of operation that has one.
+    mode_targets: Vec<Option<AttitudeTarget>>,
 }
 
 /// Manoeuvre as a rigid body executes it.
@@ -53,7 +56,25 @@ impl Guidance {
             setpoint: scenario.goal(),
             planned: PlannedManoeuvre::new(scenario),
             profile: scenario.model.three_axis().map(|_| scenario.study.profile.clone()),
+            mode_targets: scenario
+                .mode
+                .iter()
+                .map(|mode| mode.target.as_ref().map(ModeTarget::at_start))
+                .collect(),
         }
+    }
+
+    /// Takes the target of a mode that begins at `now`, if it has one; returns true if it has.
+    pub fn enter_mode(&mut self, now: Instant, mode: usize) -> bool {
+        let target = self.mode_targets.get(mode).and_then(Option::as_ref);
+        let (Some(target), Some(profile)) = (target, self.profile.as_mut()) else { return false };
+        profile.enter(target, now);
+        true
+    }
+
+    /// Returns the part of the Sun's disc in view of a three-axis body.
+    pub fn sunlight(&self, now: Instant) -> f64 {
+        self.profile.as_ref().map_or(f64::NAN, |profile| profile.sunlight(now))
     }
 
     /// Returns the reference angle (rad) and rate (rad/s) of a one-axis body: during the manoeuvre, those of a rigid

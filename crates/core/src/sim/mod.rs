@@ -14,6 +14,7 @@ mod guidance;
 mod loads;
 mod objective;
 mod observation;
+mod operation;
 mod plant;
 mod recorder;
 mod relay_kernel;
@@ -44,6 +45,7 @@ use controllers::ControlLaws;
 use estimation::Estimation;
 use guidance::Guidance;
 use loads::Loads;
+use operation::Operation;
 use plant::Plant;
 use recorder::Recorder;
 use run_view::RunView;
@@ -58,6 +60,7 @@ pub struct Simulation {
     estimation: Estimation,
     guidance: Guidance,
     laws: ControlLaws,
+    operation: Operation,
     loads: Loads,
     recorder: Recorder,
     /// True if the scenario has custom parts.
@@ -77,6 +80,7 @@ impl Simulation {
             sensors: Sensors::new(scenario, seed),
             estimation: Estimation::new(scenario, &guidance, seed),
             laws: ControlLaws::new(scenario, seed),
+            operation: Operation::new(scenario),
             loads: Loads::new(scenario, seed),
             recorder: Recorder::new(scenario, &guidance, run),
             guidance,
@@ -126,6 +130,7 @@ impl Simulation {
     fn next_due(&self) -> Instant {
         let due = [
             self.laws.next_event(),
+            self.operation.due(),
             self.loads.due,
             self.sensors.next_event(),
             self.estimation.window_closes(),
@@ -151,10 +156,7 @@ impl Simulation {
         self.sensors.update_exposures(now, &self.plant, record)?;
         let is_sampled = self.sensors.sample_is_due(now);
         let event = self.laws.event(now, is_sampled);
-        if is_sampled
-            || self.clock.cycle_is_due()
-            || self.laws.must_decide(now, event, &self.estimation.estimates)
-        {
+        if is_sampled || self.clock.cycle_is_due() || self.must_decide(event) {
             self.estimation.update_angle_origin(now, &self.guidance);
         }
         // 2. and 3. The sensors measure, and the estimator takes the sample.
@@ -176,8 +178,7 @@ impl Simulation {
     fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         // 6. and 7. The estimates are predicted, the laws decide, the actuator takes the commands: a new segment.
-        if self.laws.external_command_pending || self.laws.must_decide(now, event, &self.estimation.estimates)
-        {
+        if self.laws.external_command_pending || self.must_decide(event) {
             self.control_step(event, record)?;
         }
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
@@ -197,6 +198,13 @@ impl Simulation {
         Ok(recorder.record_instant(&run, is_cycle, record)?)
     }
 
+    /// Returns true if the laws have to decide on `event`, or the conditions of the mode are tested.
+    #[inline]
+    fn must_decide(&self, event: Event) -> bool {
+        let now = self.clock.now();
+        self.laws.must_decide(now, event, &self.estimation.estimates) || self.operation.due() == Some(now)
+    }
+
     /// Takes the sample of the current instant, and updates the estimates with it.
     fn take_sample(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
@@ -212,6 +220,7 @@ impl Simulation {
         let now = self.clock.now();
         self.clock.count_decision()?;
         self.estimation.predict(now, &self.plant, &self.sensors);
+        self.update_mode(record)?;
         let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid);
         let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates, &speeds);
         if decision.is_switching() || matches!(event, Event::Guard { axis: 1.., .. }) {

@@ -5,7 +5,7 @@ use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{Orientation, Reading, SensorKind, Truth};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::Instant;
+use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, Report};
 use flexsc_spacecraft::environment::to_body;
 
@@ -32,6 +32,10 @@ pub struct Sensors {
     /// Next sampling instant of all sensors; `None` with a continuous sensor.
     next: Option<Instant>,
     exposures: Exposures,
+    /// Instant of the last reading of each sensor, or at which it came into use.
+    last_readings: Vec<Instant>,
+    /// True for sensors that are in use.
+    in_use: Vec<bool>,
     /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
     sample_read_ahead: Option<bool>,
 }
@@ -69,6 +73,8 @@ impl Sensors {
             next: sensors.iter().filter_map(|due| due.next).min(),
             schedules: sensors,
             exposures: Exposures::new(scenario),
+            last_readings: vec![Instant::START; all.len()],
+            in_use: scenario.sensors_in_use(0),
             sample_read_ahead: None,
         }
     }
@@ -142,12 +148,14 @@ impl Sensors {
                 continue;
             }
             let truth = plant.truth_at_sensor(index);
-            *fresh = due.sensor.read(now, &truth, due.last.as_ref());
+            // The state of a sensor that is not in use goes on, such as the bias of a gyro.
+            *fresh = due.sensor.read(now, &truth, due.last.as_ref()).filter(|_| self.in_use[index]);
             if let Some(period) = due.period.filter(|_| now > Instant::START) {
                 due.next = Some(due.sensor.next_due(now, period));
             }
             let Some(reading) = fresh else { continue };
             any = true;
+            self.last_readings[index] = now;
             if let Some(sight) = reading.sight.filter(|_| due.is_field_source) {
                 let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
                 self.field_rate =
@@ -169,6 +177,26 @@ impl Sensors {
         }
         self.next = self.schedules.iter().filter_map(|due| due.next).min();
         any
+    }
+
+    /// Puts the sensors of a mode into use that begins at `now`.
+    pub fn set_in_use(&mut self, now: Instant, in_use: &[bool]) {
+        for ((last, was), is) in self.last_readings.iter_mut().zip(&mut self.in_use).zip(in_use) {
+            if *is && !*was {
+                *last = now;
+            }
+            *was = *is;
+        }
+    }
+
+    /// Returns the time since the last reading of a sensor, or since it came into use.
+    pub fn silence(&self, now: Instant, sensor: usize) -> Span {
+        now.since(self.last_readings[sensor])
+    }
+
+    /// Returns the last measured magnetic field in body axes (T).
+    pub fn measured_field(&self) -> Option<Vector> {
+        self.field.map(|(_, field)| field)
     }
 
     /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.

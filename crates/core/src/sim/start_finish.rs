@@ -25,6 +25,9 @@ impl Simulation {
         self.loads.update_rotor_states(now, &self.plant);
         self.check_custom_parts()?;
         self.clock.begin_cycles();
+        if let Some(event) = self.operation.first_event(now) {
+            self.recorder.record_mode(now, &event, record)?;
+        }
         let (run, recorder) = self.view();
         Ok(recorder.record_start(&run, record)?)
     }

@@ -117,7 +117,7 @@ impl Simulation {
             let event = self.sense(record)?;
             came = match occasion {
                 Some(StopAt::Sample) => event == Event::Due { sampled: true },
-                Some(StopAt::Decision) => self.laws.must_decide(now, event, &self.estimation.estimates),
+                Some(StopAt::Decision) => self.must_decide(event),
                 Some(StopAt::Window) => closes,
                 Some(StopAt::Switching) | None => false,
             };

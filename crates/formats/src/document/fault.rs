@@ -1,6 +1,7 @@
 //! Error in a part of a scenario: the key, and the reason.
 
 use std::fmt;
+use std::ops::Range;
 
 /// Key with an invalid value, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,12 +10,14 @@ pub struct ConfigError {
     pub key: String,
     /// Reason, as a text that follows the key.
     pub why: String,
+    /// Bytes of the part of a text that is invalid, if the value is a text with parts.
+    pub part: Option<Range<usize>>,
 }
 
 impl ConfigError {
     /// Creates a fault at a key.
     pub fn new(key: impl Into<String>, why: impl Into<String>) -> Self {
-        Self { key: key.into(), why: why.into() }
+        Self { key: key.into(), why: why.into(), part: None }
     }
 
     /// Returns the fault relative to the enclosing table, in which `prefix` is the key of the part.
@@ -25,7 +28,20 @@ impl ConfigError {
             index if index.starts_with('[') => format!("{prefix}{index}"),
             key => format!("{prefix}.{key}"),
         };
-        Self { key, why: self.why }
+        Self { key, ..self }
+    }
+
+    /// Returns the bytes in `text` of the invalid part of a value that stands at `value`. A text with escapes counts as a
+    /// whole.
+    pub(super) fn span_in(&self, text: &str, value: Range<usize>) -> Range<usize> {
+        let Some(part) = &self.part else { return value };
+        let Some(written) = text.get(value.clone()) else { return value };
+        let quotes = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quotes| written.starts_with(quotes));
+        let Some(quotes) = quotes.filter(|quotes| !(quotes.starts_with('"') && written.contains('\\'))) else {
+            return value;
+        };
+        let within = value.start + quotes.len();
+        within + part.start..within + part.end
     }
 }
 

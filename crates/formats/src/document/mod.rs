@@ -249,7 +249,7 @@ impl Document {
         if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
             let table = DeTable::parse(text).ok();
             if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
-                return mistake.at(text, &span).single_error();
+                return mistake.at(text, &fault.span_in(text, span)).single_error();
             }
         }
         mistake.single_error()

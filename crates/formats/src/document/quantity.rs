@@ -156,13 +156,14 @@ fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
 /// A text without a number, and a unit that is unknown or measures something else.
 pub fn number_in(text: &str, wanted: &str) -> Result<f64, String> {
     let wanted = Some(wanted).filter(|wanted| !wanted.is_empty());
-    let plain = || text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    match split(text) {
-        Some((number, unit)) => converted(number, unit, wanted.as_slice()),
-        None => plain().ok_or_else(|| {
+    let plain = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    match (plain, split(text)) {
+        (Some(number), _) => Ok(number),
+        (None, Some((number, unit))) => converted(number, unit, wanted.as_slice()),
+        (None, None) => {
             let example = wanted.map_or(String::new(), |unit| format!(" such as \"2 {unit}\""));
-            format!("must be a number, or a number with a unit{example}, got `{text}`")
-        }),
+            Err(format!("must be a number, or a number with a unit{example}, got `{text}`"))
+        }
     }
 }
 

@@ -60,6 +60,23 @@ rows! {
         /// Whether it begins or ends.
         onset: Onset,
     }
+    /// A mode of operation begins.
+    ModeEvent = "/mode" {
+        /// Time since the start, rounded to a double (s).
+        time_s: f64,
+        /// Whole seconds of the exact time.
+        time_whole_s: u64,
+        /// Femtoseconds of the exact time past the whole second.
+        time_fs: u64,
+        /// Index of the mode in the scenario, from 0.
+        index: u64,
+        /// Name of the mode.
+        mode: String,
+        /// Name of the mode before; empty at the start.
+        before: String,
+        /// Condition that ended the mode before, as written; empty at the start.
+        cause: String,
+    }
     /// The name of an observed coordinate.
     OutputName {
         /// Name.

@@ -58,6 +58,10 @@ impl Layout {
             BodyAxes::One(body) => one_axis::tabs(scenario, body),
             BodyAxes::Three(body) => three_axis::tabs(scenario, body),
         };
+        if let Some(first) = tabs.first_mut().filter(|_| !scenario.mode.is_empty()) {
+            let mode = LayoutPanel::states("mode", "Mode of operation", vec![panel::line("/mode.mode", "mode")]);
+            first.panels.insert(1, mode);
+        }
         tabs.extend(declared::tab(scenario));
         tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });
         let rows = scenario.duration.seconds() / scenario.log_period().seconds();
@@ -144,6 +148,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     add(measures, "/objective", Events);
     add(measures, "/adaptation", Events);
     add(!scenario.failures().is_empty(), "/faults", Events);
+    add(!scenario.mode.is_empty(), "/mode", Events);
     if scenario.axis_count() == 3 {
         add(scenario.study.fires(), "/jets", Events);
         let alone = scenario

@@ -164,7 +164,7 @@ fn started(
     if designed.is_empty() {
         return Ok(Vec::new());
     }
-    let with_axis = |ConfigError { key, why }: ConfigError| {
+    let with_axis = |ConfigError { key, why, .. }: ConfigError| {
         ConfigError::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
     };
     let (wrong, reach) = match form {

@@ -216,7 +216,7 @@ mod tests {
             ..tracker(frequency, 1.0)
         };
         let wrong = |trackers: &[Tracker], inputs| {
-            let ConfigError { key, why } =
+            let ConfigError { key, why, .. } =
                 Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
             format!("{key} {why}")
         };

@@ -137,6 +137,9 @@ impl<'a> LoopParts<'a> {
         scenario: &'a Scenario,
         opened: LoopBreak,
     ) -> Result<Self, ConfigError> {
+        if let Some(fault) = scenario.mode_choice_fault() {
+            return Err(fault);
+        }
         let model = LinearModel::from_scenario(scenario, 0.0)?;
         let axes = model.inputs.len();
         let body = BodyMatrices::new(model)?;

@@ -6,7 +6,7 @@ use flexsc_numerics::attitude::{AXES, angles};
 use flexsc_numerics::time::Instant;
 use flexsc_record::foxglove::LogLevel;
 use flexsc_record::row::LogDate;
-use flexsc_record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
+use flexsc_record::{Adaptation, Arrival, ModeEvent, Record, RecordError, Sliding, WheelEvent};
 use nalgebra::Quaternion;
 
 use super::journal::{Journal, adaptation_line, opening};
@@ -189,6 +189,22 @@ impl JournalEvents {
         };
         let line = format!("wheel {} {what}", event.wheel + 1);
         self.journal.write_line(now, (LogLevel::Info, "wheels"), line, record)
+    }
+
+    /// Writes that a mode of operation begins.
+    pub fn mode_entered(
+        &self,
+        now: Instant,
+        event: &ModeEvent,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let ModeEvent { mode, before, cause, .. } = event;
+        let line = if before.is_empty() {
+            format!("the mode is `{mode}`")
+        } else {
+            format!("the mode is `{mode}` after `{before}`: {cause}")
+        };
+        self.journal.write_line(now, (LogLevel::Info, "mode"), line, record)
     }
 
     /// Writes that a failure of a part begins or ends.

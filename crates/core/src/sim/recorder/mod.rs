@@ -15,7 +15,7 @@ mod scene_frames;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Record, RecordError, Sample};
+use flexsc_record::{ModeEvent, Record, RecordError, Sample};
 
 use super::controllers::LawDecision;
 use super::guidance::Guidance;
@@ -151,6 +151,17 @@ impl Recorder {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         self.motion.record_switching(run, decision, record)
+    }
+
+    /// Records the start of a mode of operation.
+    pub fn record_mode(
+        &self,
+        now: Instant,
+        event: &ModeEvent,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        record.record(now, Sample::Row(event))?;
+        self.journal.mode_entered(now, event, record)
     }
 
     /// Records the estimates after the current sample, and journals losses of lock.

@@ -1,0 +1,140 @@
+//! Condition of a mode's end, such as `rate < 2e-3 and silent(star_tracker) <= 5 s`, and its value.
+
+use std::ops::Range;
+
+use flexsc_numerics::time::Span;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::ModeQuantity;
+
+/// Condition as written in a scenario.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct ModeCondition(String);
+
+/// Part of a condition that cannot be read, and the reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConditionFault {
+    /// Bytes of the part in the text of the condition.
+    pub part: Range<usize>,
+    /// Reason, as a text that follows the key.
+    pub why: String,
+}
+
+/// Names that a condition may use as arguments.
+#[derive(Clone, Debug, Default)]
+pub struct Vocabulary<'a> {
+    /// Kinds of the sensors, in their order.
+    pub sensors: Vec<&'a str>,
+    /// Names of the modes, in their order.
+    pub modes: Vec<&'a str>,
+}
+
+/// Comparison of a quantity with a number.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Comparison {
+    /// Below the number.
+    Below,
+    /// At most the number.
+    AtMost,
+    /// Above the number.
+    Above,
+    /// At least the number.
+    AtLeast,
+}
+
+/// Condition that has been read.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expression {
+    /// Comparison of a quantity with a number in its unit.
+    Compared {
+        /// Quantity; of several sensors of a kind, the first.
+        quantity: ModeQuantity,
+        /// Comparison.
+        comparison: Comparison,
+        /// Number, in the unit of the quantity.
+        limit: f64,
+    },
+    /// Quantity that is true or false.
+    Flag(ModeQuantity),
+    /// True if another condition is false.
+    Not(Box<Expression>),
+    /// True if all of them are.
+    All(Vec<Expression>),
+    /// True if any of them is.
+    Any(Vec<Expression>),
+}
+
+/// Access to the quantities at one instant.
+pub trait ModeReadings {
+    /// Returns the value of a quantity in its unit, 1 or 0 of a flag; NaN while it is not known.
+    fn value(&self, quantity: ModeQuantity) -> f64;
+
+    /// Returns the span of a quantity that is a clock.
+    fn clock(&self, quantity: ModeQuantity) -> Span;
+}
+
+impl ModeCondition {
+    /// Creates a condition from its text.
+    pub fn new(text: impl Into<String>) -> Self {
+        Self(text.into())
+    }
+
+    /// Returns the text.
+    pub fn text(&self) -> &str {
+        &self.0
+    }
+
+    /// Reads the condition.
+    ///
+    /// # Errors
+    /// The first part that is no condition, and the reason.
+    pub fn parse(&self, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
+        super::parser::parse(&self.0, known)
+    }
+}
+
+impl Comparison {
+    fn holds<T: PartialOrd>(self, value: &T, limit: &T) -> bool {
+        match self {
+            Self::Below => value < limit,
+            Self::AtMost => value <= limit,
+            Self::Above => value > limit,
+            Self::AtLeast => value >= limit,
+        }
+    }
+}
+
+impl Expression {
+    /// Returns true if the condition is met. A comparison with a quantity that is not known is false.
+    pub fn holds(&self, readings: &dyn ModeReadings) -> bool {
+        match self {
+            Self::Compared { quantity, comparison, limit } if quantity.is_clock() => {
+                comparison.holds(&readings.clock(*quantity), &Span::from_seconds(*limit))
+            }
+            Self::Compared { quantity, comparison, limit } => {
+                comparison.holds(&readings.value(*quantity), limit)
+            }
+            Self::Flag(quantity) => readings.value(*quantity) == 1.0,
+            Self::Not(inner) => !inner.holds(readings),
+            Self::All(inner) => inner.iter().all(|inner| inner.holds(readings)),
+            Self::Any(inner) => inner.iter().any(|inner| inner.holds(readings)),
+        }
+    }
+
+    /// Returns the comparisons and flags, each with its quantity and, of a comparison, its number.
+    pub fn leaves(&self) -> Vec<(ModeQuantity, Option<f64>)> {
+        match self {
+            Self::Compared { quantity, limit, .. } => vec![(*quantity, Some(*limit))],
+            Self::Flag(quantity) => vec![(*quantity, None)],
+            Self::Not(inner) => inner.leaves(),
+            Self::All(inner) | Self::Any(inner) => inner.iter().flat_map(Self::leaves).collect(),
+        }
+    }
+
+    /// Returns true if the condition reads the truth.
+    pub fn reads_truth(&self) -> bool {
+        self.leaves().iter().any(|(quantity, _)| quantity.is_truth())
+    }
+}

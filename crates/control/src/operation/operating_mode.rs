@@ -1,0 +1,210 @@
+//! Mode of operation as written in a scenario.
+
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Positive, Time};
+use flexsc_numerics::time::Span;
+use flexsc_spacecraft::environment::OrbitEnvironment;
+use flexsc_spacecraft::manoeuvre::SlewProfile;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::parser::{listed, sensor_index};
+use super::{ConditionFault, ModeCondition, Vocabulary};
+use crate::actuator::ActuatorName;
+use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis};
+
+/// A mode of operation: the law that acts in it, with what it uses, and when it ends. A run begins in the first mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OperatingMode {
+    /// Name: letters, digits, `_` and `-`.
+    pub name: String,
+    /// The law.
+    pub law: LawKind,
+    /// Target attitude of a body with three axes, from the start of the mode on; default: the target stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target: Option<ModeTarget>,
+    /// Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for the second of a kind; default:
+    /// all. The others give no readings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensors: Option<Vec<String>>,
+    /// Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`; default: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub actuators: Option<Vec<ActuatorName>>,
+    /// Ends of the mode: the first whose condition is met ends it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub leave: Vec<ModeExit>,
+}
+
+/// An end of a mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModeExit {
+    /// Name of the mode that follows.
+    pub to: String,
+    /// Condition, such as `"rate < 2e-3 and time > 60"`.
+    pub when: ModeCondition,
+    /// Time for which the condition has to hold without a break (s).
+    #[serde(default, rename = "for", skip_serializing_if = "is_zero")]
+    pub dwell: Time,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_zero(time: &Time) -> bool {
+    *time == Time::ZERO
+}
+
+/// The target attitude of a mode: yaw, then pitch about the rotated y axis, then roll about the twice rotated x axis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModeTarget {
+    /// Frame relative to which the attitude is given.
+    #[serde(default, skip_serializing_if = "is_inertial")]
+    pub frame: Frame,
+    /// Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are relative to the attitude
+    /// that these two give.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub primary: Option<PointedAxis>,
+    /// Axis of the body that is as near to a direction as `primary` lets it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub secondary: Option<PointedAxis>,
+    /// Roll (rad).
+    #[serde(default)]
+    pub roll: Finite,
+    /// Pitch (rad).
+    #[serde(default)]
+    pub pitch: Finite,
+    /// Yaw (rad).
+    #[serde(default)]
+    pub yaw: Finite,
+    /// Largest acceleration of the slew about one axis to it (rad/s²), from where the reference is; default: the reference
+    /// jumps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub acceleration: Option<Positive>,
+    /// Largest rate of the slew (rad/s); no limit by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_limit: Option<Positive>,
+    /// How the rate of the slew rises and falls.
+    #[serde(default, skip_serializing_if = "is_trapezoid")]
+    pub profile: SlewProfile,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_inertial(frame: &Frame) -> bool {
+    *frame == Frame::Inertial
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_trapezoid(profile: &SlewProfile) -> bool {
+    *profile == SlewProfile::Trapezoid
+}
+
+impl ModeTarget {
+    /// Returns the target of the start of a run.
+    pub fn at_start(&self) -> AttitudeTarget {
+        let Self { frame, primary, secondary, roll, pitch, yaw, acceleration, rate_limit, profile } = *self;
+        AttitudeTarget {
+            frame,
+            primary,
+            secondary,
+            roll,
+            pitch,
+            yaw,
+            acceleration,
+            rate_limit,
+            profile,
+            ..AttitudeTarget::INERTIAL
+        }
+    }
+
+    /// Checks the target against the sky; returns a key within it and the reason.
+    pub fn fault(&self, sky: &OrbitEnvironment) -> Option<ConfigError> {
+        let fault = AttitudeProfile::validate(&[self.at_start()], sky, &[])?;
+        Some(ConfigError { key: fault.key.trim_start_matches("[0]").trim_start_matches('.').to_owned(), ..fault })
+    }
+}
+
+impl ModeExit {
+    /// Returns the span for which the condition has to hold.
+    pub fn dwell(&self) -> Span {
+        Span::from_seconds(self.dwell.get())
+    }
+}
+
+impl OperatingMode {
+    /// Returns the indices of the sensors in use among the sensors of these kinds; `None` for all.
+    ///
+    /// # Errors
+    /// The index of a name of no sensor, and the reason.
+    pub fn sensor_indices(&self, kinds: &[&str]) -> Result<Option<Vec<usize>>, (usize, String)> {
+        let Some(names) = &self.sensors else { return Ok(None) };
+        let mut indices = Vec::new();
+        for (place, name) in names.iter().enumerate() {
+            let of_kind = kinds.iter().enumerate().filter(|(_, kind)| **kind == name.as_str());
+            let mut named: Vec<usize> = of_kind.map(|(index, _)| index).collect();
+            if named.is_empty() {
+                named.extend(sensor_index(name, kinds));
+            }
+            if named.is_empty() {
+                return Err((place, format!("must be one of the sensors, {}, got `{name}`", listed(kinds))));
+            }
+            indices.extend(named);
+        }
+        Ok(Some(indices))
+    }
+
+    /// Checks the names, conditions and sensors of modes against each other and the kinds of the sensors; returns a key
+    /// within the list and the reason.
+    pub fn fault(modes: &[Self], sensors: &[&str]) -> Option<ConfigError> {
+        let known = Vocabulary {
+            sensors: sensors.to_vec(),
+            modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
+        };
+        modes.iter().enumerate().find_map(|(index, mode)| {
+            let named = known.modes[..index].contains(&mode.name.as_str());
+            mode.own_fault(&known, named).map(|fault| fault.within(&format!("[{index}]")))
+        })
+    }
+
+    fn own_fault(&self, known: &Vocabulary<'_>, is_taken: bool) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        let valid = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        if self.name.is_empty() || !self.name.chars().all(valid) {
+            let why = format!("must be a name of letters, digits, `_` and `-`, got `{}`", self.name);
+            return at("name", why);
+        }
+        if is_taken {
+            return at("name", format!("is that of a mode before, `{}`", self.name));
+        }
+        if let Err((place, why)) = self.sensor_indices(&known.sensors) {
+            return at(&format!("sensors[{place}]"), why);
+        }
+        self.leave.iter().enumerate().find_map(|(index, exit)| {
+            exit.fault(known, &self.name).map(|fault| fault.within(&format!("leave[{index}]")))
+        })
+    }
+}
+
+impl ModeExit {
+    fn fault(&self, known: &Vocabulary<'_>, of: &str) -> Option<ConfigError> {
+        if !known.modes.contains(&self.to.as_str()) {
+            let why = format!("must name one of the modes, {}, got `{}`", listed(&known.modes), self.to);
+            return Some(ConfigError::new("to", why));
+        }
+        if self.to == of {
+            return Some(ConfigError::new("to", format!("must name another mode, got `{of}` itself")));
+        }
+        let read = match self.when.parse(known) {
+            Ok(read) => read,
+            Err(ConditionFault { part, why }) => {
+                return Some(ConfigError { part: Some(part), ..ConfigError::new("when", why) });
+            }
+        };
+        let is_mixed = read.reads_truth() && read.leaves().iter().any(|(quantity, _)| !quantity.is_truth());
+        is_mixed.then(|| {
+            let why = "joins the truth, which is tested at exact instants, with what the law knows at its samples: use one of \
+                       them";
+            ConfigError::new("when", why)
+        })
+    }
+}

@@ -1,0 +1,171 @@
+//! Checks of the modes of operation: their conditions, targets and sensors against the other parts.
+
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::EstimateNeeds;
+use flexsc_control::offers::Offers;
+use flexsc_control::operation::{ModeQuantity, OperatingMode, Vocabulary};
+use flexsc_control::sensor::SensorKind;
+use flexsc_formats::document::ConfigError;
+use flexsc_spacecraft::body::BodyModel;
+
+use super::ScenarioSpec;
+
+impl ScenarioSpec {
+    /// Returns which sensors are in use in a mode; all without modes.
+    pub fn sensors_in_use(&self, mode: usize) -> Vec<bool> {
+        let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
+        let used = self.mode.get(mode).and_then(|mode| mode.sensor_indices(&kinds).ok().flatten());
+        (0..kinds.len()).map(|index| used.as_ref().is_none_or(|used| used.contains(&index))).collect()
+    }
+
+    /// Checks the modes of operation.
+    pub(super) fn validate_modes(&self, model: &BodyModel, offers: &Offers) -> Option<ConfigError> {
+        if self.mode.is_empty() {
+            return None;
+        }
+        let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
+        let names = self.mode.iter().map(|mode| mode.name.as_str()).collect();
+        let known = Vocabulary { sensors: kinds.clone(), modes: names };
+        let listed = OperatingMode::fault(&self.mode, &kinds).map(|fault| fault.within("mode"));
+        listed.or_else(|| self.validate_mode_targets(model)).or_else(|| {
+            self.mode.iter().enumerate().find_map(|(index, mode)| {
+                let fault = self
+                    .mode_sensor_fault(index, mode)
+                    .or_else(|| self.mode_exit_fault(index, mode, &known, offers));
+                fault.map(|fault| fault.within(&format!("mode[{index}]")))
+            })
+        })
+    }
+
+    fn validate_mode_targets(&self, model: &BodyModel) -> Option<ConfigError> {
+        let index = self.mode.iter().position(|mode| mode.target.is_some())?;
+        let at = |why: &str| Some(ConfigError::new(format!("mode[{index}].target"), why));
+        if self.axis_count() == 1 {
+            return at("is for a body with three axes: a `[manoeuvre]` turns a body with one angle");
+        }
+        if !self.target.is_empty() {
+            let why = "must be left out: the modes have targets of their own, from the start of each on";
+            return Some(ConfigError::new("target", why));
+        }
+        if model.three_axis().is_some_and(|body| body.small_angles.is_some()) {
+            return at("must be left out with `small_angles`, for which the target must stay fixed");
+        }
+        if self.appendage.iter().any(|appendage| {
+            appendage.drive.as_ref().is_some_and(|drive| drive.track.is_some())
+        }) {
+            return at(
+                "must be left out with a drive that tracks the Sun, whose angle has to be known before the run",
+            );
+        }
+        let sky = self.orbit_environment();
+        let limit = model.spacecraft().and_then(|craft| craft.rate_limit());
+        self.mode.iter().enumerate().find_map(|(index, mode)| {
+            let target = mode.target.as_ref()?;
+            let fault = target.fault(&sky).or_else(|| {
+                let limit = limit.as_ref()?;
+                let rate = target.rate_limit?.get();
+                (rate > limit.rate).then(|| {
+                    let why = format!("must be below {:.3e} rad/s, {}, got {rate}", limit.rate, limit.why);
+                    ConfigError::new("rate_limit", why)
+                })
+            });
+            fault.map(|fault| fault.within(&format!("mode[{index}].target")))
+        })
+    }
+
+    /// Checks that the sensors that the law of a mode needs are in use.
+    fn mode_sensor_fault(&self, index: usize, mode: &OperatingMode) -> Option<ConfigError> {
+        let in_use = self.sensors_in_use(index);
+        let missing = |wanted: &dyn Fn(usize, &SensorKind) -> bool| {
+            let all = self.sensor.iter().enumerate();
+            all.filter(|(place, sensor)| !in_use[*place] && wanted(*place, sensor)).map(|(place, _)| place).next()
+        };
+        let at = |why: String| Some(ConfigError::new("sensors", why));
+        let name = |place: usize| self.sensor_key(place);
+        let law = mode.law.kind();
+        if mode.law.offers().commands_moments
+            && !self.sensor.iter().enumerate().any(|(place, of)| in_use[place] && of.measures_field())
+        {
+            return at(format!("must include `magnetometer`, which the law `{law}` needs"));
+        }
+        if let Some(place) = missing(&|_, sensor| sensor.is_continuous()) {
+            return at(format!("must include `{}`, which measures at every instant", name(place)));
+        }
+        let filter = self.estimator.as_ref().and_then(EstimatorKind::attitude);
+        if filter.is_some() {
+            let place = missing(&|_, sensor| matches!(sensor, SensorKind::Gyro(_)))?;
+            return at(format!(
+                "must include `{}`, with which the `[estimator.attitude]` goes on through all modes",
+                name(place)
+            ));
+        }
+        if self.estimator.is_some() || mode.law.needs() > EstimateNeeds::Field {
+            let of_motion = |_: usize, sensor: &SensorKind| sensor.measures_motion() && !sensor.measures_vector();
+            let place = missing(&of_motion)?;
+            let reader = match &self.estimator {
+                Some(estimator) => format!("the `[estimator.{}]`", estimator.kind()),
+                None => format!("the law `{law}`"),
+            };
+            return at(format!("must include `{}`, which {reader} needs", name(place)));
+        }
+        None
+    }
+
+    /// Checks that the quantities of a mode's conditions are known in it, and that something tests them.
+    fn mode_exit_fault(
+        &self,
+        index: usize,
+        mode: &OperatingMode,
+        known: &Vocabulary<'_>,
+        offers: &Offers,
+    ) -> Option<ConfigError> {
+        let in_use = self.sensors_in_use(index);
+        let used = |wanted: &dyn Fn(&SensorKind) -> bool| {
+            self.sensor.iter().zip(&in_use).any(|(sensor, in_use)| *in_use && wanted(sensor))
+        };
+        let knows_motion = self.estimator.is_some()
+            || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
+        let filters = self.estimator.as_ref().is_some_and(|estimator| {
+            ["kalman", "extended_kalman", "unscented_kalman"].contains(&estimator.kind())
+        });
+        let stores = |kind: &str| offers.actuators.iter().any(|member| member.kind == kind);
+        let why = |quantity: ModeQuantity| -> Option<&'static str> {
+            match quantity {
+                ModeQuantity::Rate | ModeQuantity::RateError | ModeQuantity::AttitudeError => (!knows_motion)
+                    .then_some("reads the estimated motion, and no sensor of attitude or rates is in use in this mode"),
+                ModeQuantity::Momentum => (!stores("wheels") && !stores("control_moment_gyros"))
+                    .then_some("reads a stored momentum, and there are neither `wheels` nor `control_moment_gyros`"),
+                ModeQuantity::WheelSpeed => {
+                    (!stores("wheels")).then_some("reads the speeds of `wheels`, and there are none")
+                }
+                ModeQuantity::Field | ModeQuantity::FieldRate => (!used(&SensorKind::measures_field))
+                    .then_some("reads the measured field, and no `magnetometer` is in use in this mode"),
+                ModeQuantity::Sunlight => {
+                    (!offers.environment.sun).then_some("reads the light of `environment.sun`, and there is none")
+                }
+                ModeQuantity::LockLost => (!filters)
+                    .then_some("reads the lock of a Kalman filter about each axis, and there is none"),
+                ModeQuantity::Silent(sensor) => {
+                    let of = &self.sensor[sensor];
+                    if !in_use[sensor] {
+                        Some("names a sensor that is not in use in this mode")
+                    } else if of.is_continuous() || !of.measures_motion() {
+                        Some("names a sensor without readings at samples")
+                    } else {
+                        None
+                    }
+                }
+                _ => None,
+            }
+        };
+        let samples = self.law.period().is_some();
+        mode.leave.iter().enumerate().find_map(|(place, exit)| {
+            let read = exit.when.parse(known).ok()?;
+            let fault = read.leaves().into_iter().find_map(|(quantity, _)| why(quantity)).or_else(|| {
+                let why = "is tested at the samples of a law, and no law of a mode has a period";
+                (!samples && !read.reads_truth()).then_some(why)
+            });
+            fault.map(|why| ConfigError::new(format!("leave[{place}].when"), why))
+        })
+    }
+}

@@ -1,0 +1,83 @@
+//! Scenario of one mode of operation alone, for analyses of its loop.
+
+use std::collections::BTreeMap;
+
+use flexsc_control::actuator::AssignedActuator;
+use flexsc_control::operation::ModeTarget;
+use flexsc_formats::document::{ConfigError, ScenarioError};
+
+use super::{Scenario, ScenarioSpec};
+
+impl Scenario {
+    /// Returns the scenario in which one of the modes acts throughout: with its law, target, sensors and actuators.
+    ///
+    /// # Errors
+    /// Fails without a mode of this name, and if the parts of the mode are inconsistent without the others.
+    pub fn in_mode(&self, name: &str) -> Result<Self, ScenarioError> {
+        let Some(index) = self.mode.iter().position(|mode| mode.name == name) else {
+            let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
+            let why = if names.is_empty() {
+                format!("has no modes of operation, got `{name}`")
+            } else {
+                format!("must be one of {}, got `{name}`", names.join(", "))
+            };
+            return Err(ScenarioError::Key { origin: self.name.clone(), key: "mode".to_owned(), why });
+        };
+        self.clone().with(|written| written.keep_mode(index))
+    }
+
+    /// Returns the error of an analysis of one loop, for a scenario with several, one in each mode.
+    pub fn mode_choice_fault(&self) -> Option<ConfigError> {
+        let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
+        (!names.is_empty()).then(|| {
+            let why = format!("has several loops, one in each mode: choose one with `--mode`: {}", names.join(", "));
+            ConfigError::new("mode", why)
+        })
+    }
+}
+
+impl ScenarioSpec {
+    /// Replaces the modes by the parts of one of them.
+    fn keep_mode(&mut self, index: usize) {
+        let in_use = self.sensors_in_use(index);
+        let has_targets = self.has_mode_targets();
+        let mode = self.mode[index].clone();
+        if has_targets {
+            self.target = mode.target.iter().map(ModeTarget::at_start).collect();
+        }
+        if let Some(names) = &mode.actuators {
+            let acts = |_: usize, of: &AssignedActuator| {
+                of.unloads.is_some() || names.iter().any(|name| name.as_str() == of.kind.kind())
+            };
+            self.actuator.retain(acts);
+        }
+        self.sensor.retain(|place, _| in_use[place]);
+        self.law = mode.law;
+        self.mode.clear();
+        self.mode_targets.clear();
+        self.keep_uncertain(index, &in_use);
+    }
+
+    /// Renames the uncertain keys of the law of a mode, and leaves out those of other modes, and of sensors and actuators
+    /// whose places may have changed.
+    fn keep_uncertain(&mut self, index: usize, in_use: &[bool]) {
+        let own = format!("mode[{index}].law.");
+        let moved = |key: &str| {
+            key.starts_with("actuator[") || (key.starts_with("sensor[") && in_use.contains(&false))
+        };
+        let renamed = |key: String| match key.strip_prefix(&own) {
+            Some(rest) => Some(format!("law.{rest}")),
+            None if key.starts_with("mode[") || moved(&key) => None,
+            None => Some(key),
+        };
+        let kept = std::mem::take(&mut self.uncertain);
+        self.uncertain = kept
+            .into_iter()
+            .filter_map(|(key, distribution)| Some((renamed(key)?, distribution)))
+            .collect::<BTreeMap<_, _>>();
+        self.correlated.iter_mut().for_each(|group| {
+            group.keys = std::mem::take(&mut group.keys).into_iter().filter_map(renamed).collect();
+        });
+        self.correlated.retain(|group| group.keys.len() > 1);
+    }
+}

@@ -1,0 +1,176 @@
+//! Modes of operation of a run: their conditions on what the laws know, and the changes of laws, targets, sensors and
+//! actuators.
+
+use std::collections::VecDeque;
+
+use flexsc_control::actuator::ActuatorEvent;
+use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence, SequencedMode};
+use flexsc_control::sensor::SensorKind;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Command, ModeEvent, Record};
+
+use super::run_view::RunView;
+use super::{Simulation, SimulationError};
+use crate::scenario::Scenario;
+
+/// Largest number of changes in a second; more are chatter.
+const MOST_CHANGES: usize = 32;
+
+/// Modes of operation of a run.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    sequence: Option<ModeSequence>,
+    /// For each mode, which sensors are in use.
+    in_use: Vec<Vec<bool>>,
+    /// Instants of the last changes.
+    changes: VecDeque<Instant>,
+}
+
+/// Quantities of a run at an instant, as the conditions read them.
+struct KnownQuantities<'a> {
+    run: RunView<'a>,
+    sequence: &'a ModeSequence,
+}
+
+impl Operation {
+    /// Creates the modes of a scenario, before its start.
+    pub fn new(scenario: &Scenario) -> Self {
+        let kinds: Vec<&str> = scenario.sensor.iter().map(SensorKind::kind).collect();
+        // A scenario with modes has a law with a period.
+        let shortest = scenario.law.period().unwrap_or(scenario.study.assessment_period);
+        let modes = SequencedMode::from_modes(&scenario.mode, &kinds, shortest);
+        Self {
+            sequence: ModeSequence::new(modes),
+            in_use: (0..scenario.mode.len()).map(|mode| scenario.sensors_in_use(mode)).collect(),
+            changes: VecDeque::new(),
+        }
+    }
+
+    /// Returns the next instant at which conditions are tested.
+    #[inline]
+    pub fn due(&self) -> Option<Instant> {
+        self.sequence.as_ref().and_then(ModeSequence::due)
+    }
+
+    /// Returns the row of the first mode, at the start of a run with modes.
+    pub fn first_event(&self, now: Instant) -> Option<ModeEvent> {
+        let change = ModeChange { from: None, to: self.sequence.as_ref()?.active(), cause: String::new() };
+        self.event(now, change)
+    }
+
+    fn event(&self, now: Instant, change: ModeChange) -> Option<ModeEvent> {
+        let sequence = self.sequence.as_ref()?;
+        let (time_s, time_whole_s, time_fs) = Command::times(now);
+        Some(ModeEvent {
+            time_s,
+            time_whole_s,
+            time_fs,
+            index: change.to as u64,
+            mode: sequence.name(change.to).to_owned(),
+            before: change.from.map_or("", |mode| sequence.name(mode)).to_owned(),
+            cause: change.cause,
+        })
+    }
+
+    /// Counts a change at `now`; fails if the modes change without end.
+    fn count_change(&mut self, now: Instant, event: &ModeEvent) -> Result<(), SimulationError> {
+        self.changes.push_back(now);
+        while self.changes.front().is_some_and(|first| now.since(*first) > Span::from_seconds(1.0)) {
+            self.changes.pop_front();
+        }
+        if self.changes.len() <= MOST_CHANGES {
+            return Ok(());
+        }
+        Err(SimulationError::ModeChatter {
+            at: now,
+            count: self.changes.len(),
+            before: event.before.clone(),
+            after: event.mode.clone(),
+        })
+    }
+}
+
+impl Simulation {
+    /// Tests the conditions of the mode that are due, and enters the mode that follows: its laws decide at this instant on
+    /// its target, with its sensors and actuators.
+    pub(super) fn update_mode(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.clock.now();
+        if self.operation.due() != Some(now) {
+            return Ok(());
+        }
+        let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
+        let before = sequence.clone();
+        let change = sequence.test(now, &KnownQuantities { run: self.read_view(), sequence: &before });
+        self.operation.sequence = Some(sequence);
+        let Some(change) = change else { return Ok(()) };
+        let mode = change.to;
+        self.laws.enter_mode(now, mode);
+        self.sensors.set_in_use(now, &self.operation.in_use[mode]);
+        self.loads.actuator.update(now, ActuatorEvent::Mode(mode));
+        if self.guidance.enter_mode(now, mode) {
+            self.estimation.move_origin(now, &self.guidance);
+        }
+        let Some(event) = self.operation.event(now, change) else { return Ok(()) };
+        self.operation.count_change(now, &event)?;
+        Ok(self.recorder.record_mode(now, &event, record)?)
+    }
+}
+
+impl ModeReadings for KnownQuantities<'_> {
+    fn value(&self, quantity: ModeQuantity) -> f64 {
+        let norm = |values: &[f64]| f64::sqrt(values.iter().map(|value| value * value).sum());
+        let run = &self.run;
+        let (now, estimates) = (run.now, &run.estimation.estimates);
+        match quantity {
+            ModeQuantity::Rate => norm(&run.rates()),
+            ModeQuantity::RateError => {
+                let reference = run.reference();
+                norm(&run.rates().iter().zip(reference).map(|(rate, [_, of])| rate - of).collect::<Vec<_>>())
+            }
+            ModeQuantity::AttitudeError => {
+                let errors = estimates.iter().zip(run.reference());
+                norm(&errors.map(|(estimate, [angle, _])| estimate.angle - angle).collect::<Vec<_>>())
+            }
+            ModeQuantity::Momentum => norm(&run.loads.actuator.capabilities().stored_momentum(now)),
+            ModeQuantity::WheelSpeed => {
+                let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid);
+                speeds.into_iter().map(f64::abs).reduce(f64::max).unwrap_or(f64::NAN)
+            }
+            ModeQuantity::Field => run.sensors.measured_field().map_or(f64::NAN, |field| field.norm()),
+            ModeQuantity::FieldRate => run.sensors.field_rate.map_or(f64::NAN, |change| change.norm()),
+            ModeQuantity::Sunlight => run.guidance.sunlight(now),
+            ModeQuantity::Silent(sensor) => run.sensors.silence(now, sensor).seconds(),
+            ModeQuantity::Entries(mode) => self.sequence.entries(mode) as f64,
+            ModeQuantity::LockLost => {
+                f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
+            }
+            clock => self.clock(clock).seconds(),
+        }
+    }
+
+    fn clock(&self, quantity: ModeQuantity) -> Span {
+        let is_of_mode = matches!(quantity, ModeQuantity::Time | ModeQuantity::TrueTime);
+        self.run.now.since(if is_of_mode { self.sequence.entered() } else { Instant::START })
+    }
+}
+
+impl RunView<'_> {
+    /// Returns the estimated rate about each axis (rad/s).
+    fn rates(&self) -> Vec<f64> {
+        self.estimation.estimates.iter().map(|estimate| estimate.rate).collect()
+    }
+
+    /// Returns the angle (rad) of the reference about each axis, from which the estimated angles differ by the error, and
+    /// its rate (rad/s).
+    fn reference(&self) -> Vec<[f64; 2]> {
+        let estimates = &self.estimation.estimates;
+        if estimates.len() == 1 {
+            let (angle, rate) = self.guidance.manoeuvre_state(self.now);
+            return vec![[angle, rate]];
+        }
+        match self.guidance.reference_motion(self.now, estimates) {
+            Some(setpoints) => setpoints.iter().map(|setpoint| [0.0, setpoint.rate]).collect(),
+            None => vec![[0.0; 2]; estimates.len()],
+        }
+    }
+}
