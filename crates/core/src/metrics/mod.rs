@@ -2,6 +2,7 @@
 
 mod adaptation;
 mod attitude;
+mod blinding;
 mod envelope;
 mod filter;
 pub mod goal;
@@ -36,6 +37,7 @@ pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;
 use attitude::AttitudeMetrics;
+use blinding::BlindingMetrics;
 use envelope::EnvelopeMetrics;
 use filter::FilterMetrics;
 use line_of_sight::LineOfSightMetrics;
@@ -63,6 +65,7 @@ pub struct MetricsCollector {
     windows: Option<EnvelopeMetrics>,
     tracked: ObserverMetrics,
     sights: LineOfSightMetrics,
+    blinding: BlindingMetrics,
     requirements: RequirementMetrics,
 }
 
@@ -104,6 +107,7 @@ impl MetricsCollector {
             windows: EnvelopeMetrics::if_not_collected_elsewhere(scenario),
             tracked: ObserverMetrics::new(scenario),
             sights: LineOfSightMetrics::new(scenario),
+            blinding: BlindingMetrics::new(scenario),
             requirements,
         }
     }
@@ -129,6 +133,7 @@ impl MetricsCollector {
             RunKind::Rotation(rotation) => rotation.finish(),
             RunKind::ThreeAxis(rotation) => rotation.finish(),
         };
+        metrics.extend(self.blinding.finish());
         metrics.extend(self.sights.finish());
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
@@ -200,6 +205,7 @@ impl Record for MetricsCollector {
                 } else {
                     sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
+                    sample.get().into_iter().for_each(|event| self.blinding.observe(event));
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));
                 }
