@@ -107,17 +107,17 @@ fn a_section_has_a_matrix_and_words() {
     accepted[1][1][2][1] = true;
     accepted[1][0][9][1] = true;
     accepted[1][1][9][1] = true;
-    assert_eq!(total(&accepted), 22);
+    assert_eq!(total(&accepted), 25);
     let section = section("A body", &accepted);
     let expected = "## A body
 
-22 of 9240 combinations.
+25 of 10780 combinations.
 
 <div class=\"matrix\" markdown>
 
 | law | ideal | hold | wheels |
 |---|:-:|:-:|:-:|
-| `pd` | 8 | 8 | 6 |
+| `pd` | 9 | 9 | 7 |
 
 </div>
 

@@ -45,7 +45,7 @@ pub const LAWS: [Kind; 11] = [
     ),
 ];
 
-pub const SENSORS: [Kind; 6] = [
+pub const SENSORS: [Kind; 7] = [
     ("continuous", "continuous", "sensor = \"continuous\""),
     ("sampled", "sampled", "sensor = { sampled = { period = 0.2, noise = 1e-6 } }"),
     ("gyro", "gyro", "sensor = { gyro = { period = 0.2, noise = 1e-6 } }"),
@@ -63,6 +63,11 @@ pub const SENSORS: [Kind; 6] = [
         "gyro, magnetometer and sun_sensor",
         "gyro with magnetometer and Sun sensor",
         "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { magnetometer = { period = 1.0, noise = 1e-8 } }, { sun_sensor = { period = 1.0, noise = 1e-3 } }]",
+    ),
+    (
+        "gyro, earth_sensor and sun_cells",
+        "gyro with Earth sensor and Sun cells",
+        "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { earth_sensor = { period = 1.0, noise = 1e-3 } }, { sun_cells = { period = 1.0, noise = 1e-2, cells = [{ normal = [1, 0, 0] }, { normal = [-1, 0, 0] }, { normal = [0, 1, 0] }, { normal = [0, -1, 0] }, { normal = [0, 0, 1] }, { normal = [0, 0, -1] }] } }]",
     ),
 ];
 

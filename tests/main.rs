@@ -47,6 +47,7 @@ mod adaptation;
 mod adaptive;
 mod attitude_filter;
 mod bearings;
+mod blinding;
 mod convergence;
 mod cycles;
 mod damping;

@@ -23,6 +23,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "adaptive-bandwidth",
     "agile-observer",
     "attitude-hold",
+    "blinded-tracker",
     "bounded-jitter",
     "canted-jets",
     "detumble-and-point",

@@ -64,11 +64,18 @@ pub struct BodyOffers {
 
 /// Offers of an environment.
 #[derive(Copy, Clone, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is an offer of its own")]
 pub struct EnvironmentOffers {
     /// True if there is a magnetic field.
     pub magnetic_field: bool,
     /// True if the direction to the Sun is known.
     pub sun: bool,
+    /// True if the body is on an orbit.
+    pub orbit: bool,
+    /// True if the position of the Moon is known, which follows from the date.
+    pub moon: bool,
+    /// True if the orbit is far below that of the Moon.
+    pub is_below_moon: bool,
 }
 
 /// Law about an axis.

@@ -170,6 +170,8 @@ metrics! {
         "Fraction of the values of each requirement within its limit, in the order of requirement_values; null without values";
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
         "Root mean square reading of each accelerometer (norm over its axes)";
+    TRACKER_BLINDED = "tracker_blinded_s", "s",
+        "Time for which Sun, Moon or limb blind each star tracker with an exclusion, to rounding";
     SIGHT_RMS = "line_of_sight_rms_rad", "rad",
         "Root mean square angle between each line of sight and its target direction, over the samples in its window; null without samples";
     SIGHT_PEAK = "line_of_sight_peak_rad", "rad",

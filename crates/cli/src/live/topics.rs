@@ -45,6 +45,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
                 .jets()
                 .is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant),
         ),
+        ("/blinding", scenario.sensor.exclusions().next().is_some()),
         ("/wheel_events", scenario.study.bearings.iter().any(Bearing::can_stick)),
         ("/summary", true),
         ("/metrics", true),

@@ -37,6 +37,12 @@ impl Summary<'_> {
             );
             say!("  consistency    {}", self.consistency());
         }
+        if let Some(MetricValue::Numbers(times)) = self.metrics.get("tracker_blinded_s") {
+            for time in times {
+                let percent = digits(100.0 * time / self.scenario.duration.seconds());
+                say!("  star tracker   blinded for {} s, {percent} % of the time", digits(*time));
+            }
+        }
         say!(
             "  pointing       error {} at the end (norm of three axes)",
             self.quantity("pointing_error_end_rad", "rad")

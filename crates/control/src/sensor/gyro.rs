@@ -68,6 +68,9 @@ pub struct Gyro {
     /// diagonal is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
+    /// Largest rate that it outputs about each axis (rad/s), at which it clips; default: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<PerAxis<Positive>>,
     /// Intervals in which the gyro fails; star trackers still give the attitude.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<sensor::SensorFailure>,
@@ -135,6 +138,7 @@ impl Gyro {
             ("bias_instability", self.bias_instability.is_three()),
             ("scale", self.scale.is_three()),
             ("misalignment", self.misalignment.is_some()),
+            ("range", self.range.is_some_and(|range| range.is_three())),
         ];
         keys.into_iter().find(|(_, three)| *three).map(|(key, _)| key)
     }
@@ -278,8 +282,18 @@ impl GyroState {
         *reported
     }
 
-    /// Returns the rates measured now (rad/s).
+    /// Returns the rates measured now (rad/s), clipped to the range.
     fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
+        let rate = self.unlimited_rates(now, truth);
+        let Some(range) = &self.gyro.range else { return rate };
+        std::array::from_fn(|axis| {
+            let most = range.about(axis).get();
+            rate[axis].clamp(-most, most)
+        })
+    }
+
+    /// Returns the rates that a gyro without a range would measure now (rad/s).
+    fn unlimited_rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
         let Self { gyro, noise, counter, wander, .. } = self;
         if let Some(counter) = counter {
             let mean = counter.mean_rate(gyro, now, truth);

@@ -30,6 +30,8 @@ impl SensorKind {
             Self::StarTracker(_)
             | Self::Magnetometer(_)
             | Self::SunSensor(_)
+            | Self::SunCells(_)
+            | Self::EarthSensor(_)
             | Self::Tachometer(_)
             | Self::Accelerometer(_)
             | Self::Own(_) => None,

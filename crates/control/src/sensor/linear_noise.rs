@@ -60,6 +60,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => Some(tracker_noise(tracker)),
             Self::Magnetometer(_)
             | Self::SunSensor(_)
+            | Self::SunCells(_)
+            | Self::EarthSensor(_)
             | Self::Tachometer(_)
             | Self::Accelerometer(_)
             | Self::Own(_) => None,

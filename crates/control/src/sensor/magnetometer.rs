@@ -2,7 +2,7 @@
 
 use flexsc_formats::document;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::{Finite, NonNegative, Time};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
 use flexsc_spacecraft::axes::PerAxis;
@@ -45,6 +45,9 @@ pub struct Magnetometer {
     /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
+    /// Largest field that it outputs along each axis (T), at which it clips; default: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub range: Option<PerAxis<Positive>>,
     /// Intervals in which the magnetometer fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
@@ -91,7 +94,13 @@ impl VectorSensor for Magnetometer {
     }
 
     fn reading(&self, _: &Vector, measured: Vector) -> Option<Vector> {
-        Some(measured)
+        let clipped = |range: PerAxis<Positive>| {
+            Vector::from_fn(|axis, _| {
+                let most = range.about(axis).get();
+                measured[axis].clamp(-most, most)
+            })
+        };
+        Some(self.range.map_or(measured, clipped))
     }
 
     fn is_direction(&self) -> bool {

@@ -2,6 +2,8 @@
 
 mod accelerometer;
 mod custom_sensor;
+mod earth_sensor;
+mod exclusion;
 mod exposure;
 mod gauss_markov_bias;
 mod gyro;
@@ -15,6 +17,7 @@ mod reference;
 mod requirements;
 mod sampled;
 mod star_tracker;
+mod sun_cells;
 mod sun_sensor;
 mod tachometer;
 mod vector;
@@ -35,6 +38,8 @@ use crate::part::Part;
 pub use crate::orientation::Orientation;
 pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 pub use custom_sensor::SensorSpec;
+pub use earth_sensor::EarthSensor;
+pub use exclusion::Exclusion;
 pub use exposure::ExposureMean;
 pub use gyro::{Gyro, GyroState};
 pub use linear_measurement::LinearMeasurement;
@@ -42,6 +47,7 @@ pub use magnetometer::Magnetometer;
 pub use reference::ReferenceNoise;
 pub use sampled::{Sampled, SampledState, SensorFailure};
 pub use star_tracker::StarTracker;
+pub use sun_cells::{SunCell, SunCells};
 pub use sun_sensor::SunSensor;
 pub use tachometer::{Tachometer, TachometerState};
 
@@ -63,6 +69,10 @@ pub enum SensorKind {
     Magnetometer(Magnetometer),
     /// The direction to the Sun.
     SunSensor(SunSensor),
+    /// The direction to the Sun, from the currents of cells.
+    SunCells(SunCells),
+    /// The direction to the planet's centre.
+    EarthSensor(EarthSensor),
     /// The speeds of the wheels, for their drives; it measures nothing of the body's motion.
     Tachometer(Tachometer),
     /// The specific force at a point of a spacecraft, for the log only.
@@ -83,6 +93,9 @@ pub trait Sensor: Part {
 
     /// Replaces the last attitude of a sensor with an exposure time by the mean over the exposure that ends now.
     fn close_exposure(&mut self, _: &ExposureMean) {}
+
+    /// Sets whether a bright body blinds the sensor from now on.
+    fn set_blinded(&mut self, _: bool) {}
 
     /// Returns the true bias of the rates (rad/s), of a gyro.
     fn true_bias(&self) -> Option<[f64; 3]> {
@@ -112,7 +125,7 @@ pub struct Truth {
     pub rigid: [f64; 3],
     /// Integral of `rate` (rad), up to a constant, which integrating gyros read.
     pub turned: [f64; 3],
-    /// Vectors of the environment: magnetic field and direction to the Sun.
+    /// Vectors of the environment: magnetic field, and directions to Sun and planet.
     pub sky: EnvironmentObservation,
 }
 
@@ -157,6 +170,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => tracker.inconsistency(),
             Self::Magnetometer(magnetometer) => magnetometer.inconsistency(),
             Self::SunSensor(sensor) => sensor.inconsistency(),
+            Self::SunCells(sensor) => sensor.inconsistency(),
+            Self::EarthSensor(sensor) => sensor.inconsistency(),
             Self::Accelerometer(accelerometer) => accelerometer.inconsistency(),
             Self::Continuous | Self::Sampled(_) | Self::Tachometer(_) | Self::Own(_) => None,
         }
@@ -172,6 +187,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
             Self::Magnetometer(magnetometer) => magnetometer.start(seed, ordinal),
             Self::SunSensor(sensor) => sensor.start(seed, ordinal),
+            Self::SunCells(sensor) => Box::new(sensor.start(seed, ordinal)),
+            Self::EarthSensor(sensor) => sensor.start(seed, ordinal),
             Self::Tachometer(_) | Self::Accelerometer(_) => Box::new(tachometer::NoMeasurement),
             Self::Own(own) => own.start(axes, seed),
         }
@@ -196,6 +213,8 @@ impl SensorKind {
             Self::StarTracker(_) => "star_tracker",
             Self::Magnetometer(_) => "magnetometer",
             Self::SunSensor(_) => "sun_sensor",
+            Self::SunCells(_) => "sun_cells",
+            Self::EarthSensor(_) => "earth_sensor",
             Self::Tachometer(_) => "tachometer",
             Self::Accelerometer(_) => "accelerometer",
             Self::Own(_) => "own",
@@ -212,6 +231,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => Some(tracker.period),
             Self::Magnetometer(magnetometer) => Some(magnetometer.period),
             Self::SunSensor(sensor) => Some(sensor.period),
+            Self::SunCells(sensor) => Some(sensor.period),
+            Self::EarthSensor(sensor) => Some(sensor.period),
             Self::Own(own) => Some(own.period()),
         }
     }
@@ -235,6 +256,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => tracker.point.as_deref(),
             Self::Magnetometer(magnetometer) => magnetometer.point.as_deref(),
             Self::SunSensor(sensor) => sensor.point.as_deref(),
+            Self::SunCells(sensor) => sensor.point.as_deref(),
+            Self::EarthSensor(sensor) => sensor.point.as_deref(),
             Self::Accelerometer(accelerometer) => accelerometer.point.as_deref(),
         }
     }
@@ -246,6 +269,8 @@ impl SensorKind {
             | Self::StarTracker(_)
             | Self::Magnetometer(_)
             | Self::SunSensor(_)
+            | Self::SunCells(_)
+            | Self::EarthSensor(_)
             | Self::Tachometer(_)
             | Self::Accelerometer(_) => None,
             Self::Sampled(sampled) => sampled.rate_noise.map(Positive::get),
@@ -264,6 +289,8 @@ impl SensorKind {
             | Self::Gyro(_)
             | Self::Magnetometer(_)
             | Self::SunSensor(_)
+            | Self::SunCells(_)
+            | Self::EarthSensor(_)
             | Self::Tachometer(_)
             | Self::Accelerometer(_) => 0.0,
         }
@@ -271,7 +298,10 @@ impl SensorKind {
 
     /// Returns true if the sensor measures a vector, which alone does not determine the attitude.
     pub fn measures_vector(&self) -> bool {
-        matches!(self, Self::Magnetometer(_) | Self::SunSensor(_))
+        matches!(
+            self,
+            Self::Magnetometer(_) | Self::SunSensor(_) | Self::SunCells(_) | Self::EarthSensor(_)
+        )
     }
 
     /// Returns true if the sensor measures the magnetic field.
@@ -286,6 +316,8 @@ impl SensorKind {
             Self::StarTracker(tracker) => &tracker.faults,
             Self::Magnetometer(magnetometer) => &magnetometer.faults,
             Self::SunSensor(sensor) => &sensor.faults,
+            Self::SunCells(sensor) => &sensor.faults,
+            Self::EarthSensor(sensor) => &sensor.faults,
             Self::Tachometer(tachometer) => &tachometer.faults,
             Self::Accelerometer(accelerometer) => &accelerometer.faults,
             Self::Gyro(gyro) => &gyro.faults,

@@ -16,6 +16,8 @@ pub enum ReferenceNoise {
     MagneticField(Matrix3<f64>),
     /// Direction to the Sun, with the covariance of its components.
     Sun(Matrix3<f64>),
+    /// Direction to the planet's centre, with the covariance of its components.
+    Earth(Matrix3<f64>),
 }
 
 impl SensorKind {
@@ -32,6 +34,8 @@ impl SensorKind {
                 Some((magnetometer.latency(), ReferenceNoise::MagneticField(magnetometer.covariance())))
             }
             Self::SunSensor(sensor) => Some((sensor.latency(), ReferenceNoise::Sun(sensor.covariance()))),
+            Self::SunCells(sensor) => Some((sensor.latency(), ReferenceNoise::Sun(sensor.covariance()))),
+            Self::EarthSensor(sensor) => Some((sensor.latency(), ReferenceNoise::Earth(sensor.covariance()))),
             Self::Continuous
             | Self::Gyro(_)
             | Self::Tachometer(_)

@@ -2,7 +2,9 @@
 
 use flexsc_numerics::time::Span;
 
-use super::{Accelerometer, Magnetometer, SensorKind, SensorSpec, SunSensor, Tachometer};
+use super::{
+    Accelerometer, EarthSensor, Magnetometer, SensorKind, SensorSpec, SunCells, SunSensor, Tachometer,
+};
 use crate::custom::Custom;
 use crate::offers::{Offers, SensorOffers};
 use crate::one_or_many::OneOrMany;
@@ -24,9 +26,11 @@ impl SensorKind {
         needs.report(Rule::Sensor, self.inconsistency());
         match self {
             Self::Gyro(gyro) => gyro.requires(offers, needs),
-            Self::StarTracker(_) => require_attitude(offers, needs),
+            Self::StarTracker(tracker) => tracker.requires(offers, needs),
             Self::Magnetometer(_) => Magnetometer::requires(offers, needs),
             Self::SunSensor(_) => SunSensor::requires(offers, needs),
+            Self::SunCells(_) => SunCells::requires(offers, needs),
+            Self::EarthSensor(_) => EarthSensor::requires(offers, needs),
             Self::Tachometer(_) => Tachometer::requires(ordinal, offers, needs),
             Self::Accelerometer(_) => Accelerometer::requires(offers, needs),
             Self::Continuous => needs.require(

@@ -9,9 +9,12 @@ use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::exclusion::Exclusion;
 use super::latency_queue::{LatencyQueue, with_failures};
 use super::{ExposureMean, Orientation, Reading, Sensor, SensorFailure, Truth, stream};
+use crate::offers::Offers;
 use crate::part::Part;
+use crate::requirement::Requirements;
 
 /// A star tracker on a body with three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +41,9 @@ pub struct StarTracker {
     /// Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
+    /// Angles between the boresight, its z axis, and bright bodies below which it gives no measurement; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exclusion: Option<Exclusion>,
     /// Intervals in which the star tracker fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
@@ -57,11 +63,23 @@ impl StarTracker {
             noise: [0, 1, 2].map(draws),
             queue: LatencyQueue::new(self.period, self.latency()),
             open_exposure: None,
+            is_blinded: false,
+        }
+    }
+
+    /// Adds the requirements of the sensor on the other parts of a scenario.
+    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_attitude(offers, needs);
+        if let Some(exclusion) = &self.exclusion {
+            exclusion.requires(offers, needs);
         }
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::ConfigError> {
+        if let Some(fault) = self.exclusion.as_ref().and_then(Exclusion::inconsistency) {
+            return Some(fault);
+        }
         let (exposure, latency) = (self.exposure.get(), self.latency.get());
         if self.exposure() > self.period {
             let why =
@@ -130,6 +148,8 @@ pub struct StarTrackerState {
     queue: LatencyQueue,
     /// True attitude in the middle of the exposure that is open, and the error of the reading (rad).
     open_exposure: Option<(Quaternion<f64>, Vector)>,
+    /// True while a bright body is within its exclusion angle.
+    is_blinded: bool,
 }
 
 impl StarTrackerState {
@@ -146,7 +166,7 @@ impl StarTrackerState {
         let reading =
             Reading { at: Orientation::Attitude(attitude * rotation(&error)), rate: None, sight: None };
         let rate = Vector::from(truth.rate).norm();
-        if self.tracker.blackout_rate.is_some_and(|limit| rate >= limit.get()) {
+        if self.is_blinded || self.tracker.blackout_rate.is_some_and(|limit| rate >= limit.get()) {
             return None;
         }
         let faults = &self.tracker.faults;
@@ -180,6 +200,10 @@ impl Sensor for StarTrackerState {
         if let Some((middle, error)) = self.open_exposure.take() {
             self.queue.replace_last(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
         }
+    }
+
+    fn set_blinded(&mut self, is_blinded: bool) {
+        self.is_blinded = is_blinded;
     }
 
     fn copy(&self) -> Box<dyn Sensor> {
@@ -327,5 +351,13 @@ mod tests {
             [mean_error(0.0, 0.0), mean_error(1.0, 0.02), mean_error(2.0, 0.0), mean_error(3.0, 0.019)],
             [true, false, false, true]
         );
+        let mut tracker = start("exclusion = { sun = 0.7 }");
+        let mut measures = |t: f64, is_blinded: bool| {
+            tracker.set_blinded(is_blinded);
+            tracker
+                .read(Instant::START + Span::from_seconds(t), &truth(still, [0.0; 3], [0.0; 3]), None)
+                .is_some()
+        };
+        assert_eq!([measures(0.0, true), measures(1.0, false), measures(2.0, true)], [false, true, false]);
     }
 }

@@ -142,7 +142,7 @@ mod tests {
     use flexsc_numerics::time::Instant;
 
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
-        let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
+        let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun, nadir: None };
         let [elastic, rate] = [[0.0; 3]; 2];
         Truth { orientation: Orientation::Attitude(attitude), elastic, rate, rigid: rate, turned: rate, sky }
     }

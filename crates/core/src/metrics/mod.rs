@@ -2,6 +2,7 @@
 
 mod adaptation;
 mod attitude;
+mod blinding;
 mod envelope;
 mod filter;
 pub mod goal;
@@ -37,6 +38,7 @@ pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;
 use attitude::AttitudeMetrics;
+use blinding::BlindingMetrics;
 use envelope::EnvelopeMetrics;
 use filter::FilterMetrics;
 use line_of_sight::LineOfSightMetrics;
@@ -66,6 +68,7 @@ pub struct MetricsCollector {
     tracked: ObserverMetrics,
     sights: LineOfSightMetrics,
     operation: Option<ModeMetrics>,
+    blinding: BlindingMetrics,
     requirements: RequirementMetrics,
 }
 
@@ -108,6 +111,7 @@ impl MetricsCollector {
             tracked: ObserverMetrics::new(scenario),
             sights: LineOfSightMetrics::new(scenario),
             operation: ModeMetrics::new(scenario),
+            blinding: BlindingMetrics::new(scenario),
             requirements,
         }
     }
@@ -134,6 +138,7 @@ impl MetricsCollector {
             RunKind::ThreeAxis(rotation) => rotation.finish(),
         };
         metrics.extend(self.operation.into_iter().flat_map(ModeMetrics::finish));
+        metrics.extend(self.blinding.finish());
         metrics.extend(self.sights.finish());
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
@@ -209,6 +214,7 @@ impl Record for MetricsCollector {
                     sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
                     sample.get().into_iter().for_each(|event| rotation.observe_mode(now, event));
+                    sample.get().into_iter().for_each(|event| self.blinding.observe(event));
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));
                 }

@@ -12,6 +12,9 @@ use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::ScenarioSpec;
 
+/// Distance from the planet's centre (m) up to which directions to the Moon change slowly.
+const BELOW_MOON: f64 = 1e8;
+
 impl ScenarioSpec {
     /// Returns the sampling period of sensors and estimator; `None` if the angle is measured at every instant.
     pub(super) fn sample_period(&self) -> Option<Span> {
@@ -31,6 +34,11 @@ impl ScenarioSpec {
             environment: EnvironmentOffers {
                 magnetic_field: around.is_some_and(|around| around.magnetic_field.is_some()),
                 sun: around.is_some_and(|around| around.sun.is_some()),
+                orbit: around.is_some_and(|around| around.orbit.is_some()),
+                moon: around.is_some() && self.date_ns().is_some(),
+                is_below_moon: around
+                    .and_then(|around| around.orbit.as_ref())
+                    .is_none_or(|orbit| orbit.farthest() <= BELOW_MOON),
             },
             laws: (0..self.axis_count()).map(law).collect(),
             law_kind: self.law.kind(),

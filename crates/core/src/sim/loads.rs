@@ -141,6 +141,16 @@ impl Loads {
         &self.wrench
     }
 
+    /// Returns a bound of the torque (N m) that the wrench of the current segment exerts on the body, without the moment of
+    /// torquers.
+    pub fn torque_bound(&self) -> f64 {
+        let Wrench { hub, torque, rotors, gimbals, sines, .. } = &self.wrench;
+        let rotors: f64 = rotors.iter().map(|rotor| rotor.torque.abs()).sum();
+        let gimbals: f64 = gimbals.iter().map(|gimbal| (gimbal.momentum * gimbal.rate).abs()).sum();
+        let sines: f64 = sines.iter().map(|(axis, sine)| axis.norm() * sine.amplitude.abs()).sum();
+        Vector::from(*hub).norm() + torque.norm() + rotors + gimbals + sines
+    }
+
     /// Returns the wrench of the actuator alone from `now` on.
     pub fn actuator_wrench(&self, now: Instant) -> Wrench {
         let mut wrench = Wrench::default();

@@ -5,6 +5,7 @@
 //! two instants every input is constant or a waveform, and the motion is exact.
 
 mod batch_hooks;
+mod blinding;
 mod clock;
 mod controllers;
 mod error;
@@ -110,8 +111,11 @@ impl Simulation {
     /// Advances the body to the next instant at which anything is due, at most to `until`; returns true if anything is
     /// due there.
     fn advance_to_next(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
-        let mut next = self.next_due();
-        self.sensors.copy_plant(self.clock.now(), &self.plant);
+        let now = self.clock.now();
+        let due = self.next_due();
+        let blinded = self.sensors.next_blinding([now, due.min(until)], &self.plant, &self.loads);
+        let mut next = blinded.unwrap_or(due);
+        self.sensors.copy_plant(now, &self.plant);
         if let Some(at) = self.plant.advance(next.min(until), record)? {
             next = at;
             self.clock.count_bearing_event(at)?;
@@ -152,7 +156,8 @@ impl Simulation {
         let now = self.clock.now();
         // 1. State of the body.
         self.plant.evaluate(now)?;
-        // 2. Exposures that end, and the target of this instant.
+        // 2. Star trackers that bright bodies blind, exposures that end, and the target of this instant.
+        self.sensors.update_blinding(now);
         self.sensors.update_exposures(now, &self.plant, record)?;
         let is_sampled = self.sensors.sample_is_due(now);
         let event = self.laws.event(now, is_sampled);

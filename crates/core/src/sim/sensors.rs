@@ -10,7 +10,9 @@ use flexsc_record::{Record, Report};
 use flexsc_spacecraft::environment::to_body;
 
 use super::SimulationError;
+use super::blinding::{Blinding, BlindingState};
 use super::exposures::Exposures;
+use super::loads::Loads;
 use super::plant::Plant;
 use super::sensor_schedule::SensorSchedule;
 use crate::scenario::Scenario;
@@ -36,6 +38,7 @@ pub struct Sensors {
     last_readings: Vec<Instant>,
     /// True for sensors that are in use.
     in_use: Vec<bool>,
+    blinding: Blinding,
     /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
     sample_read_ahead: Option<bool>,
 }
@@ -75,6 +78,7 @@ impl Sensors {
             exposures: Exposures::new(scenario),
             last_readings: vec![Instant::START; all.len()],
             in_use: scenario.sensors_in_use(0),
+            blinding: Blinding::new(scenario),
             sample_read_ahead: None,
         }
     }
@@ -95,6 +99,37 @@ impl Sensors {
     #[inline]
     pub fn sample_is_due(&self, now: Instant) -> bool {
         self.next == Some(now) || self.sample_read_ahead.is_some()
+    }
+
+    /// Finds the star trackers that are blinded at the start, at which the plant is evaluated.
+    pub fn begin_blinding(&mut self, plant: &Plant) {
+        self.blinding.begin(plant);
+        for (index, due) in self.schedules.iter_mut().enumerate() {
+            due.sensor.set_blinded(self.blinding.is_blinded(index));
+        }
+    }
+
+    /// Returns the first instant of an interval, which begins at the current instant, at which a bright body begins or
+    /// ceases to blind a star tracker.
+    #[inline]
+    pub fn next_blinding(&mut self, span: [Instant; 2], plant: &Plant, loads: &Loads) -> Option<Instant> {
+        if self.blinding.is_empty() {
+            return None;
+        }
+        self.blinding.first_crossing(span, plant, loads.torque_bound())
+    }
+
+    /// Sets whether a star tracker is blinded, if that changes at `now`.
+    #[inline]
+    pub fn update_blinding(&mut self, now: Instant) {
+        if let Some(index) = self.blinding.update(now) {
+            self.schedules[index].sensor.set_blinded(self.blinding.is_blinded(index));
+        }
+    }
+
+    /// Iterates over the exclusion angles of the star trackers, with their states.
+    pub fn blinding_states(&self) -> impl Iterator<Item = BlindingState> {
+        self.blinding.states()
     }
 
     /// Copies the plant before it advances from `now`, if an exposure is open.

@@ -57,6 +57,7 @@ impl Simulation {
         let now = self.clock.now();
         if self.recorder.open(now, record)? {
             self.plant.evaluate(now)?;
+            self.sensors.begin_blinding(&self.plant);
             self.take_sample(record)?;
             self.laws.pending_event = Some(Event::Start);
         }

@@ -1,7 +1,7 @@
 //! Topics of three-axis bodies.
 
 use crate::row::rows;
-use crate::states::{Latch, Light, Sliding, Trust, Use, Watch};
+use crate::states::{Latch, Light, Onset, Sliding, Trust, Use, Watch};
 use crate::topics::one_angle::{Estimate, Torque};
 
 rows! {
@@ -237,6 +237,21 @@ rows! {
         after: Sliding,
         /// Torque of its motor (N m).
         torque_nm: f64,
+    }
+    /// A bright body begins or ceases to blind a star tracker.
+    BlindingEvent = "/blinding" {
+        /// Time since the start, rounded to a double (s).
+        time_s: f64,
+        /// Whole seconds of the exact time.
+        time_whole_s: u64,
+        /// Femtoseconds of the exact time past the whole second.
+        time_fs: u64,
+        /// Index of the star tracker among the sensors of the scenario, from 0.
+        sensor: u64,
+        /// The body: `sun`, `moon` or `limb`.
+        body: String,
+        /// Whether it begins or ends.
+        onset: Onset,
     }
     /// Attitude of a spatial body.
     Pointing = "/pointing" at Period {

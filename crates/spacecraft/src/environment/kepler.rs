@@ -100,7 +100,7 @@ impl Kepler {
     }
 
     /// Returns the greatest distance from the planet's centre (m).
-    pub(super) fn farthest(&self) -> f64 {
+    pub fn farthest(&self) -> f64 {
         self.semi_major_axis.get() * (1.0 + self.eccentricity.get())
     }
 

@@ -1,5 +1,6 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
+mod bright_body;
 mod date;
 mod deferred;
 mod dipole;
@@ -11,6 +12,7 @@ mod ground_site;
 mod igrf_14;
 mod kepler;
 mod magnetic_field;
+mod moon;
 mod oblateness;
 mod orbit;
 mod orbit_environment;
@@ -34,6 +36,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use solar_disc::ASTRONOMICAL_UNIT;
 
+pub use bright_body::BrightBody;
 pub use dipole::Dipole;
 pub use drag::{Drag, DragPlate};
 pub use eclipses::ShadowShape;

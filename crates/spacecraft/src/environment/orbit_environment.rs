@@ -8,7 +8,7 @@ use super::date::greenwich;
 use super::deferred::Deferred;
 use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
-use super::{Environment, Kepler, OrbitPosition, ShadowShape, SunPath};
+use super::{Environment, Kepler, OrbitPosition, ShadowShape, SunPath, moon};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,6 +22,8 @@ pub struct OrbitEnvironment {
     eclipses: Deferred<Eclipses>,
     /// Angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
     greenwich: f64,
+    /// Time (s) from J2000 to the start; `None` without a date.
+    date: Option<f64>,
     /// Duration of the run (s).
     duration: f64,
 }
@@ -33,6 +35,8 @@ pub struct EnvironmentObservation {
     pub field: Option<Vector>,
     /// Direction to the Sun; `None` with less than half of its disc in view.
     pub sun: Option<Vector>,
+    /// Direction to the planet's centre, if the body is on an orbit.
+    pub nadir: Option<Vector>,
 }
 
 impl OrbitEnvironment {
@@ -45,6 +49,7 @@ impl OrbitEnvironment {
             shadow: environment.shadow.unwrap_or_default(),
             eclipses: Deferred::default(),
             greenwich: epoch_ns.map_or(0.0, greenwich),
+            date: epoch_ns.map(moon::since_j2000),
             duration: duration.seconds(),
         }
     }
@@ -95,6 +100,16 @@ impl OrbitEnvironment {
     /// Returns the path of the Sun, in the light or not.
     pub fn sun(&self) -> Option<&SunPath> {
         self.sun.as_ref()
+    }
+
+    /// Returns the position of the Moon (m) from the Earth's centre at a time since the start (s); `None` without a date.
+    pub fn moon(&self, t: f64) -> Option<Vector> {
+        self.date.map(|date| moon::position(date + t))
+    }
+
+    /// Returns the radius of the planet (m), if the body is on an orbit.
+    pub fn planet_radius(&self) -> Option<f64> {
+        self.orbit.as_ref().map(|orbit| orbit.planet_radius.get())
     }
 
     /// Returns the eclipses of the run; `None` without an orbit or a Sun.
@@ -168,7 +183,12 @@ impl OrbitEnvironment {
     /// Returns the observable environment at a time since the start (s).
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
         let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
-        EnvironmentObservation { field: self.field_at(t), sun: sun.map(|sun| sun.direction(t)) }
+        let place = self.position(t);
+        EnvironmentObservation {
+            field: place.as_ref().and_then(|place| self.field(place, t)),
+            sun: sun.map(|sun| sun.direction(t)),
+            nadir: place.map(|place| place.local[2]),
+        }
     }
 }
 

@@ -166,6 +166,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(!scenario.study.gimbals.is_empty(), "/control_moment_gyros", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
+        add(scenario.sensor.exclusions().next().is_some(), "/blinding", Events);
         add(!scenario.line_of_sight.is_empty(), "/line_of_sight", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
         add(scenario.study.articulation().is_some(), "/drives", Full);

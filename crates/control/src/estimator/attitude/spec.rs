@@ -41,9 +41,12 @@ pub struct AttitudeFilter {
     /// environment's; default: the environment's field itself, without a model error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_degree: Option<u32>,
-    /// Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own.
+    /// Standard deviation of a measured direction to the Sun (rad); default: that of the Sun sensor or cells.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun_noise: Option<Positive>,
+    /// Standard deviation of a measured direction to the planet (rad); default: the Earth sensor's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub earth_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: AttitudeInitialDeviations,
@@ -170,7 +173,7 @@ impl AttitudeFilter {
         };
         let Some(latest) = roles.iter().filter_map(late).max() else {
             let why = "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, or by the vectors of a \
-                       `magnetometer` or a `sun_sensor`, and there is none";
+                       `magnetometer`, a `sun_sensor`, `sun_cells` or an `earth_sensor`, and there is none";
             return Err(ConfigError::new("", why));
         };
         let correct = roles.iter().filter(|role| matches!(role, SensorRole::Corrects { .. })).count();
@@ -247,6 +250,7 @@ impl AttitudeFilter {
             ReferenceNoise::Attitude(own) => known(own).map(|noise| sensor.attitude_covariance(noise)),
             ReferenceNoise::MagneticField(own) => vector(self.field_noise, own, "field_noise"),
             ReferenceNoise::Sun(own) => vector(self.sun_noise, own, "sun_noise"),
+            ReferenceNoise::Earth(own) => vector(self.earth_noise, own, "earth_noise"),
         };
         Some((latency, noise))
     }

@@ -51,7 +51,7 @@ const INITIAL_TRUTH: Truth = Truth {
     rate: [0.0; 3],
     rigid: [0.0; 3],
     turned: [0.0; 3],
-    sky: EnvironmentObservation { field: None, sun: None },
+    sky: EnvironmentObservation { field: None, sun: None, nadir: None },
 };
 
 /// Moving body.

@@ -2,6 +2,7 @@
 
 mod accelerometers;
 mod bearing_rows;
+mod blinding_rows;
 mod cycle_rows;
 mod failures;
 mod journal;
@@ -23,6 +24,7 @@ use super::run_view::RunView;
 use crate::scenario::Scenario;
 use accelerometers::Accelerometers;
 use bearing_rows::BearingRows;
+use blinding_rows::BlindingRows;
 use cycle_rows::CycleRows;
 use failures::Failures;
 use journal_events::JournalEvents;
@@ -39,6 +41,7 @@ pub struct Recorder {
     motion: MotionRows,
     cycles: CycleRows,
     bearings: BearingRows,
+    blinding: BlindingRows,
     /// Pending end of the manoeuvre, if any.
     manoeuvre_end: Option<ManoeuvreEnd>,
     accelerometers: Accelerometers,
@@ -56,6 +59,7 @@ impl Recorder {
             motion: MotionRows::new(scenario),
             cycles: CycleRows::new(scenario),
             bearings: BearingRows::default(),
+            blinding: BlindingRows::new(scenario),
             manoeuvre_end: ManoeuvreEnd::new(scenario, &guidance.setpoint),
             accelerometers: Accelerometers::new(scenario, run),
             lines_of_sight: LinesOfSight::new(scenario),
@@ -115,6 +119,7 @@ impl Recorder {
     /// Records the rows of the start.
     pub fn record_start(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         self.bearings.begin(run.plant);
+        self.blinding.record_events(run, &self.journal, record)?;
         self.motion.record_start(run, record)?;
         self.frames.record_scene(run.now, &self.journal, record)
     }
@@ -127,6 +132,7 @@ impl Recorder {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         self.bearings.record_events(run, &self.journal, record)?;
+        self.blinding.record_events(run, &self.journal, record)?;
         self.failures.record_due(run.now, &self.journal, record)?;
         self.accelerometers.record_due(run, record)?;
         self.lines_of_sight.record_due(run, record)?;

@@ -1,0 +1,72 @@
+//! Bright bodies that blind a sensor: the Sun, the Moon and the planet's limb, by their angles to a direction.
+
+use std::f64::consts::PI;
+
+use flexsc_numerics::attitude::Vector;
+
+use super::orbit_environment::OrbitEnvironment;
+use super::moon;
+
+/// Body whose light blinds a sensor.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum BrightBody {
+    /// Centre of the Sun, in the light or in the planet's shadow.
+    Sun,
+    /// Centre of the Moon.
+    Moon,
+    /// Limb of the planet: the edge of its disc.
+    Limb,
+}
+
+impl BrightBody {
+    /// Returns the name of the body, as in a scenario.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sun => "sun",
+            Self::Moon => "moon",
+            Self::Limb => "limb",
+        }
+    }
+}
+
+/// Returns the angle between two directions of any length (rad).
+fn angle_between(one: &Vector, other: &Vector) -> f64 {
+    libm::atan2(one.cross(other).norm(), one.dot(other))
+}
+
+impl OrbitEnvironment {
+    /// Returns the angle (rad) from a direction in inertial axes to a bright body at a time since the start (s); negative
+    /// within the limb, pi for a body that the environment does not have.
+    pub fn angle_to(&self, body: BrightBody, direction: &Vector, t: f64) -> f64 {
+        match body {
+            BrightBody::Sun => self.sun().map_or(PI, |sun| angle_between(direction, &sun.direction(t))),
+            BrightBody::Moon => {
+                let place = self.position(t).map_or_else(Vector::zeros, |place| place.position);
+                self.moon(t).map_or(PI, |moon| angle_between(direction, &(moon - place)))
+            }
+            BrightBody::Limb => self.position(t).zip(self.planet_radius()).map_or(PI, |(place, radius)| {
+                let distance = place.position.norm();
+                angle_between(direction, &-place.position) - libm::asin((radius / distance).min(1.0))
+            }),
+        }
+    }
+
+    /// Returns an upper bound of the rate (rad/s) at which the angle from a fixed direction to a bright body changes.
+    pub fn angle_rate(&self, body: BrightBody) -> f64 {
+        let orbit = self.orbit();
+        match body {
+            BrightBody::Sun => self.sun().map_or(0.0, |sun| sun.fastest()),
+            BrightBody::Moon => {
+                let (speed, farthest) =
+                    orbit.map_or((0.0, 0.0), |orbit| (orbit.largest_speed(), orbit.farthest()));
+                (moon::FASTEST + speed) / (moon::NEAREST - farthest).max(f64::MIN_POSITIVE)
+            }
+            BrightBody::Limb => orbit.map_or(0.0, |orbit| {
+                // asin(R/r) falls by R r'/(r sqrt(r² - R²)).
+                let (nearest, radius) = (orbit.nearest(), orbit.planet_radius.get());
+                let tangent = f64::sqrt((nearest - radius) * (nearest + radius));
+                orbit.fastest() + radius * orbit.largest_speed() / (nearest * tangent)
+            }),
+        }
+    }
+}
