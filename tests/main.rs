@@ -154,6 +154,7 @@ mod wheel_figures;
 mod extending;
 mod frozen;
 mod habits;
+mod handover;
 mod rooms;
 mod words;
 mod worst;
