@@ -24,7 +24,7 @@ pub struct ExportArgs {
     /// Format: csv and jsonl of a topic, the others of the whole run [default: by the ending of FILE, else csv]
     #[arg(long, value_enum)]
     format: Option<ExportFormat>,
-    /// File to write: FILE.csv, .jsonl, .aem or .oem [default: stdout]
+    /// File to write: FILE.csv, .jsonl, .aem, .oem or .glb [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Replace a FILE of other content
@@ -44,12 +44,19 @@ enum ExportFormat {
     Aem,
     /// CCSDS orbit ephemeris message
     Oem,
+    /// glTF: an animated scene in one file
+    Glb,
 }
 
 impl ExportFormat {
     /// All formats with the file extension of each.
-    const ENDINGS: [(&'static str, Self); 4] =
-        [("csv", Self::Csv), ("jsonl", Self::Jsonl), ("aem", Self::Aem), ("oem", Self::Oem)];
+    const ENDINGS: [(&'static str, Self); 5] = [
+        ("csv", Self::Csv),
+        ("jsonl", Self::Jsonl),
+        ("aem", Self::Aem),
+        ("oem", Self::Oem),
+        ("glb", Self::Glb),
+    ];
 
     /// Returns the format of a whole run; `None` for a table.
     fn handover(self) -> Option<HandoverFormat> {
@@ -57,6 +64,7 @@ impl ExportFormat {
             Self::Csv | Self::Jsonl => None,
             Self::Aem => Some(HandoverFormat::Aem),
             Self::Oem => Some(HandoverFormat::Oem),
+            Self::Glb => Some(HandoverFormat::Glb),
         }
     }
 }

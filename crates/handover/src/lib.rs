@@ -5,9 +5,12 @@
 mod aem;
 mod calendar;
 mod error;
+mod glb;
 mod motion_rows;
 mod oem;
 mod options;
+mod placement;
+mod scene_rows;
 
 use flexsc_core::Scenario;
 use flexsc_core::record::Log;
@@ -43,6 +46,7 @@ pub fn hand_over_run(
     let made = match format {
         HandoverFormat::Aem => aem::write(&run, options).map(String::into_bytes),
         HandoverFormat::Oem => oem::write(&run, options).map(String::into_bytes),
+        HandoverFormat::Glb => glb::write(&run, options),
     };
     made.map_err(|error| error.in_log(log.path()))
 }

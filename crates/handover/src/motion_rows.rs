@@ -122,15 +122,20 @@ impl RunLog<'_> {
         Ok((0..count).map(row).collect())
     }
 
+    /// Returns the rotation of the hub per unit of each mode, if the logged attitude is that of the hub; `None` if it is
+    /// that of the mean axes, because the modes do not act back on the rotation.
+    pub fn hub_rotations(&self) -> Option<Vec<Vector>> {
+        let coupling = self.scenario.model.three_axis()?.coupling.as_ref()?;
+        Some(coupling.rotations.clone())
+    }
+
     /// Returns the rotation of the first gyro relative to the hub per unit of each mode, if the logged attitude is that
-    /// of the hub; `None` if it is that of a body whose modes do not act back, whose rate is the rigid one.
+    /// of the hub.
     fn gyro_offsets(&self) -> Option<Vec<Vector>> {
-        let body = self.scenario.model.three_axis()?;
-        let has_hub = body.coupling.is_some() || body.small_angles.is_some();
         let gyro = self.scenario.study.sensor_points.first().map_or("", String::as_str);
-        let hub = body.shapes(&self.scenario.study.torque_point);
-        let offset = |(there, hub): (&(Vector, Vector), &(Vector, Vector))| there.1 - hub.1;
-        has_hub.then(|| body.shapes(gyro).iter().zip(&hub).map(offset).collect())
+        let there = self.scenario.model.three_axis()?.shapes(gyro);
+        let offset = |(there, hub): (&(Vector, Vector), Vector)| there.1 - hub;
+        Some(there.iter().zip(self.hub_rotations()?).map(offset).collect())
     }
 
     /// Returns position and velocity at each row of the orbit, without rows of equal times; `None` without an orbit.

@@ -10,15 +10,22 @@ pub enum HandoverFormat {
     Aem,
     /// CCSDS orbit ephemeris message, as text.
     Oem,
+    /// Animated scene in one file, glTF 2.0.
+    Glb,
 }
 
 impl HandoverFormat {
     /// All formats with their names.
-    pub const ALL: [(&'static str, Self); 2] = [("aem", Self::Aem), ("oem", Self::Oem)];
+    pub const ALL: [(&'static str, Self); 3] = [("aem", Self::Aem), ("oem", Self::Oem), ("glb", Self::Glb)];
 
     /// Returns the format of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|(own, _)| *own == name).map(|(_, format)| format)
+    }
+
+    /// Returns true if the file is not text.
+    pub fn is_binary(self) -> bool {
+        !matches!(self, Self::Aem | Self::Oem)
     }
 }
 
@@ -43,6 +50,10 @@ pub struct HandoverOptions {
     pub center: Option<String>,
     /// International designator of the spacecraft; the default is UNKNOWN.
     pub object_id: Option<String>,
+    /// Speed of an animation relative to real time; by default it lasts at most a minute.
+    pub speed: Option<f64>,
+    /// True if an animated scene also has an animation of each mode's shape.
+    pub mode_shapes: bool,
 }
 
 impl HandoverOptions {

@@ -1,6 +1,6 @@
 //! Export of a whole run in a format of other programs.
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 
 use flexsc_core::record::Log;
 use flexsc_core::scenario::date_from_text;
@@ -25,6 +25,12 @@ pub struct HandoverArgs {
     /// International designator in aem and oem, such as 2026-012A [default: UNKNOWN]
     #[arg(long, value_name = "ID")]
     object_id: Option<String>,
+    /// Speed of the animation in glb relative to real time [default: such that it lasts at most a minute]
+    #[arg(long, value_name = "FACTOR")]
+    speed: Option<f64>,
+    /// Add an animation of each mode's shape to glb
+    #[arg(long)]
+    modes: bool,
 }
 
 impl HandoverArgs {
@@ -35,10 +41,12 @@ impl HandoverArgs {
             ("--frame", self.frame.is_some()),
             ("--center", self.center.is_some()),
             ("--object-id", self.object_id.is_some()),
+            ("--speed", self.speed.is_some()),
+            ("--modes", self.modes),
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((name, _)) => Err(CliError::Arguments(format!(
-                "{name}: is for whole runs\n\nhint: `--format aem` or oem exports one"
+                "{name}: is for whole runs\n\nhint: `--format aem`, oem or glb exports one"
             ))),
             None => Ok(()),
         }
@@ -51,11 +59,16 @@ impl HandoverArgs {
                 CliError::Arguments(format!("--epoch: must be {accepted}, got `{text}`"))
             })
         };
+        if let Some(speed) = self.speed.filter(|speed| !(1e-6..=1e9).contains(speed)) {
+            return Err(CliError::Arguments(format!("--speed: must be from 1e-6 to 1e9, got {speed}")));
+        }
         Ok(HandoverOptions {
             epoch_ns: self.epoch.as_ref().map(date).transpose()?,
             frame: self.frame.clone(),
             center: self.center.clone(),
             object_id: self.object_id.clone(),
+            speed: self.speed,
+            mode_shapes: self.modes,
         })
     }
 }
@@ -63,6 +76,10 @@ impl HandoverArgs {
 /// Exports the run of a log.
 pub fn run(args: &ExportArgs, format: HandoverFormat) -> Result<(), CliError> {
     let options = args.handover.options()?;
+    if args.out.is_none() && format.is_binary() && io::stdout().is_terminal() {
+        let why = "this format is not text\n\nhint: name a file with -o";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
     let bytes = hand_over(&Log::open(&args.log)?, format, &options)?;
     match &args.out {
         Some(path) => files::write(path, &bytes, args.force),
