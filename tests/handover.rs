@@ -232,7 +232,7 @@ fn refusals_name_what_is_missing() {
 fn a_file_of_other_content_is_kept() {
     let dir = Dir::holding("free.toml", FREE);
     dir.run("simulate free.toml --log full").exits(0);
-    for name in ["free.aem", "free.oem"] {
+    for name in ["free.aem", "free.oem", "free.glb", "free.bin"] {
         dir.run(&format!("export free.mcap -o {name}")).exits(0);
         let first = dir.read(name);
         dir.run(&format!("export free.mcap -o {name}")).exits(0);

@@ -155,6 +155,8 @@ mod extending;
 mod frozen;
 mod habits;
 mod handover;
+mod handover_glb;
+mod handover_vizard;
 mod rooms;
 mod words;
 mod worst;

@@ -24,7 +24,7 @@ pub struct ExportArgs {
     /// Format: csv and jsonl of a topic, the others of the whole run [default: by the ending of FILE, else csv]
     #[arg(long, value_enum)]
     format: Option<ExportFormat>,
-    /// File to write: FILE.csv, .jsonl, .aem, .oem or .glb [default: stdout]
+    /// File to write: FILE.csv, .jsonl, .aem, .oem, .glb, or .bin for Vizard [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Replace a FILE of other content
@@ -46,16 +46,19 @@ enum ExportFormat {
     Oem,
     /// glTF: an animated scene in one file
     Glb,
+    /// Messages for Vizard, the viewer of Basilisk
+    Vizard,
 }
 
 impl ExportFormat {
     /// All formats with the file extension of each.
-    const ENDINGS: [(&'static str, Self); 5] = [
+    const ENDINGS: [(&'static str, Self); 6] = [
         ("csv", Self::Csv),
         ("jsonl", Self::Jsonl),
         ("aem", Self::Aem),
         ("oem", Self::Oem),
         ("glb", Self::Glb),
+        ("bin", Self::Vizard),
     ];
 
     /// Returns the format of a whole run; `None` for a table.
@@ -65,6 +68,7 @@ impl ExportFormat {
             Self::Aem => Some(HandoverFormat::Aem),
             Self::Oem => Some(HandoverFormat::Oem),
             Self::Glb => Some(HandoverFormat::Glb),
+            Self::Vizard => Some(HandoverFormat::Vizard),
         }
     }
 }

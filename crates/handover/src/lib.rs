@@ -11,6 +11,7 @@ mod oem;
 mod options;
 mod placement;
 mod scene_rows;
+mod vizard;
 
 use flexsc_core::Scenario;
 use flexsc_core::record::Log;
@@ -47,6 +48,7 @@ pub fn hand_over_run(
         HandoverFormat::Aem => aem::write(&run, options).map(String::into_bytes),
         HandoverFormat::Oem => oem::write(&run, options).map(String::into_bytes),
         HandoverFormat::Glb => glb::write(&run, options),
+        HandoverFormat::Vizard => vizard::write(&run, options),
     };
     made.map_err(|error| error.in_log(log.path()))
 }

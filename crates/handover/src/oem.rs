@@ -59,7 +59,7 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Hand
 }
 
 /// Returns the name of the orbited body.
-fn center(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, HandoverError> {
+pub fn center(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, HandoverError> {
     if let Some(center) = &options.center {
         return Ok(keyword_value(center).to_uppercase());
     }

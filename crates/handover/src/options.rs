@@ -12,11 +12,14 @@ pub enum HandoverFormat {
     Oem,
     /// Animated scene in one file, glTF 2.0.
     Glb,
+    /// Messages for Vizard, the viewer of Basilisk.
+    Vizard,
 }
 
 impl HandoverFormat {
     /// All formats with their names.
-    pub const ALL: [(&'static str, Self); 3] = [("aem", Self::Aem), ("oem", Self::Oem), ("glb", Self::Glb)];
+    pub const ALL: [(&'static str, Self); 4] =
+        [("aem", Self::Aem), ("oem", Self::Oem), ("glb", Self::Glb), ("vizard", Self::Vizard)];
 
     /// Returns the format of a name.
     pub fn from_name(name: &str) -> Option<Self> {

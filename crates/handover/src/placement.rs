@@ -4,6 +4,9 @@ use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::record::foxglove::{FrameTransform, Pose};
 use nalgebra::Quaternion;
 
+/// Name of the body's frame in scenes.
+pub const BODY: &str = "body";
+
 /// Pose of a frame in another one: it maps a place p of the frame to `rotation` p + `at` of the other.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Placement {
@@ -59,4 +62,16 @@ impl Placement {
         let back = Self { rotation: self.rotation.conjugate(), at: Vector::zeros() };
         Self { at: -back.turn(&self.at), ..back }
     }
+}
+
+/// Returns the placement of a frame of a scene in the body's frame.
+pub fn in_body(frames: &[FrameTransform], name: &str) -> Placement {
+    let mut placement = Placement::identity();
+    let mut name = name;
+    while name != BODY {
+        let Some(frame) = frames.iter().find(|frame| frame.child_frame_id == name) else { break };
+        placement = Placement::from_frame(frame).then(&placement);
+        name = &frame.parent_frame_id;
+    }
+    placement
 }

@@ -12,14 +12,14 @@ use crate::files;
 
 #[derive(clap::Args)]
 pub struct HandoverArgs {
-    /// Date of the start for aem and oem, such as 2026-03-20T14:46:00Z [default: the scenario's `epoch`]
+    /// Date of the start for aem, oem and vizard, such as 2026-03-20T14:46:00Z [default: the scenario's `epoch`]
     #[arg(long, value_name = "DATE")]
     epoch: Option<String>,
     /// Frame of the inertial axes in aem and oem: EME2000, GCRF, ICRF, TEME or TOD [default: TOD for an environment with
     /// a date, else EME2000]
     #[arg(long, value_name = "FRAME")]
     frame: Option<String>,
-    /// Planet of the orbit in oem, such as MARS [default: EARTH]
+    /// Planet of the orbit in oem and vizard, such as MARS [default: EARTH]
     #[arg(long, value_name = "NAME")]
     center: Option<String>,
     /// International designator in aem and oem, such as 2026-012A [default: UNKNOWN]
@@ -46,7 +46,7 @@ impl HandoverArgs {
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((name, _)) => Err(CliError::Arguments(format!(
-                "{name}: is for whole runs\n\nhint: `--format aem`, oem or glb exports one"
+                "{name}: is for whole runs\n\nhint: `--format aem`, oem, glb or vizard exports one"
             ))),
             None => Ok(()),
         }

@@ -7,11 +7,9 @@ use flexsc_core::record::row::LogDate;
 use flexsc_view::scene::Scene;
 
 use super::mesh::PartMesh;
-use crate::placement::Placement;
+use crate::placement::{BODY, Placement, in_body};
 use crate::scene_rows::SceneRow;
 
-/// Name of the body's frame in scenes.
-const BODY: &str = "body";
 /// Drawn displacement below which a mode is left out, relative to the size of the scene.
 const LEAST: f64 = 1e-4;
 /// Drawn displacements between which a shape of a mode is scaled, relative to the size of the scene.
@@ -61,18 +59,6 @@ pub struct SceneModel {
 fn part_of_section(frame: &str) -> Option<&str> {
     let is_part = ["panel_", "boom_", "wing_"].into_iter().any(|part| frame.starts_with(part));
     frame.rsplit_once('/').filter(|_| is_part).map(|(part, _)| part)
-}
-
-/// Returns the placement of a frame in the body's frame.
-fn in_body(frames: &[FrameTransform], name: &str) -> Placement {
-    let mut placement = Placement::identity();
-    let mut name = name;
-    while name != BODY {
-        let Some(frame) = frames.iter().find(|frame| frame.child_frame_id == name) else { break };
-        placement = Placement::from_frame(frame).then(&placement);
-        name = &frame.parent_frame_id;
-    }
-    placement
 }
 
 impl SceneModel {
