@@ -9,8 +9,18 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 9] =
-    ["numerics", "dynamics", "formats", "relay-kernel", "spacecraft", "record", "control", "core", "view"];
+pub const ENGINE: [&str; 10] = [
+    "numerics",
+    "dynamics",
+    "formats",
+    "relay-kernel",
+    "spacecraft",
+    "record",
+    "control",
+    "core",
+    "view",
+    "handover",
+];
 
 /// The Rust files under a directory: their paths below the repository, and their texts.
 pub fn sources(directory: &Path, found: &mut Vec<(String, String)>) {

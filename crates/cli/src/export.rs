@@ -1,14 +1,15 @@
-//! `flexsc export`: a topic of a log as a table.
+//! `flexsc export`: a topic of a log as a table, or the whole run in a format of other programs.
 
+mod handover;
 mod metrics;
+mod table;
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
 use clap::ValueEnum;
-use flexsc_core::record::{Column, Columns, Log, LogError};
-use serde_json::{Map, Value as Json, json};
+use flexsc_core::record::{Log, LogError};
+use flexsc_handover::HandoverFormat;
 
 use crate::error::{CliError, for_terminal};
 use crate::{files, out};
@@ -20,36 +21,66 @@ pub struct ExportArgs {
     /// Topic, such as /command [default: list the topics of the log]
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
-    /// Format of the table [default: by the ending of FILE, else csv]
+    /// Format: csv and jsonl of a topic, the others of the whole run [default: by the ending of FILE, else csv]
     #[arg(long, value_enum)]
-    format: Option<Format>,
-    /// File to write, FILE.csv or FILE.jsonl [default: stdout]
-    #[arg(short, long, value_name = "FILE", requires = "topic")]
+    format: Option<ExportFormat>,
+    /// File to write: FILE.csv, .jsonl, .aem, .oem, .glb, or .bin for Vizard [default: stdout]
+    #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Replace a FILE of other content
     #[arg(long, requires = "out")]
     force: bool,
+    #[command(flatten)]
+    handover: handover::HandoverArgs,
 }
 
 #[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum ExportFormat {
     /// Comma-separated values with a header
     Csv,
     /// One JSON object for each row
     Jsonl,
+    /// CCSDS attitude ephemeris message
+    Aem,
+    /// CCSDS orbit ephemeris message
+    Oem,
+    /// glTF: an animated scene in one file
+    Glb,
+    /// Messages for Vizard, the viewer of Basilisk
+    Vizard,
 }
 
-/// Largest number of empty cells in a table with nested rows of unequal lengths, in addition to ...
-const EMPTY_CELLS: usize = 1 << 24;
-/// ... this number for each full cell.
-const EMPTY_PER_FULL: usize = 16;
+impl ExportFormat {
+    /// All formats with the file extension of each.
+    const ENDINGS: [(&'static str, Self); 6] = [
+        ("csv", Self::Csv),
+        ("jsonl", Self::Jsonl),
+        ("aem", Self::Aem),
+        ("oem", Self::Oem),
+        ("glb", Self::Glb),
+        ("bin", Self::Vizard),
+    ];
+
+    /// Returns the format of a whole run; `None` for a table.
+    fn handover(self) -> Option<HandoverFormat> {
+        match self {
+            Self::Csv | Self::Jsonl => None,
+            Self::Aem => Some(HandoverFormat::Aem),
+            Self::Oem => Some(HandoverFormat::Oem),
+            Self::Glb => Some(HandoverFormat::Glb),
+            Self::Vizard => Some(HandoverFormat::Vizard),
+        }
+    }
+}
 
 impl ExportArgs {
     /// Returns the format, by the option or the file's extension.
-    fn form(&self) -> Result<Format, CliError> {
-        let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
-        let ending = out::file(path, &["csv", "jsonl"], &[&self.log])?;
-        let from_ending = if ending == "jsonl" { Format::Jsonl } else { Format::Csv };
+    fn form(&self) -> Result<ExportFormat, CliError> {
+        let Some(path) = &self.out else { return Ok(self.format.unwrap_or(ExportFormat::Csv)) };
+        let endings = ExportFormat::ENDINGS.map(|(ending, _)| ending);
+        let ending = out::file(path, &endings, &[&self.log])?;
+        let from_ending = ExportFormat::ENDINGS.into_iter().find(|(own, _)| *own == ending);
+        let from_ending = from_ending.map_or(ExportFormat::Csv, |(_, format)| format);
         match self.format {
             Some(format) if format != from_ending && out::ending(path).is_some() => {
                 Err(CliError::Arguments(format!(
@@ -64,21 +95,36 @@ impl ExportArgs {
 
 pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let format = args.form()?;
+    if let Some(of_run) = format.handover() {
+        if args.topic.is_some() {
+            let why = "--topic: this format holds the whole run, and only csv and jsonl hold one topic";
+            return Err(CliError::Arguments(why.to_owned()));
+        }
+        return handover::run(args, of_run);
+    }
+    args.handover.refuse_for_table()?;
+    if args.out.is_some() && args.topic.is_none() {
+        let why = "-o: a table is of one topic\n\nhint: --topic names it, and `flexsc export LOG` lists them";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
     let log = Log::open(&args.log)?;
     let Some(topic) = &args.topic else {
         return write_output(args, |out| writeln!(out, "{}", for_terminal(&log.topics().join("\n"))));
     };
     let columns = log.columns(topic)?;
     if topic == metrics::TOPIC
-        && let Some(table) = metrics::table(&columns, format)
+        && let Some(table) = metrics::table(&columns, format == ExportFormat::Jsonl)
     {
         let table = table.map_err(|why| unreadable(&args.log, topic, why.to_string()))?;
         return write_output(args, |out| out.write_all(&table));
     }
-    let table = flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
-    write_output(args, |out| match format {
-        Format::Csv => csv(&table, columns.len(), out),
-        Format::Jsonl => jsonl(&table, columns.len(), out),
+    let flat = table::flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
+    write_output(args, |out| {
+        if format == ExportFormat::Jsonl {
+            table::jsonl(&flat, columns.len(), out)
+        } else {
+            table::csv(&flat, columns.len(), out)
+        }
     })
 }
 
@@ -95,149 +141,4 @@ fn write_output(args: &ExportArgs, write: impl Fn(&mut dyn Write) -> io::Result<
     let mut bytes = Vec::new();
     write(&mut bytes).map_err(CliError::write(path))?;
     files::write(path, &bytes, args.force)
-}
-
-/// Cell of a table.
-enum ExportCell<'a> {
-    Empty,
-    Number(f64),
-    /// Exact time: whole seconds and femtoseconds, more digits than a double has.
-    Exact(u64, u64),
-    Count(u64),
-    Integer(i64),
-    Text(&'a str),
-}
-
-/// Column of a table without nesting.
-struct FlatColumn<'a> {
-    name: String,
-    column: &'a Column,
-    cells: CellSource<'a>,
-}
-
-/// Mapping from the rows of a table to the values of a column.
-enum CellSource<'a> {
-    /// One value for each row.
-    Own,
-    /// Exact times: whole seconds, and femtoseconds past them.
-    Exact(&'a [u64], &'a [u64]),
-    /// Values at one index of nested rows: the index, the number of nested rows in each row, and the number before it.
-    Within(usize, &'a [u32], Rc<[usize]>),
-}
-
-/// Returns columns without nesting, such as `modes[0].displacement_rad`, with the exact time instead of its two parts.
-fn flat(columns: &Columns) -> Result<Vec<FlatColumn<'_>>, String> {
-    let mut flat = Vec::new();
-    let parts = (columns.get("time_whole_s"), columns.get("time_fs"));
-    let own = |column| FlatColumn { name: String::new(), column, cells: CellSource::Own };
-    for (name, column) in &columns.columns {
-        let cells = match (name.as_str(), column, &parts) {
-            ("time_whole_s" | "time_fs", Column::Counts(_), (Some(_), Some(_))) => continue,
-            ("time_s", _, (Some(Column::Counts(whole)), Some(Column::Counts(part)))) => {
-                FlatColumn { cells: CellSource::Exact(whole, part), ..own(column) }
-            }
-            (_, Column::Rows(counts, inner), _) => {
-                spread(&mut flat, name, counts, inner)?;
-                continue;
-            }
-            _ => own(column),
-        };
-        flat.push(FlatColumn { name: name.clone(), ..cells });
-    }
-    Ok(flat)
-}
-
-/// Appends a column for each index and field of nested rows.
-fn spread<'a>(
-    flat: &mut Vec<FlatColumn<'a>>,
-    name: &str,
-    counts: &'a [u32],
-    inner: &'a Columns,
-) -> Result<(), String> {
-    let widest = counts.iter().copied().max().unwrap_or(0) as usize;
-    let full: usize = counts.iter().map(|count| *count as usize).sum();
-    if widest.saturating_mul(counts.len()) - full > EMPTY_CELLS.saturating_add(EMPTY_PER_FULL * full) {
-        let rows = counts.len();
-        return Err(format!(
-            "`{name}` has up to {widest} values in one of {rows} rows, and most rows have far fewer: no table holds \
-             that\n\nhint: Python reads it, as one array for each row"
-        ));
-    }
-    let before = counts.iter().scan(0, |sum, count| {
-        let before = *sum;
-        *sum += *count as usize;
-        Some(before)
-    });
-    let before: Rc<[usize]> = before.collect();
-    for index in 0..widest {
-        for (field, column) in &inner.columns {
-            let dot = if field.is_empty() { "" } else { "." };
-            let cells = CellSource::Within(index, counts, Rc::clone(&before));
-            flat.push(FlatColumn { name: format!("{name}[{index}]{dot}{field}"), column, cells });
-        }
-    }
-    Ok(())
-}
-
-impl FlatColumn<'_> {
-    fn cell(&self, row: usize) -> ExportCell<'_> {
-        let place = match &self.cells {
-            CellSource::Own => row,
-            CellSource::Exact(whole, part) => return ExportCell::Exact(whole[row], part[row]),
-            CellSource::Within(index, counts, before) if *index < counts[row] as usize => before[row] + index,
-            CellSource::Within(..) => return ExportCell::Empty,
-        };
-        match self.column {
-            Column::Numbers(values) => ExportCell::Number(values[place]),
-            Column::Counts(values) => ExportCell::Count(values[place]),
-            Column::Integers(values) => ExportCell::Integer(values[place]),
-            Column::Texts(values) => ExportCell::Text(&values[place]),
-            Column::Labels(values, labels) => labels
-                .get(usize::from(values[place]))
-                .map_or(ExportCell::Empty, |label| ExportCell::Text(label)),
-            Column::Rows(counts, _) => ExportCell::Count(u64::from(counts[place])),
-        }
-    }
-}
-
-fn csv(columns: &[FlatColumn<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
-    let mut writer = ::csv::Writer::from_writer(out);
-    let text = |cell: ExportCell<'_>| match cell {
-        ExportCell::Empty => String::new(),
-        // The shortest text that reads back as the same double.
-        ExportCell::Number(number) => format!("{number:e}"),
-        ExportCell::Exact(whole, femtoseconds) => format!("{whole}.{femtoseconds:015}"),
-        ExportCell::Text(text) => text.to_owned(),
-        ExportCell::Count(count) => count.to_string(),
-        ExportCell::Integer(number) => number.to_string(),
-    };
-    // The kind distinguishes a closed pipe from other errors.
-    let io = |error: ::csv::Error| match error.into_kind() {
-        ::csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
-    };
-    writer.write_record(columns.iter().map(|column| &column.name)).map_err(io)?;
-    for row in 0..rows {
-        writer.write_record(columns.iter().map(|column| text(column.cell(row)))).map_err(io)?;
-    }
-    writer.flush()
-}
-
-fn jsonl(columns: &[FlatColumn<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
-    let value = |cell: ExportCell<'_>| match cell {
-        ExportCell::Empty => Json::Null,
-        ExportCell::Number(number) => json!(number),
-        ExportCell::Exact(whole, part) => {
-            json!(format!("{whole}.{part:015}").parse::<f64>().unwrap_or(f64::NAN))
-        }
-        ExportCell::Count(count) => json!(count),
-        ExportCell::Integer(number) => json!(number),
-        ExportCell::Text(text) => json!(text),
-    };
-    for row in 0..rows {
-        let object: Map<String, Json> =
-            columns.iter().map(|column| (column.name.clone(), value(column.cell(row)))).collect();
-        writeln!(out, "{}", Json::Object(object))?;
-    }
-    Ok(())
 }

@@ -4,8 +4,6 @@ use flexsc_core::metrics;
 use flexsc_core::record::{Column, Columns};
 use serde_json::{Value as Json, json};
 
-use super::Format;
-
 /// Name of the topic.
 pub const TOPIC: &str = "/metrics";
 
@@ -17,13 +15,10 @@ struct MetricRow<'a> {
     meaning: &'static str,
 }
 
-/// Returns the table; `None` if the topic has an unexpected structure.
-pub fn table(columns: &Columns, format: Format) -> Option<Result<Vec<u8>, csv::Error>> {
+/// Returns the table as comma-separated values or as JSON lines; `None` if the topic has an unexpected structure.
+pub fn table(columns: &Columns, as_json: bool) -> Option<Result<Vec<u8>, csv::Error>> {
     let rows = rows(columns)?;
-    Some(match format {
-        Format::Csv => csv(&rows),
-        Format::Jsonl => Ok(rows.iter().map(jsonl).collect::<String>().into_bytes()),
-    })
+    Some(if as_json { Ok(rows.iter().map(jsonl).collect::<String>().into_bytes()) } else { csv(&rows) })
 }
 
 fn rows(columns: &Columns) -> Option<Vec<MetricRow<'_>>> {

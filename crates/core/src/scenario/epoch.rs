@@ -24,6 +24,12 @@ pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Dateti
     deserializer.deserialize_newtype_struct(DATE, Date).map(Some)
 }
 
+/// Returns the nanoseconds since 1970 of a date and time as a scenario would write it, such as `2026-03-20T14:46:00Z`;
+/// `None` for another text, or a date outside 1970 to 2500.
+pub fn date_from_text(text: &str) -> Option<u64> {
+    nanoseconds_since_1970(&text.parse().ok()?)
+}
+
 /// Returns the nanoseconds since 1970 of a date and time, which is UTC unless it has an offset; `None` outside 1970 to
 /// 2500.
 pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {

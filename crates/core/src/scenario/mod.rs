@@ -53,6 +53,7 @@ pub use assessed_requirement::{
 pub use bound::BoundSpec;
 pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::CustomParts;
+pub use epoch::date_from_text;
 pub use failures::FailureInterval;
 pub use line_of_sight::LineOfSight;
 pub use log::{LogSpec, SceneSpec};

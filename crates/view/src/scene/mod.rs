@@ -23,6 +23,8 @@ use flexsc_core::spacecraft::body::BodyAxes;
 use one_axis::OneAxisScene;
 use three_axis::ThreeAxisScene;
 
+pub use plume::ScenePlume;
+
 /// Scene of a run: a record that stores nothing and supplies the engine with the scene.
 #[derive(Clone, Debug)]
 pub struct Scene(BodyScene);
@@ -46,6 +48,34 @@ impl Scene {
     /// Returns the scene for a log in this detail; `None` if the log has none.
     pub fn for_detail(scenario: &Scenario, detail: Detail) -> Option<Self> {
         (detail >= Detail::Scene).then(|| Self::new(scenario))
+    }
+
+    /// Returns the factors by which the elastic motion and the rotation of the body are magnified.
+    pub fn magnification(&self) -> SceneMagnification {
+        let (bending, turning) = match &self.0 {
+            BodyScene::OneAxis(scene) => (scene.bending, scene.turning),
+            BodyScene::ThreeAxis(scene) => (scene.bending, scene.turning),
+        };
+        SceneMagnification { bending, turning }
+    }
+
+    /// Returns the scene with the true rotation of the body, for viewers in which it is seen against a planet.
+    #[must_use]
+    pub fn with_true_rotation(mut self) -> Self {
+        match &mut self.0 {
+            BodyScene::OneAxis(scene) => scene.turning = 1.0,
+            BodyScene::ThreeAxis(scene) => scene.turning = 1.0,
+        }
+        self
+    }
+
+    /// Returns the nozzles of the thrusters, and the length of a full plume (m).
+    pub fn nozzles(&self) -> (&[ScenePlume], f64) {
+        let plumes = match &self.0 {
+            BodyScene::OneAxis(scene) => scene.plumes.as_ref(),
+            BodyScene::ThreeAxis(scene) => Some(&scene.plumes),
+        };
+        plumes.map_or((&[], 0.0), |plumes| (plumes.nozzles(), plumes.length()))
     }
 
     fn extent(&self) -> Extent {
@@ -116,6 +146,15 @@ impl Record for Scene {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
         Ok(())
     }
+}
+
+/// Factors by which a scene magnifies the motion.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct SceneMagnification {
+    /// Factor of the elastic motion.
+    pub bending: f64,
+    /// Factor of the rotation of the body.
+    pub turning: f64,
 }
 
 /// Size of a scene and the names of its frames, which a viewer needs for its layout.

@@ -28,12 +28,15 @@ const LEAST: f64 = 0.01;
 pub struct OneAxisScene {
     /// Period of the frames.
     pub period: Span,
-    bending: f64,
-    turning: f64,
+    /// Magnification of the elastic motion.
+    pub bending: f64,
+    /// Magnification of the rotation.
+    pub turning: f64,
     goal: Option<f64>,
     panels: ScenePanels,
     wheel: Option<SceneWheel>,
-    plumes: Option<ActivePlumes>,
+    /// Plumes of the thrusters; `None` with a wheel.
+    pub plumes: Option<ActivePlumes>,
     /// Largest torque since the start (N m).
     largest: f64,
     /// Frames at the last pose.

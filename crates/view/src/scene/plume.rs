@@ -40,6 +40,11 @@ impl ActivePlumes {
         &self.nozzles
     }
 
+    /// Returns the length of a full plume (m).
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
     /// Sets the level of each nozzle, from 0 to 1; returns the plumes if the levels have changed.
     pub fn change(&mut self, stamp: LogDate, parts: Vec<f64>) -> Option<Plumes> {
         if self.told.as_ref() == Some(&parts) {

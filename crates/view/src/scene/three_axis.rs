@@ -62,14 +62,17 @@ impl ScenePoint {
 pub struct ThreeAxisScene {
     /// Period of the frames.
     pub period: Span,
-    bending: f64,
-    turning: f64,
+    /// Magnification of the elastic motion.
+    pub bending: f64,
+    /// Magnification of the rotation.
+    pub turning: f64,
     /// Distance of the farthest point (m).
     size: f64,
     points: Vec<ScenePoint>,
     /// Nozzles that fire for plus and for minus about each axis.
     groups: [[Vec<usize>; 2]; 3],
-    plumes: ActivePlumes,
+    /// Plumes of the jets.
+    pub plumes: ActivePlumes,
     /// Frames at the last pose.
     pub frames: FrameTransforms,
     /// Angle index (a drive, or one of the hinges after the drives) and rotation axis of each wing.
