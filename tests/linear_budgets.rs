@@ -99,7 +99,12 @@ fn deviation_and_sines_are_those_of_a_run() {
     for (index, values) in runs.iter().enumerate() {
         let linear = &budget["budgets"][index]["linear_sources"];
         let list = |key: &str| -> Vec<f64> {
-            linear[key].as_array().expect("a list").iter().map(|value| value.as_f64().expect("finite")).collect()
+            linear[key]
+                .as_array()
+                .expect("a list")
+                .iter()
+                .map(|value| value.as_f64().expect("finite"))
+                .collect()
         };
         let found = [list("biases"), list("amplitudes")].concat();
         let [constant, slow, fast] = fitted(values);

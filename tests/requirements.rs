@@ -337,10 +337,15 @@ fn a_metric_that_runs_do_not_have_is_refused() {
         ("fuel_kg", "runs of this scenario do not have"),
         ("settling_time_s", "runs of this scenario do not have"),
     ] {
-        let requirement = format!("\n[[requirement]]\nname = \"r\"\nquantity = \"{quantity}\"\nlimit = 1.0\n");
+        let requirement =
+            format!("\n[[requirement]]\nname = \"r\"\nquantity = \"{quantity}\"\nlimit = 1.0\n");
         std::fs::write(dir.path("limited.toml"), format!("{text}{requirement}")).expect("a file");
         for verb in ["simulate", "check", "budget", "worst"] {
-            dir.run(&format!("{verb} limited.toml")).exits(2).says(&["limited.toml", "requirement[0].quantity", told]);
+            dir.run(&format!("{verb} limited.toml")).exits(2).says(&[
+                "limited.toml",
+                "requirement[0].quantity",
+                told,
+            ]);
         }
     }
 }

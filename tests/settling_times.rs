@@ -20,7 +20,12 @@ fn the_bound_of_a_loop_with_four_modes() {
     let text = wheel_loop(0.0);
     let nominal = only(&text);
     assert!((nominal - 163.357_575_447_6).abs() < 1e-9, "{nominal:.12}");
-    let slower = [("0.3", "0.2"), ("0.8", "0.5333333333333333"), ("1.0", "0.6666666666666666"), ("2.0", "1.3333333333333333")];
+    let slower = [
+        ("0.3", "0.2"),
+        ("0.8", "0.5333333333333333"),
+        ("1.0", "0.6666666666666666"),
+        ("2.0", "1.3333333333333333"),
+    ];
     let scaled = slower.iter().fold(text.clone(), |text, (of, to)| {
         text.replace(&format!("frequency = {of},"), &format!("frequency = {to},"))
     });
@@ -67,7 +72,10 @@ fn the_common_delay_is_the_limit_of_stability() {
 fn the_command_prints_both() {
     let dir = Dir::with(&["earth-observer", "wheel-fixed-gain"]);
     let told = dir.run("margins earth-observer.toml").exits(0);
-    told.says(&["delay that all actuators together may add: ", "settling within 5 % after a step of the target: roll "]);
+    told.says(&[
+        "delay that all actuators together may add: ",
+        "settling within 5 % after a step of the target: roll ",
+    ]);
     let object = dir.run("margins earth-observer.toml --json").exits(0).json();
     assert!(object["common_delay_s"].as_f64().is_some_and(|delay| delay > 0.1));
     assert_eq!(object["settling"].as_array().map(Vec::len), Some(9));

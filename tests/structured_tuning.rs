@@ -188,10 +188,12 @@ fn a_pointing_index_is_minimised_and_limited() {
                        index = \"RPE\"\nwindow = 10\nconvention = \"uniform\"\nfrom = 150\nlimit = 1e-4\n\
                        level = 0.997\ninterpretation = \"mixed\"\n";
     std::fs::write(dir.path("hold.toml"), format!("{text}{requirement}")).expect("a file");
-    let line = "tune hold.toml --vary law.per_axis.pitch.pd.k_p=10:60 --vary law.per_axis.pitch.pd.k_d=100:600";
+    let line =
+        "tune hold.toml --vary law.per_axis.pitch.pd.k_p=10:60 --vary law.per_axis.pitch.pd.k_d=100:600";
     let object = dir.run(&format!("{line} --objective jitter --save tuned.toml --json")).exits(0).json();
     let measure = &object["measures"][0];
-    let (before, after) = (measure["before"].as_f64().expect("finite"), measure["after"].as_f64().expect("finite"));
+    let (before, after) =
+        (measure["before"].as_f64().expect("finite"), measure["after"].as_f64().expect("finite"));
     assert!(after < 0.9 * before, "{before} {after}");
     let budget = dir.run("budget tuned.toml --runs 2 --json").exits(0).json();
     let noise = budget["budgets"][0]["linear_noise"].as_f64().expect("linear");

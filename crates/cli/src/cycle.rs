@@ -1,12 +1,13 @@
-//! `flexsc cycle`: limit cycles on a rigid body in closed form and by the describing function, and their resonances with
-//! the modes.
+//! `flexsc cycle`: limit cycles of a relay on a rigid body in closed form and by the describing function, and their
+//! resonances with the modes; those of a linear law with pulses by the describing function.
 
 use std::io::Write;
 
-use flexsc_core::Scenario;
 use flexsc_core::analysis::describing_function::{DescribedCycle, RelayDescribingFunction};
+use flexsc_core::analysis::pulse_describing_function::PulsedLoop;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
 use flexsc_core::control::law::RelaySides;
+use flexsc_core::{Scenario, ScenarioError};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
@@ -44,7 +45,7 @@ pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, Cli
     let body = scenario.one_angle()?;
     let Some(law) = scenario.law.relay() else {
         return Err(CliError::Arguments(format!(
-            "{}: limit cycles are computed for a law `relay`",
+            "{}: limit cycles are computed for a law `relay`, and for a linear law with `[actuator.thrusters]`",
             scenario.name
         )));
     };
@@ -62,7 +63,60 @@ pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, Cli
 }
 
 pub fn run(args: &CycleArgs) -> Result<(), CliError> {
-    show(&results(&args.scenario.load()?, args)?, None, args.scenario.json)
+    let scenario = args.scenario.load()?;
+    if scenario.law.relay().is_none() && scenario.actuator.thrusters().is_some() {
+        return show(&pulsed(&scenario, args)?, None, args.scenario.json);
+    }
+    show(&results(&scenario, args)?, None, args.scenario.json)
+}
+
+/// Limit cycles of a scenario with pulses.
+struct PulsedCycles {
+    name: String,
+    pulsed: PulsedLoop,
+    units: Units,
+}
+
+/// Predicts the limit cycles of a scenario's linear law with thrusters.
+fn pulsed(scenario: &Scenario, args: &CycleArgs) -> Result<PulsedCycles, CliError> {
+    scenario.one_angle()?;
+    let name = scenario.name.clone();
+    let pulsed = PulsedLoop::from_scenario(scenario).map_err(|fault| ScenarioError::Key {
+        origin: name.clone(),
+        key: fault.key,
+        why: fault.why,
+    })?;
+    Ok(PulsedCycles { name, pulsed, units: args.units.units })
+}
+
+impl Results for PulsedCycles {
+    fn json(&self) -> Vec<Json> {
+        vec![json!({
+            "scenario": self.name,
+            "crossings": self.pulsed.crossings,
+            "described": self.pulsed.cycles,
+        })]
+    }
+
+    fn print(&self) -> Result<(), CliError> {
+        let Self { name, pulsed, units } = self;
+        say!("{name}   pulses of a sampled linear law, with the modes");
+        let (factor, unit) = units.frequency();
+        for crossing in &pulsed.crossings {
+            let (frequency, gain) = (digits(crossing.frequency_rad_s * factor), digits(crossing.factor));
+            say!("  limit of stability at {frequency} {unit} with {gain} times the gain of held torques");
+        }
+        for cycle in &pulsed.cycles {
+            let stability = if cycle.stable { "stable" } else { "unstable" };
+            say!("  the describing function predicts a cycle, {stability}");
+            say!("    period         {} s", digits(cycle.period_s));
+            say!("    demand         amplitude of {}", units.quantity(cycle.torque_amplitude_nm, "N m"));
+        }
+        if pulsed.cycles.is_empty() {
+            say!("  the describing function predicts no cycle");
+        }
+        Ok(())
+    }
 }
 
 impl Results for RelayCycles {

@@ -132,9 +132,11 @@ pub fn validate_metrics(scenario: &Scenario) -> Result<(), ConfigError> {
     let known = MetricsCollector::new(scenario).finish(scenario);
     let Some((name, metric)) = limited.find(|(_, metric)| known.get(metric).is_none()) else { return Ok(()) };
     let index = scenario.written.requirement.iter().position(|own| own.name == name);
-    let key = index.map_or_else(|| "reference.pointing.rms".to_owned(), |at| format!("requirement[{at}].quantity"));
+    let key =
+        index.map_or_else(|| "reference.pointing.rms".to_owned(), |at| format!("requirement[{at}].quantity"));
     let names: Vec<&str> = known.0.iter().map(|(meaning, _)| meaning.name).collect();
-    let hint = nearest(&metric, &names).map_or_else(String::new, |close| format!("; did you mean `{close}`?"));
+    let hint =
+        nearest(&metric, &names).map_or_else(String::new, |close| format!("; did you mean `{close}`?"));
     let why = format!("is a metric that runs of this scenario do not have, got `{metric}`{hint}");
     Err(ConfigError::new(key, why))
 }

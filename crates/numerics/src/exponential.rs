@@ -200,8 +200,9 @@ mod tests {
     fn the_bits_are_those_of_plain_products() {
         for order in 1..=19 {
             let size = libm::pow(10.0, f64::from(order % 5) - 2.0);
-            let matrix =
-                DMatrix::from_fn(order as usize, order as usize, |i, j| size * libm::sin((i * 17 + j * 7) as f64));
+            let matrix = DMatrix::from_fn(order as usize, order as usize, |i, j| {
+                size * libm::sin((i * 17 + j * 7) as f64)
+            });
             let expected = by_products(&matrix);
             assert_eq!(exponential(&matrix), expected, "order {order}");
             assert_eq!(MatrixRows(&matrix).run(f64::NAN), expected, "order {order}, no lanes");

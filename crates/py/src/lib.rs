@@ -125,7 +125,7 @@ impl PartialEq for Scenario {
 impl Scenario {
     fn new(origin: &str, inner: Result<flexsc_core::Scenario, ScenarioError>) -> PyResult<Self> {
         let checked = inner.and_then(|inner| {
-            validate_metrics(&inner).map_err(|ConfigError { key, why }| ScenarioError::Key {
+            validate_metrics(&inner).map_err(|ConfigError { key, why, .. }| ScenarioError::Key {
                 origin: origin.to_owned(),
                 key,
                 why,

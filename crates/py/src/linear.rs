@@ -56,13 +56,15 @@ pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResu
     let margins = aside(py, move |_| ScenarioMargins::from_scenario(&inner, opened))?;
     let name = &scenario.inner.name;
     let margins = margins.map_err(|fault| match fault {
-        MarginsFault::Key(ConfigError { key, why }) => {
+        MarginsFault::Key(ConfigError { key, why, .. }) => {
             scenario_error(ScenarioError::Key { origin: name.clone(), key, why })
         }
         MarginsFault::Unstable(unstable) => PyValueError::new_err(format!("{name}: {unstable}")),
     })?;
     let mut object = json!(margins);
-    let column = |of: fn(&SingularValues) -> f64| margins.stability.singular_values.iter().map(of).collect::<Vec<f64>>();
+    let column = |of: fn(&SingularValues) -> f64| {
+        margins.stability.singular_values.iter().map(of).collect::<Vec<f64>>()
+    };
     object["singular_values"] = json!({
         "frequency": column(|at| at.frequency_rad_s),
         "sensitivity": column(|at| at.sensitivity),
@@ -83,10 +85,12 @@ pub fn tuned_json(
     is_nominal: bool,
 ) -> PyResult<(String, String)> {
     let (objective, limits) = goal;
-    let objective = objective.parse().map_err(|why: String| PyValueError::new_err(format!("objective: {why}")))?;
+    let objective =
+        objective.parse().map_err(|why: String| PyValueError::new_err(format!("objective: {why}")))?;
     let limits = limits.iter().map(|limit| limit.parse()).collect::<Result<_, String>>();
     let limits = limits.map_err(|why| PyValueError::new_err(format!("keep: {why}")))?;
-    let tuning = ScenarioTuning { keys, opened: loop_break(opened)?, objective, limits, bandwidth, is_nominal };
+    let tuning =
+        ScenarioTuning { keys, opened: loop_break(opened)?, objective, limits, bandwidth, is_nominal };
     let inner = scenario.inner.clone();
     let tuned = aside(py, move |_| {
         let tuned = tuning.run(&inner)?;

@@ -204,12 +204,11 @@ impl Results for Budgets {
                 }
                 object
             };
-            let sources =
-                |of: &ErrorSources| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise });
+            let sources = |of: &ErrorSources| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise });
             let linear_levels = budget.linear_sources.as_ref().map(|of| {
-                LEVELS.map(|level| {
-                    json!({ "level": level, "convolution": of.level(level, Interpretation::Mixed) })
-                })
+                LEVELS.map(
+                    |level| json!({ "level": level, "convolution": of.level(level, Interpretation::Mixed) }),
+                )
             });
             json!({
                 "name": budget.requirement.name,

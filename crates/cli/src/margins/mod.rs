@@ -84,10 +84,11 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         CliError::from(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
     };
     let opened = OpenLoop::from_scenario(scenario, args.opened.loop_break()).map_err(key)?;
-    let margins = ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
-        MarginsFault::Key(fault) => key(fault),
-        MarginsFault::Unstable(unstable) => CliError::Arguments(format!("{name}: {unstable}")),
-    })?;
+    let margins =
+        ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
+            MarginsFault::Key(fault) => key(fault),
+            MarginsFault::Unstable(unstable) => CliError::Arguments(format!("{name}: {unstable}")),
+        })?;
     let kinds = MarginKind::ALL.into_iter().filter(|_| args.worst);
     let least = |kind: MarginKind| {
         let search = MarginSearch { kind, opened: args.opened.loop_break(), most_loops: WORST_POINTS };
@@ -199,7 +200,11 @@ impl LoopMargins {
             say!("  delay that all actuators together may add: {delay}");
         }
         if !self.margins.settling.is_empty() {
-            say!("  settling within {} % after a step of the target: {}", 100.0 * SETTLING_BAND, self.settling());
+            say!(
+                "  settling within {} % after a step of the target: {}",
+                100.0 * SETTLING_BAND,
+                self.settling()
+            );
         }
     }
 
@@ -287,14 +292,19 @@ impl Results for LoopMargins {
     }
 
     fn figures(&self) -> Vec<Named> {
-        let mut figures = figures::figures(&self.name, &self.margins.stability.loops, self.margins.stability.period_s);
-        figures.push(("singular-values".to_owned(), figures::singular_values(&self.name, &self.margins.stability)));
+        let mut figures =
+            figures::figures(&self.name, &self.margins.stability.loops, self.margins.stability.period_s);
+        figures.push((
+            "singular-values".to_owned(),
+            figures::singular_values(&self.name, &self.margins.stability),
+        ));
         figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.opened)));
         figures
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } = &self.margins.stability;
+        let StabilityMargins { spectral_radius, opened, period_s, samples, loops, .. } =
+            &self.margins.stability;
         let name = opened.name();
         let samples = match *samples {
             1 => String::new(),

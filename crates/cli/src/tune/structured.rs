@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use flexsc_core::analysis::structured_tuning::{
-    LoopSensitivity, PlantMargin, ScenarioTuning, TunedLoop, TunedScenario, TuningFault, TuningLimit, TuningObjective, TuningPoint,
+    LoopSensitivity, PlantMargin, ScenarioTuning, TunedLoop, TunedScenario, TuningFault, TuningLimit,
+    TuningObjective, TuningPoint,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
@@ -193,14 +194,18 @@ impl StructuredResults {
             let is_kept = after.least() >= least * (1.0 - LEAST_SHORTFALL);
             let worst = after.worst().map_or(0, |worst| worst.plant);
             let numbers = [before.least(), after.least(), least].map(digits);
-            rows.push([vec!["margin".to_owned()], numbers.to_vec(), vec![kept(is_kept), self.plant(worst)]].concat());
+            rows.push(
+                [vec!["margin".to_owned()], numbers.to_vec(), vec![kept(is_kept), self.plant(worst)]]
+                    .concat(),
+            );
         }
         for (index, measure) in goal.measures.iter().enumerate() {
             let ((was, _), (is, worst)) = (before.measures[index], after.measures[index]);
             let quantity = self.units.common(&[was, is], measure.unit);
             let cell = |value: f64| digits(value * quantity.0);
             let is_kept = measure.limit.is_none_or(|limit| is <= limit * (1.0 + LEAST_SHORTFALL));
-            let name = if measure.unit == "s" { measure.name.clone() } else { format!("{} rms", measure.name) };
+            let name =
+                if measure.unit == "s" { measure.name.clone() } else { format!("{} rms", measure.name) };
             rows.push(vec![
                 format!("{name} ({})", quantity.1),
                 cell(was),

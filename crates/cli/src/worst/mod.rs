@@ -136,7 +136,12 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     }
     let quantities = args.quantities(scenario)?;
     if quantities.is_empty() {
-        return Ok(WorstCases { name, cases: Vec::new(), bounds: args.claims(scenario)?, units: args.units.units });
+        return Ok(WorstCases {
+            name,
+            cases: Vec::new(),
+            bounds: args.claims(scenario)?,
+            units: args.units.units,
+        });
     }
     let origin = args.scenario.scenario.display().to_string();
     let campaign = Campaign::from_design(scenario.clone(), &origin, Design::default())?;
@@ -208,7 +213,8 @@ impl WorstArgs {
 impl WorstArgs {
     /// Returns the guaranteed ranges of the claims of a scenario, which stand beside its requirements.
     fn claims(&self, scenario: &Scenario) -> Result<Option<OutputBounds>, CliError> {
-        let stands = !scenario.written.bound.is_empty() && self.metric.is_none() && self.requirement.is_none();
+        let stands =
+            !scenario.written.bound.is_empty() && self.metric.is_none() && self.requirement.is_none();
         stands.then(|| bound::claims(scenario, self.units.units)).transpose()
     }
 }

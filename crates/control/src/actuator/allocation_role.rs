@@ -6,8 +6,8 @@ use flexsc_formats::document::ConfigError;
 
 use super::failure;
 use super::{
-    ActuatorKind, AssignedActuator, ControlMomentGyros, Jets, Magnetorquers, Share, UnloadingTask, Wheel,
-    Wheels,
+    ActuatorKind, AssignedActuator, ControlMomentGyros, Jets, Magnetorquers, Share, Thrusters, UnloadingTask,
+    Wheel, Wheels,
 };
 use crate::one_or_many::OneOrMany;
 
@@ -136,6 +136,11 @@ impl OneOrMany<AssignedActuator> {
     /// Returns the flywheel about the first axis, with its key.
     pub fn flywheel(&self) -> Option<(&Wheel, String)> {
         self.first(|kind| if let ActuatorKind::Wheel(wheel) = kind { Some(wheel) } else { None })
+    }
+
+    /// Returns the thrusters with pulse-width modulation, with their key.
+    pub fn thrusters(&self) -> Option<(&Thrusters, String)> {
+        self.first(|kind| if let ActuatorKind::Thrusters(thrusters) = kind { Some(thrusters) } else { None })
     }
 
     /// Returns the reaction wheels, with their key.

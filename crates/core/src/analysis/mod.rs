@@ -14,6 +14,7 @@ pub mod mode_influence;
 pub mod noise;
 pub mod one_axis_modes;
 pub mod open_loop;
+pub mod pulse_describing_function;
 pub mod rigid_cycle;
 pub mod sampled_loop;
 pub mod scenario_margins;

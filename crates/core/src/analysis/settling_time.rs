@@ -50,7 +50,7 @@ pub fn settling_times(scenario: &Scenario) -> Result<Vec<SettlingTime>, ConfigEr
     let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
     let opened = OpenLoop::from_parts(&parts)?;
     let response = StepResponse::new(&parts, &opened);
-    let terms = response.and_then(|response| response.terms());
+    let terms = response.and_then(StepResponse::terms);
     let Some(terms) = terms else {
         return Err(ConfigError::new("law", "has a loop whose settling time cannot be computed"));
     };

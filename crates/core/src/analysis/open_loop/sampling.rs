@@ -102,8 +102,7 @@ pub fn held(a: &DMatrix<f64>, b: &DMatrix<f64>, time: f64) -> HeldMotion {
         return motion_over(a, b, time);
     }
     let sizes = [a.nrows() as u64, b.ncols() as u64, time.to_bits()];
-    let key: Vec<u64> =
-        sizes.into_iter().chain(a.iter().chain(b).map(|entry| entry.to_bits())).collect();
+    let key: Vec<u64> = sizes.into_iter().chain(a.iter().chain(b).map(|entry| entry.to_bits())).collect();
     KEPT.with_borrow_mut(|kept| {
         if kept.len() >= MOST_KEPT {
             kept.clear();

@@ -30,7 +30,12 @@ impl FromStr for TuningObjective {
 
     fn from_str(text: &str) -> Result<Self, String> {
         Ok(match text.trim() {
-            "" => return Err("must be `margin`, `settling`, or the name of a [[requirement]], got an empty text".to_owned()),
+            "" => {
+                return Err(
+                    "must be `margin`, `settling`, or the name of a [[requirement]], got an empty text"
+                        .to_owned(),
+                );
+            }
             "margin" => Self::Margin,
             "settling" => Self::Settling,
             name => Self::Index(name.to_owned()),
@@ -43,10 +48,17 @@ impl FromStr for TuningLimit {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
-            format!("must be `margin>=VALUE`, `settling<=SECONDS`, or the name of a [[requirement]], got {text}")
+            format!(
+                "must be `margin>=VALUE`, `settling<=SECONDS`, or the name of a [[requirement]], got {text}"
+            )
         };
         let positive = |number: &str| {
-            number.trim().parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite()).ok_or_else(wrong)
+            number
+                .trim()
+                .parse::<f64>()
+                .ok()
+                .filter(|value| *value > 0.0 && value.is_finite())
+                .ok_or_else(wrong)
         };
         match (text.split_once(">="), text.split_once("<=")) {
             (Some((name, value)), None) if name.trim() == "margin" => Ok(Self::Margin(positive(value)?)),
@@ -94,7 +106,17 @@ mod tests {
         assert_eq!("margin >= 0.5".parse(), Ok(TuningLimit::Margin(0.5)));
         assert_eq!("settling<=60".parse(), Ok(TuningLimit::Settling(60.0)));
         assert_eq!("jitter".parse(), Ok(TuningLimit::Index("jitter".to_owned())));
-        for wrong in ["", "margin", "settling", "margin<=1", "settling>=3", "margin>=-1", "settling<=NaN", "a<=1", "margin>=1<=2"] {
+        for wrong in [
+            "",
+            "margin",
+            "settling",
+            "margin<=1",
+            "settling>=3",
+            "margin>=-1",
+            "settling<=NaN",
+            "a<=1",
+            "margin>=1<=2",
+        ] {
             assert!(wrong.parse::<TuningLimit>().is_err(), "{wrong}");
         }
         assert!(" ".parse::<TuningObjective>().is_err());

@@ -110,8 +110,7 @@ impl LoopSet<'_> {
     /// Forms the model of a plant.
     fn model(&self, values: &[f64], plant: usize) -> Result<PlantModel, TuningFault> {
         let TunedPlant { opened, measures } = (self.plant_at)(values, plant).map_err(TuningFault::Loop)?;
-        let sensitivity =
-            LoopSensitivity::new(&opened).ok_or(TuningFault::Unstable(plant, f64::INFINITY))?;
+        let sensitivity = LoopSensitivity::new(&opened).ok_or(TuningFault::Unstable(plant, f64::INFINITY))?;
         Ok(PlantModel { sensitivity, measures })
     }
 

@@ -162,8 +162,7 @@ pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedL
         trust,
         steps: 0,
     };
-    let mut searches =
-        vec![search(start.clone(), first.clone(), TRUSTS[0]), search(start, first, TRUSTS[1])];
+    let mut searches = vec![search(start.clone(), first.clone(), TRUSTS[0]), search(start, first, TRUSTS[1])];
     for values in (0..STARTS).map(|index| point(parameters, index)) {
         // A point that the scenario does not accept is no start.
         let Ok(here) = loops.evaluate(&values) else { continue };
@@ -182,9 +181,11 @@ pub fn tune(loops: &LoopSet<'_>, parameters: &[TunedParameter]) -> Result<TunedL
         search.advance(&problem, MOST_STEPS)?;
         steps += search.steps - taken;
     }
-    let best =
-        searches.into_iter().reduce(|best, other| if other.merit > best.merit + LEAST_GAIN { other } else { best });
-    let after = best.map_or_else(|| before.clone(), |best| TuningPoint::new(&best.values, &best.here, measures));
+    let best = searches
+        .into_iter()
+        .reduce(|best, other| if other.merit > best.merit + LEAST_GAIN { other } else { best });
+    let after =
+        best.map_or_else(|| before.clone(), |best| TuningPoint::new(&best.values, &best.here, measures));
     Ok(TunedLoop { before, after, steps })
 }
 
@@ -248,7 +249,9 @@ impl TuningSearch {
                 .collect();
             // Values that the scenario does not accept, or of which the margins cannot be computed, are no step.
             let there = loops.evaluate(&tried).ok().filter(|there| there.unstable().is_none());
-            let better = there.map(|there| (loops.merit(&there, unit), there)).filter(|(merit, _)| *merit > self.merit);
+            let better = there
+                .map(|there| (loops.merit(&there, unit), there))
+                .filter(|(merit, _)| *merit > self.merit);
             match better {
                 Some((merit, better)) => {
                     (self.values, self.here, self.merit) = (tried, better, merit);

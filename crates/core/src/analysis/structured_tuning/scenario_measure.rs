@@ -27,14 +27,16 @@ impl ScenarioMeasure {
         let Some(index) = all.iter().position(|own| own.name == name) else {
             let known: Vec<String> = all.iter().map(|own| format!("`{}`", own.name)).collect();
             let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-            let why = format!("has no requirement `{name}` (requirements: {known}); `margin` and `settling` need none");
+            let why = format!(
+                "has no requirement `{name}` (requirements: {known}); `margin` and `settling` need none"
+            );
             return Err(ConfigError::new("requirement", why));
         };
         match all[index].source {
             RequirementSource::Error(_) => Ok(Self::Index(index)),
             RequirementSource::Metric(..) => {
                 let why = "limits a metric: a tuning needs a pointing index, which the linear loop has";
-                Err(ConfigError::new(&format!("requirement[{index}].quantity"), why))
+                Err(ConfigError::new(format!("requirement[{index}].quantity"), why))
             }
         }
     }
@@ -70,7 +72,9 @@ impl ScenarioMeasure {
                 };
                 let noisy = match NoisyLoop::from_scenario(scenario) {
                     Ok(noisy) => noisy,
-                    Err(NoiseError::Unstable(_) | NoiseError::Unsettled(_)) => return Ok(vec![f64::INFINITY]),
+                    Err(NoiseError::Unstable(_) | NoiseError::Unsettled(_)) => {
+                        return Ok(vec![f64::INFINITY]);
+                    }
                     Err(fault) => return Err(format!("{name}: {fault}")),
                 };
                 let rms = linear_noise(&noisy, error).ok_or_else(|| {

@@ -127,7 +127,9 @@ impl ScenarioTuning {
         for limit in &self.limits {
             match limit {
                 TuningLimit::Margin(least) => goal.least_margin = Some(*least),
-                TuningLimit::Settling(most) => given.push((place(ScenarioMeasure::Settling), (Some(*most), true))),
+                TuningLimit::Settling(most) => {
+                    given.push((place(ScenarioMeasure::Settling), (Some(*most), true)));
+                }
                 TuningLimit::Index(name) => {
                     given.push((place(ScenarioMeasure::for_requirement(scenario, name)?), (None, true)));
                 }
