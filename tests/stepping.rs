@@ -11,7 +11,7 @@ use crate::study::pairs;
 use crate::util::SCENARIOS;
 
 /// Shipped scenarios of every kind of motion, law, sensor and actuator, and their simulated times (s).
-const FLOWN: [(&str, f64); 15] = [
+const FLOWN: [(&str, f64); 16] = [
     ("attitude-hold", 60.0),
     ("canted-jets", 60.0),
     ("detumble-and-point", 300.0),
@@ -25,6 +25,7 @@ const FLOWN: [(&str, f64); 15] = [
     ("relays-three-axes", 300.0),
     ("rotation-nonlinear", 20.0),
     ("rotation-thrusters", 20.0),
+    ("safe-mode", 1500.0),
     ("wheel-ekf", 30.0),
     ("wheel-friction", 60.0),
 ];

@@ -183,6 +183,10 @@ impl Scenario {
         Self::new(&self.origin, flexsc_core::Scenario::from_document_reusing(&document, &self.inner))
     }
 
+    fn in_mode(&self, name: &str) -> PyResult<Self> {
+        Self::new(&self.origin, self.inner.in_mode(name))
+    }
+
     fn draw(&self, run: u64) -> PyResult<Self> {
         let campaign = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
         Self::new(&self.origin, campaign.run(run).map(|run| run.scenario))

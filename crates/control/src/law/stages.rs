@@ -15,7 +15,6 @@ use super::{
 use crate::actuator::ActuatorName;
 use crate::custom::PartError;
 use crate::offers::{LawOffers, LawPlace, Offers};
-use crate::operation::OperatingMode;
 use crate::part::{Part, ReportContext};
 use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
@@ -57,14 +56,9 @@ impl Stage {
 }
 
 impl Stages {
-    /// Returns the laws of modes of operation.
-    pub fn from_modes(modes: &[OperatingMode]) -> Self {
-        let stage = |mode: &OperatingMode| Stage {
-            from: Time::ZERO,
-            law: mode.law.clone(),
-            actuators: mode.actuators.clone(),
-        };
-        Self { list: modes.iter().map(stage).collect(), of_modes: true }
+    /// Creates the laws of modes of operation, whose start times do not count.
+    pub fn for_modes(list: Vec<Stage>) -> Self {
+        Self { list, of_modes: true }
     }
 
     /// Returns true for the laws of modes.

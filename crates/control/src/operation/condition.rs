@@ -1,17 +1,10 @@
-//! Condition of a mode's end, such as `rate < 2e-3 and silent(star_tracker) <= 5 s`, and its value.
+//! Condition of a mode's end as it is read, and whether it holds.
 
 use std::ops::Range;
 
 use flexsc_numerics::time::Span;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use super::ModeQuantity;
-
-/// Condition as written in a scenario.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(transparent)]
-pub struct ModeCondition(String);
+use super::quantity::ModeQuantity;
 
 /// Part of a condition that cannot be read, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,26 +66,6 @@ pub trait ModeReadings {
 
     /// Returns the span of a quantity that is a clock.
     fn clock(&self, quantity: ModeQuantity) -> Span;
-}
-
-impl ModeCondition {
-    /// Creates a condition from its text.
-    pub fn new(text: impl Into<String>) -> Self {
-        Self(text.into())
-    }
-
-    /// Returns the text.
-    pub fn text(&self) -> &str {
-        &self.0
-    }
-
-    /// Reads the condition.
-    ///
-    /// # Errors
-    /// The first part that is no condition, and the reason.
-    pub fn parse(&self, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
-        super::parser::parse(&self.0, known)
-    }
 }
 
 impl Comparison {

@@ -1,12 +1,14 @@
 //! Modes of operation: a law each, with the target, sensors and actuators in use, and the conditions that end it.
 
 mod condition;
+mod mode_condition;
 mod operating_mode;
 mod parser;
 mod quantity;
 mod sequence;
 
-pub use condition::{Comparison, ConditionFault, Expression, ModeCondition, ModeReadings, Vocabulary};
+pub use condition::{Comparison, ConditionFault, Expression, ModeReadings, Vocabulary};
+pub use mode_condition::ModeCondition;
 pub use operating_mode::{ModeExit, ModeTarget, OperatingMode};
 pub use quantity::ModeQuantity;
 pub use sequence::{ModeChange, ModeSequence, SequencedMode};

@@ -8,10 +8,11 @@ use flexsc_spacecraft::manoeuvre::SlewProfile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::condition::{ConditionFault, Vocabulary};
+use super::mode_condition::ModeCondition;
 use super::parser::{listed, sensor_index};
-use super::{ConditionFault, ModeCondition, Vocabulary};
 use crate::actuator::ActuatorName;
-use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis};
+use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis, Stage};
 
 /// A mode of operation: the law that acts in it, with what it uses, and when it ends. A run begins in the first mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -154,6 +155,11 @@ impl OperatingMode {
             indices.extend(named);
         }
         Ok(Some(indices))
+    }
+
+    /// Returns the law with its actuators, as those of a stage.
+    pub fn stage(&self) -> Stage {
+        Stage { from: Time::ZERO, law: self.law.clone(), actuators: self.actuators.clone() }
     }
 
     /// Checks the names, conditions and sensors of modes against each other and the kinds of the sensors; returns a key

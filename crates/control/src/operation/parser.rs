@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use flexsc_formats::document::number_in;
+use flexsc_formats::document::{nearest, number_in};
 
-use super::ModeQuantity;
 use super::condition::{Comparison, ConditionFault, Expression, Vocabulary};
+use super::quantity::ModeQuantity;
 
 /// Largest length of a condition (bytes), and largest depth of its brackets.
 const LONGEST: usize = 1000;
@@ -183,7 +183,9 @@ impl<'a> Parser<'a> {
                         .to_owned()
                 } else {
                     let words: Vec<&str> = ModeQuantity::words().collect();
-                    format!("must begin with a quantity, one of {}, got `{word}`", listed(&words))
+                    let hint = nearest(word, &words);
+                    let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+                    format!("must begin with a quantity, one of {}, got `{word}`{hint}", listed(&words))
                 };
                 fault(part, why)
             }),

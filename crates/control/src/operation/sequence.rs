@@ -2,8 +2,9 @@
 
 use flexsc_numerics::time::{Instant, Span};
 
-use super::condition::{Expression, ModeReadings};
-use super::{ModeQuantity, OperatingMode, Vocabulary};
+use super::condition::{Expression, ModeReadings, Vocabulary};
+use super::operating_mode::OperatingMode;
+use super::quantity::ModeQuantity;
 
 /// Mode with its conditions, ready for a run.
 #[derive(Clone, Debug, PartialEq)]

@@ -97,7 +97,7 @@ impl ScenarioSpec {
         }
         let filter = self.estimator.as_ref().and_then(EstimatorKind::attitude);
         if filter.is_some() {
-            let place = missing(&|_, sensor| matches!(sensor, SensorKind::Gyro(_)))?;
+            let place = missing(&|_, sensor| sensor.rate_noise(0).is_some())?;
             return at(format!(
                 "must include `{}`, with which the `[estimator.attitude]` goes on through all modes",
                 name(place)

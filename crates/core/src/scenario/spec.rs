@@ -138,7 +138,7 @@ impl ScenarioSpec {
         if self.mode.is_empty() {
             return;
         }
-        self.law = LawKind::Stages(Stages::from_modes(&self.mode));
+        self.law = LawKind::Stages(Stages::for_modes(self.mode.iter().map(OperatingMode::stage).collect()));
         let first = self.mode.first().and_then(|mode| mode.target.as_ref());
         self.mode_targets = first.map(ModeTarget::at_start).into_iter().collect();
     }

@@ -132,6 +132,17 @@ class Scenario(ScenarioAnalysis):
         keys = {key: value} if isinstance(key, str) else key
         return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
 
+    def in_mode(self, name: str, /) -> Scenario:
+        """Return a scenario in which one of the modes of operation, `[[mode]]`, acts throughout, for linear tools.
+
+        >>> flexsc.Scenario.example("safe-mode").in_mode("point")
+        <flexsc.Scenario safe-mode: 9000 s, 0 modes, seed 0>
+
+        Raises:
+            ScenarioError: There is no such mode, or its parts do not fit without those of others.
+        """
+        return self._of(self._native.in_mode(name))
+
     def with_parts(
         self,
         *,
