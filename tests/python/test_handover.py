@@ -22,7 +22,7 @@ def pointing() -> Result:
 
 @pytest.fixture(scope="module")
 def ccsds() -> Any:
-    return pytest.importorskip("brahe", reason="brahe reads CCSDS messages: pip install brahe").ccsds
+    return pytest.importorskip("brahe.ccsds", reason="brahe reads CCSDS messages: pip install brahe")
 
 
 def test_attitude_and_orbit_messages_agree_in_another_reader(
@@ -100,17 +100,25 @@ def test_events_alone_are_no_motion(tmp_path: Path) -> None:
         flexsc.read_log(tmp_path / "run.mcap").export(tmp_path / "run.glb")
 
 
+def length_at(data: bytes, at: int) -> tuple[int, int]:
+    """A length of seven bits in each byte, and where it ends."""
+    value, shift = 0, 0
+    while data[at] >= 0x80:
+        value |= (data[at] & 0x7F) << shift
+        at, shift = at + 1, shift + 7
+    return value | data[at] << shift, at + 1
+
+
 def test_vizard_messages_are_read_by_protobuf(pointing: Result, tmp_path: Path) -> None:
     """The fields of Basilisk's vizMessage.proto that a run has, by their published numbers."""
     messages = pytest.importorskip("google.protobuf.message_factory", reason="protobuf reads them")
     from google.protobuf import descriptor_pb2, descriptor_pool
-    from google.protobuf.internal.decoder import _DecodeVarint32  # type: ignore[attr-defined]
 
     kinds = descriptor_pb2.FieldDescriptorProto
     file = descriptor_pb2.FileDescriptorProto(name="viz.proto", package="viz", syntax="proto3")
 
-    def message(name: str, **fields: tuple[int, str, bool]) -> None:
-        made = file.message_type.add(name=name)
+    def message(kind_name: str, **fields: tuple[int, str, bool]) -> None:
+        made = file.message_type.add(name=kind_name)
         for field, (number, kind, many) in fields.items():
             label = kinds.LABEL_REPEATED if many else kinds.LABEL_OPTIONAL
             added = made.field.add(name=field, number=number, label=label)
@@ -139,13 +147,13 @@ def test_vizard_messages_are_read_by_protobuf(pointing: Result, tmp_path: Path) 
         epoch=(8, "Epoch", False),
     )
     pool = descriptor_pool.DescriptorPool()
-    pool.Add(file)  # type: ignore[no-untyped-call]
+    pool.Add(file)
     viz = messages.GetMessageClass(pool.FindMessageTypeByName("viz.Viz"))
 
     pointing.export(tmp_path / "run.bin")
     data, at, read = (tmp_path / "run.bin").read_bytes(), 0, []
     while at < len(data):
-        length, at = _DecodeVarint32(data, at)
+        length, at = length_at(data, at)
         read.append(viz.FromString(data[at : at + length]))
         at += length
     assert len(read) == pointing["pointing"].rows == 201
