@@ -159,7 +159,7 @@ fn messages_have_the_free_rotation() {
         near(&main.list(4), &[0.0, 0.0, (0.25 * 0.02 * 0.5 * index as f64).tan()], 1e-12);
         let sensor = &main.messages(8)[0];
         near(&sensor.list(3), &[120.0], 1e-9);
-        assert_eq!((sensor.list(4), sensor.text(9)), (vec![0.0, 1.0, 0.0], "sun sensor 1"));
+        assert_eq!((sensor.list(4), sensor.text(9)), (vec![0.0, 1.0, 0.0], "sensor 1"));
         for part in &spacecraft[1..] {
             assert_eq!(part.text(19), "free");
             let away: f64 = part.list(2).iter().zip(&position).map(|(a, b)| (a - b) * (a - b)).sum();

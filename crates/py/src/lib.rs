@@ -15,6 +15,7 @@ mod damping;
 mod design;
 mod error;
 mod figures;
+mod handover;
 mod instants;
 mod linear;
 mod log;
@@ -76,6 +77,8 @@ mod _native {
     use super::figures::{
         Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
     };
+    #[pymodule_export]
+    use super::handover::{ExportOptions, export_log, export_run};
     #[pymodule_export]
     use super::instants::MotionSampler;
     #[pymodule_export]

@@ -23,7 +23,7 @@ mod tachometer;
 mod vector;
 
 use flexsc_formats::document;
-use flexsc_numerics::attitude::{AXES, Vector};
+use flexsc_numerics::attitude::{AXES, Vector, vector};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
@@ -79,6 +79,15 @@ pub enum SensorKind {
     Accelerometer(Accelerometer),
     /// A sensor from another crate; a scenario file cannot name it.
     Own(Custom<dyn SensorSpec>),
+}
+
+/// Cone of the directions in which a sensor measures.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct FieldOfView {
+    /// Unit vector of its axis, in the body's axes.
+    pub boresight: Vector,
+    /// Half angle (rad).
+    pub half_angle: f64,
 }
 
 /// Run-time state of a sensor.
@@ -260,6 +269,14 @@ impl SensorKind {
             Self::EarthSensor(sensor) => sensor.point.as_deref(),
             Self::Accelerometer(accelerometer) => accelerometer.point.as_deref(),
         }
+    }
+
+    /// Returns the field of view, if the sensor has one that leaves out directions.
+    pub fn field_of_view(&self) -> Option<FieldOfView> {
+        let Self::SunSensor(sensor) = self else { return None };
+        let half_angle = sensor.field_of_view.get();
+        let boresight = vector(&sensor.boresight).normalize();
+        (half_angle < std::f64::consts::PI).then_some(FieldOfView { boresight, half_angle })
     }
 
     /// Returns the standard deviation of a measured rate about an axis (rad/s), if rates are measured.

@@ -4,7 +4,7 @@ use serde_json::{Map, Value as Json, json};
 
 /// Kind of the values of an accessor.
 #[derive(Copy, Clone, PartialEq, Eq)]
-pub enum ElementKind {
+pub enum AccessorKind {
     /// One number.
     Scalar,
     /// Three numbers.
@@ -13,7 +13,7 @@ pub enum ElementKind {
     Rotation,
 }
 
-impl ElementKind {
+impl AccessorKind {
     fn width(self) -> usize {
         match self {
             Self::Scalar => 1,
@@ -53,11 +53,11 @@ pub struct BinaryData {
 impl BinaryData {
     /// Adds values of vertices; returns the index of their accessor.
     pub fn add_vertices(&mut self, values: &[f32]) -> usize {
-        self.add_floats(values, ElementKind::Vector, Some(BufferTarget::Vertices))
+        self.add_floats(values, AccessorKind::Vector, Some(BufferTarget::Vertices))
     }
 
     /// Adds values of an animation; returns the index of their accessor.
-    pub fn add_samples(&mut self, values: &[f32], kind: ElementKind) -> usize {
+    pub fn add_samples(&mut self, values: &[f32], kind: AccessorKind) -> usize {
         self.add_floats(values, kind, None)
     }
 
@@ -65,10 +65,10 @@ impl BinaryData {
     pub fn add_indices(&mut self, indices: &[u32]) -> usize {
         let start = self.bytes.len();
         self.bytes.extend(indices.iter().flat_map(|index| index.to_le_bytes()));
-        self.add_accessor(start, Some(BufferTarget::Indices), UNSIGNED, indices.len(), ElementKind::Scalar)
+        self.add_accessor(start, Some(BufferTarget::Indices), UNSIGNED, indices.len(), AccessorKind::Scalar)
     }
 
-    fn add_floats(&mut self, values: &[f32], kind: ElementKind, target: Option<BufferTarget>) -> usize {
+    fn add_floats(&mut self, values: &[f32], kind: AccessorKind, target: Option<BufferTarget>) -> usize {
         let start = self.bytes.len();
         // A negative zero would be another byte for an equal value.
         self.bytes.extend(values.iter().flat_map(|value| (value + 0.0).to_le_bytes()));
@@ -89,7 +89,7 @@ impl BinaryData {
         target: Option<BufferTarget>,
         numbers: u32,
         count: usize,
-        kind: ElementKind,
+        kind: AccessorKind,
     ) -> usize {
         let mut view = json!({"buffer": 0, "byteOffset": start, "byteLength": self.bytes.len() - start});
         if let Some(target) = target {

@@ -18,7 +18,7 @@ use crate::motion_rows::RunLog;
 use crate::options::HandoverOptions;
 use crate::placement::Placement;
 use crate::scene_rows::{HubMotion, SceneRow, section_weights};
-use container::{BinaryData, ElementKind};
+use container::{AccessorKind, BinaryData};
 use model::{ModelMode, ModelNode, SceneModel};
 use tracks::{Animation, ModelTracks, PlumeLevels, add_rotations, add_translations, plume_levels, rotation};
 
@@ -230,7 +230,7 @@ impl Document {
         if tracks.times.len() < 2 {
             return;
         }
-        let times = self.data.add_samples(&tracks.times, ElementKind::Scalar);
+        let times = self.data.add_samples(&tracks.times, AccessorKind::Scalar);
         for (index, placements) in tracks.placements.iter().enumerate() {
             let [moves, rotates] = tracks.motion(index, model.size);
             if moves {
@@ -245,7 +245,7 @@ impl Document {
             }
         }
         if !self.bending.is_empty() {
-            let values = self.data.add_samples(&tracks.weights, ElementKind::Scalar);
+            let values = self.data.add_samples(&tracks.weights, AccessorKind::Scalar);
             let sampler = animation.add_sampler(times, values, false);
             self.bending.iter().for_each(|node| animation.add_channel(sampler, *node, "weights"));
         }
@@ -253,8 +253,8 @@ impl Document {
             let seconds = |(time, _): &(u64, f64)| (*time as f64 / 1e9 / self.speed) as f32;
             let times: Vec<f32> = plume.levels.iter().map(seconds).collect();
             let levels: Vec<f32> = plume.levels.iter().flat_map(|(_, level)| [*level as f32; 3]).collect();
-            let times = self.data.add_samples(&times, ElementKind::Scalar);
-            let levels = self.data.add_samples(&levels, ElementKind::Vector);
+            let times = self.data.add_samples(&times, AccessorKind::Scalar);
+            let levels = self.data.add_samples(&levels, AccessorKind::Vector);
             let sampler = animation.add_sampler(times, levels, true);
             animation.add_channel(sampler, model.nodes.len() + index, "scale");
         }
@@ -269,7 +269,7 @@ impl Document {
         const PERIOD: f64 = 2.0;
         let part = |frame: usize| frame as f64 / FRAMES as f64;
         let times: Vec<f32> = (0..=FRAMES).map(|frame| (PERIOD * part(frame)) as f32).collect();
-        let times = self.data.add_samples(&times, ElementKind::Scalar);
+        let times = self.data.add_samples(&times, AccessorKind::Scalar);
         for (place, mode) in model.modes.iter().enumerate() {
             let mut weights = vec![0.0_f32; (FRAMES + 1) * model.modes.len()];
             for frame in 0..=FRAMES {
@@ -277,7 +277,7 @@ impl Document {
                 weights[frame * model.modes.len() + place] = libm::sin(phase) as f32;
             }
             let mut animation = Animation::default();
-            let values = self.data.add_samples(&weights, ElementKind::Scalar);
+            let values = self.data.add_samples(&weights, AccessorKind::Scalar);
             let sampler = animation.add_sampler(times, values, false);
             self.bending.iter().for_each(|node| animation.add_channel(sampler, *node, "weights"));
             let frequency = frequencies.get(mode.index).copied().unwrap_or_default();

@@ -4,7 +4,7 @@ use flexsc_core::record::{Column, Columns};
 use flexsc_view::scene::Scene;
 use nalgebra::Quaternion;
 
-use super::container::{BinaryData, ElementKind};
+use super::container::{AccessorKind, BinaryData};
 use super::model::SceneModel;
 use crate::placement::Placement;
 use crate::scene_rows::SceneRow;
@@ -182,13 +182,13 @@ impl PlumeIntervals {
 pub fn add_translations(data: &mut BinaryData, placements: &[Placement]) -> usize {
     let values: Vec<f32> =
         placements.iter().flat_map(|of| [of.at.x, of.at.y, of.at.z]).map(|x| x as f32).collect();
-    data.add_samples(&values, ElementKind::Vector)
+    data.add_samples(&values, AccessorKind::Vector)
 }
 
 /// Adds the values of rotations; returns the index of their accessor.
 pub fn add_rotations(data: &mut BinaryData, placements: &[Placement]) -> usize {
     let values: Vec<f32> = placements.iter().flat_map(|of| rotation(&of.rotation)).collect();
-    data.add_samples(&values, ElementKind::Rotation)
+    data.add_samples(&values, AccessorKind::Rotation)
 }
 
 /// Returns a unit quaternion as glTF has it, scalar last.

@@ -6,7 +6,6 @@
 mod messages;
 mod pulses;
 
-use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::attitude::{Vector, vector};
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::foxglove::{Color, FrameTransform, SceneEntity};
@@ -299,16 +298,14 @@ impl Equipment {
             });
         }
         for (index, sensor) in scenario.sensor.iter().enumerate() {
-            let SensorKind::SunSensor(sensor) = sensor else { continue };
             // A viewer draws a cone of less than half a turn.
-            if sensor.field_of_view.get() < std::f64::consts::FRAC_PI_2 {
-                made.sensors.push(VizSensor {
-                    position: list(&at(sensor.point.as_deref())),
-                    field_of_view: vec![2.0 * sensor.field_of_view.get().to_degrees()],
-                    normal_vector: list(&vector(&sensor.boresight).normalize()),
-                    label: format!("sun sensor {}", index + 1),
-                });
-            }
+            let view = sensor.field_of_view().filter(|view| view.half_angle < std::f64::consts::FRAC_PI_2);
+            made.sensors.extend(view.map(|view| VizSensor {
+                position: list(&at(sensor.point())),
+                field_of_view: vec![2.0 * view.half_angle.to_degrees()],
+                normal_vector: list(&view.boresight),
+                label: format!("sensor {}", index + 1),
+            }));
         }
         Ok(made)
     }

@@ -17,6 +17,7 @@ __all__ = [
     "Draws",
     "Effort",
     "Event",
+    "ExportOptions",
     "Figure",
     "Hold",
     "Instant",
@@ -49,6 +50,8 @@ __all__ = [
     "estimate_json",
     "examples",
     "exponential",
+    "export_log",
+    "export_run",
     "gain_regions_json",
     "identify_json",
     "linear_json",
@@ -1279,6 +1282,19 @@ class Commands:
     def none(self) -> bool: ...
 
 @final
+class ExportOptions:
+    def __new__(
+        cls,
+        format: str,
+        epoch: str | None,
+        frame: str | None,
+        center: str | None,
+        object_id: str | None,
+        speed: float | None,
+        modes: bool,
+    ) -> ExportOptions: ...
+
+@final
 class MotionSampler:
     def __new__(cls, scenario: Scenario, run: int, stepped: Commands | None) -> MotionSampler: ...
     def sample(self, times: list[float]) -> dict[str, dict[str, _Column]]: ...
@@ -1328,6 +1344,14 @@ def campaign_figures(
 def directory_figures(
     path: str | os.PathLike[str], kind: str | None, metrics: list[str]
 ) -> list[tuple[str, Figure]]: ...
+def export_log(log: Log, options: ExportOptions, path: str | os.PathLike[str]) -> int: ...
+def export_run(
+    scenario: Scenario,
+    run: int,
+    options: ExportOptions,
+    path: str | os.PathLike[str],
+    stepped: Commands | None,
+) -> int: ...
 def log_figure(log: Log, name: str) -> Figure: ...
 def log_figures(log: Log) -> list[str]: ...
 def log_of(scenario: Scenario, run: int, stepped: Commands | None) -> Log: ...
