@@ -70,6 +70,7 @@ mod plants;
 mod relay;
 mod rivals;
 mod saturation;
+mod pulse_cycles;
 mod settling_times;
 mod several_actuators;
 mod several_sensors;
