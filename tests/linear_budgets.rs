@@ -23,7 +23,7 @@ mass = 30.0
 centre = [0.0, 2.5, 0.0]
 inertia = [[62.5, 0, 0], [0, 5.625, 0], [0, 0, 68.125]]
 at = [0.0, 1.0, 0.2]
-modes = [{ frequency = 1.10, damping = 0.05, translation = [0, 0, 4.2887], rotation = [14.0, 2.0, 0] }]
+modes = [{ frequency = 1.10, damping = 0.05, translation = [0, 0, 3.5], rotation = [11.0, 1.0, 0] }]
 
 [law.attitude]
 period = 0.25
