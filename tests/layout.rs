@@ -127,7 +127,7 @@ fn check(log: &Log, layout: &str) {
                 let path = path["value"].as_str().expect("a path");
                 let (topic, field) = path.split_once('.').expect("a field");
                 let columns = log.columns(topic).expect("the topic");
-                let named = matches!(at(&columns, field), Some(Column::Labels(..)));
+                let named = matches!(at(&columns, field), Some(Column::Labels(..) | Column::Texts(..)));
                 assert!(named, "{path}: states without names");
             }
         }

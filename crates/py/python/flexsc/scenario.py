@@ -115,12 +115,15 @@ __all__ = [
     "MinimumEnergy",
     "MinimumPeak",
     "Mode",
+    "ModeExit",
+    "ModeTarget",
     "NamedPoint",
     "Normal",
     "Notch",
     "NullMotion",
     "ObserverFormKind",
     "Open",
+    "OperatingMode",
     "Output",
     "Pair",
     "Panels",
@@ -2213,6 +2216,65 @@ class Mode(Part):
     """Rate at the start (rad/s). Default: 0.0."""
 
 
+class ModeExit(Part):
+    """An end of a mode.
+
+    Args:
+        to: Name of the mode that follows.
+        when: Condition, such as `"rate < 2e-3 and time > 60"`.
+        for_: Time for which the condition has to hold without a break (s).
+    """
+
+    to: str
+    """Name of the mode that follows."""
+    when: str
+    """Condition, such as `"rate < 2e-3 and time > 60"`."""
+    for_: float | None = None
+    """Time for which the condition has to hold without a break (s)."""
+
+
+class ModeTarget(Part):
+    """The target attitude of a mode: yaw, then pitch about the rotated y axis, then roll about the twice
+    rotated x axis.
+
+    Args:
+        frame: Frame relative to which the attitude is given.
+        primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
+            are relative to the attitude that these two give.
+        secondary: Axis of the body that is as near to a direction as `primary` lets it.
+        roll: Roll (rad). Default: 0.0.
+        pitch: Pitch (rad). Default: 0.0.
+        yaw: Yaw (rad). Default: 0.0.
+        acceleration: Largest acceleration of the slew about one axis to it (rad/s²), from where the
+            reference is; default: the reference jumps.
+        rate_limit: Largest rate of the slew (rad/s); no limit by default.
+        profile: How the rate of the slew rises and falls.
+    """
+
+    frame: Literal["inertial", "nadir", "sun"] | None = None
+    """Frame relative to which the attitude is given."""
+    primary: PointedAxis | None = None
+    """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
+    relative to the attitude that these two give.
+    """
+    secondary: PointedAxis | None = None
+    """Axis of the body that is as near to a direction as `primary` lets it."""
+    roll: float | None = None
+    """Roll (rad). Default: 0.0."""
+    pitch: float | None = None
+    """Pitch (rad). Default: 0.0."""
+    yaw: float | None = None
+    """Yaw (rad). Default: 0.0."""
+    acceleration: float | None = None
+    """Largest acceleration of the slew about one axis to it (rad/s²), from where the reference is; default:
+    the reference jumps.
+    """
+    rate_limit: float | None = None
+    """Largest rate of the slew (rad/s); no limit by default."""
+    profile: Literal["trapezoid", "versine"] | None = None
+    """How the rate of the slew rises and falls."""
+
+
 class NamedPoint(Part):
     """A point of the structure.
 
@@ -2283,6 +2345,51 @@ class Open(Part):
     """No law: the default of a scenario with a manoeuvre."""
 
     _tag: ClassVar[str | None] = "open"
+
+
+class OperatingMode(Part):
+    """A mode of operation: the law that acts in it, with what it uses, and when it ends. A run begins in
+    the first mode.
+
+    Args:
+        name: Name: letters, digits, `_` and `-`.
+        law: The law.
+        target: Target attitude of a body with three axes, from the start of the mode on; default: the
+            target stays.
+        sensors: Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for
+            the second of a kind; default: all. The others give no readings.
+        actuators: Kinds of the `[[actuator]]` entries that execute the commands of the law, such as
+            `["wheels"]`; default: all.
+        leave: Ends of the mode: the first whose condition is met ends it.
+    """
+
+    name: str
+    """Name: letters, digits, `_` and `-`."""
+    law: LawKind
+    """The law."""
+    target: ModeTarget | None = None
+    """Target attitude of a body with three axes, from the start of the mode on; default: the target stays.
+    """
+    sensors: Sequence[str] | None = None
+    """Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for the second
+    of a kind; default: all. The others give no readings.
+    """
+    actuators: Sequence[Literal[
+        "ideal",
+        "hold",
+        "thrusters",
+        "wheel",
+        "wheels",
+        "control_moment_gyros",
+        "jets",
+        "magnetorquers",
+        "own",
+    ]] | None = None
+    """Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`;
+    default: all.
+    """
+    leave: Sequence[ModeExit] | None = None
+    """Ends of the mode: the first whose condition is met ends it."""
 
 
 class Output(Part):
@@ -4159,7 +4266,10 @@ class Keys(TypedDict, total=False):
     """The planned manoeuvre."""
 
     law: LawKind
-    """The control law. Only a scenario with a manoeuvre can omit it."""
+    """The control law. Only a scenario with a manoeuvre or with modes can omit it."""
+
+    mode: Sequence[OperatingMode]
+    """Modes of operation, each with a law of its own; a run begins in the first."""
 
     actuator: (
         ActuatorKind | Assigned | Literal["ideal"] | Sequence[ActuatorKind | Assigned | Literal["ideal"]]
