@@ -32,6 +32,7 @@ mod line_of_sight;
 mod linear;
 mod linear_poles;
 mod model;
+mod orbits;
 mod outside;
 mod rotation;
 mod small_angles;

@@ -26,6 +26,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
+pub use file::open_text_up_to;
 use eigen_reduced::EigenError;
 pub use matrix::Matrix;
 pub use shape::Shape;

@@ -63,7 +63,7 @@ impl OrbitEnvironment {
             }
             BrightBody::Limb => orbit.map_or(0.0, |orbit| {
                 // asin(R/r) falls by R r'/(r sqrt(r² - R²)).
-                let (nearest, radius) = (orbit.nearest(), orbit.planet_radius.get());
+                let (nearest, radius) = (orbit.nearest(), orbit.planet_radius());
                 let tangent = f64::sqrt((nearest - radius) * (nearest + radius));
                 orbit.fastest() + radius * orbit.largest_speed() / (nearest * tangent)
             }),
