@@ -15,8 +15,6 @@ const GRAVITY: f64 = 3.986_008e14;
 const J2: f64 = 1.082_616e-3;
 const J3: f64 = -2.538_81e-6;
 const J4: f64 = -1.655_97e-6;
-/// Period (min) from which on the theory has terms of Sun and Moon (SDP4).
-pub(super) const DEEP_SPACE: f64 = 225.0;
 /// Eccentricity below which terms in its inverse are left out.
 const CIRCULAR: f64 = 1e-4;
 

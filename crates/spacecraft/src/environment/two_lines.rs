@@ -4,7 +4,8 @@ use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
 
-use super::sgp4::DEEP_SPACE;
+/// Period (min) from which on SGP4 has terms of Sun and Moon (SDP4).
+const DEEP_SPACE: f64 = 225.0;
 
 /// Length of a line.
 const LENGTH: usize = 69;
