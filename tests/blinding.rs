@@ -1,8 +1,8 @@
 //! Star trackers that Sun, Moon and limb blind, in whole scenarios.
 
+use flexsc_core::Scenario;
 use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::Scenario;
 
 use crate::traces::{column, flown, traced, within};
 use crate::util::Dir;
@@ -115,7 +115,9 @@ fn exclusions_without_their_bodies_are_refused() {
     refused(&[(epoch, "")], "{ moon = 0.7 }", &["star_tracker.exclusion.moon`", "`epoch`"]);
     refused(&[("6.978e6", "3e8")], "{ moon = 0.7 }", &["exclusion.moon`", "1e8 m"]);
     refused(&[], "{ limb = 3.2 }", &["exclusion.limb`", "below pi"]);
-    for bad in ["{ sun = nan }", "{ sun = -0.1 }", "{ sun = 1e300 }", "{ stars = 0.1 }", "0.5", "{ limb = \"0.1\" }"] {
+    for bad in
+        ["{ sun = nan }", "{ sun = -0.1 }", "{ sun = 1e300 }", "{ stars = 0.1 }", "0.5", "{ limb = \"0.1\" }"]
+    {
         refused(&[], bad, &["exclusion"]);
     }
 }

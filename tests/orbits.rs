@@ -32,9 +32,16 @@ fn a_log_has_the_states_of_two_line_elements() {
     assert_eq!(scenario.date_ns(), Some(1_151_347_924_079_712_000));
     let trace = traced(&scenario);
     let row = times(&trace, "/orbit").iter().position(|time| *time == 7200.0).expect("a row");
-    let [position, velocity] =
-        ["position_m", "velocity_m_s"].map(|name| within(&trace, "/orbit", "axes", name)[3 * row..3 * row + 3].to_vec());
-    for (axis, (place, speed)) in [(-1_816_879.209_42, 2325.140_071), (-1_835_787.621_32, 6655.669_329), (6_661_079.264_65, 2463.394_512)].into_iter().enumerate() {
+    let [position, velocity] = ["position_m", "velocity_m_s"]
+        .map(|name| within(&trace, "/orbit", "axes", name)[3 * row..3 * row + 3].to_vec());
+    for (axis, (place, speed)) in [
+        (-1_816_879.209_42, 2325.140_071),
+        (-1_835_787.621_32, 6655.669_329),
+        (6_661_079.264_65, 2463.394_512),
+    ]
+    .into_iter()
+    .enumerate()
+    {
         // Lagrange polynomials of eight rows a minute apart; the velocity of SGP4 is not quite the rate of its position.
         assert!((position[axis] - place).abs() < 3e-5, "{axis}: {}", position[axis] - place);
         assert!((velocity[axis] - speed).abs() < 0.05, "{axis}: {}", velocity[axis] - speed);
@@ -59,7 +66,8 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
         writeln!(table, "{t},{},{},{}", place.x, place.y, place.z).expect("text");
         let (minute, hour) = ((row + 60) % 60, (row + 60) / 60);
         let km = place / 1e3;
-        writeln!(message, "2026-11-24T{:02}:{minute:02}:00 {} {} {} 0 0 0", hour + 11, km.x, km.y, km.z).expect("text");
+        writeln!(message, "2026-11-24T{:02}:{minute:02}:00 {} {} {} 0 0 0", hour + 11, km.x, km.y, km.z)
+            .expect("text");
     }
     dir.write("orbit.csv", &table);
     dir.write("orbit.oem", &message);
@@ -85,11 +93,19 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
         let [lit, expected] = [&trace, &exact].map(|trace| column(trace, "/orbit", "sunlight"));
         assert!(lit.iter().zip(expected).all(|(lit, expected)| (lit - expected).abs() < 1e-6));
         let edges = |scenario: &Scenario| -> Vec<f64> {
-            scenario.orbit_environment().shadow_edges().map(|at| at.seconds()).filter(|t| *t < 7200.0).collect()
+            scenario
+                .orbit_environment()
+                .shadow_edges()
+                .map(|at| at.seconds())
+                .filter(|t| *t < 7200.0)
+                .collect()
         };
         let (found_edges, exact_edges) = (edges(&found), edges(&kepler));
         assert!(found_edges.len() == exact_edges.len() && exact_edges.len() >= 4, "{found_edges:?}");
-        assert!(found_edges.iter().zip(&exact_edges).all(|(a, b)| (a - b).abs() < 1e-6), "{found_edges:?} {exact_edges:?}");
+        assert!(
+            found_edges.iter().zip(&exact_edges).all(|(a, b)| (a - b).abs() < 1e-6),
+            "{found_edges:?} {exact_edges:?}"
+        );
         // A log repeats without the file.
         let alone = found.self_contained().to_toml();
         assert!(!alone.contains(name) || alone.contains("ephemeris"), "{alone}");
@@ -115,15 +131,24 @@ fn orbits_that_do_not_hold_are_refused() {
         format!("{{ ephemeris = [{}] }}", (0..count).map(row).collect::<Vec<_>>().join(", "))
     };
     refused(&orbit(&rows(7)), &["`environment.orbit.ephemeris`", "at least 8 rows, got 7"]);
-    refused(&orbit(&rows(20)), &["`environment.orbit.ephemeris`", "rows from 0 to 7200 s of the run, got 0 to 1900 s"]);
+    refused(
+        &orbit(&rows(20)),
+        &["`environment.orbit.ephemeris`", "rows from 0 to 7200 s of the run, got 0 to 1900 s"],
+    );
     refused(&orbit(&rows(80).replace("7e6, 0, 0]", "nan, 0, 0]")), &["environment.orbit"]);
     refused(&orbit(&rows(80).replace("7e6", "6e6")), &["above the planet's radius"]);
     refused(&orbit("{ ephemeris = \"missing.csv\" }"), &["`environment.orbit.ephemeris`", "missing.csv"]);
     refused(&orbit("{ ephemeris = 5 }"), &["environment.orbit"]);
-    refused(&drifting(TLE, "").replace("duration = 7200.0", "duration = 1e9"), &["`environment.orbit.tle`", "rows"]);
+    refused(
+        &drifting(TLE, "").replace("duration = 7200.0", "duration = 1e9"),
+        &["`environment.orbit.tle`", "rows"],
+    );
     // Sixty years after its epoch the elements are no orbit.
     refused(
-        &format!("epoch = 2090-01-01T00:00:00Z\n{}", orbit(&TLE.replace("35940-4 0  1836", "35940-1 0  1833"))),
+        &format!(
+            "epoch = 2090-01-01T00:00:00Z\n{}",
+            orbit(&TLE.replace("35940-4 0  1836", "35940-1 0  1833"))
+        ),
         &["`environment.orbit.tle`"],
     );
 }
@@ -131,18 +156,27 @@ fn orbits_that_do_not_hold_are_refused() {
 #[test]
 fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
     let drag = |keys: &str| {
-        drifting(KEPLER, &format!("sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"))
+        drifting(
+            KEPLER,
+            &format!(
+                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"
+            ),
+        )
     };
     let torque = |keys: &str| {
         let trace = traced(&scenario(&drag(keys)));
-        within(&trace, "/torques", "axes", "disturbance_nm").iter().map(|torque| torque.abs()).fold(0.0, f64::max)
+        within(&trace, "/torques", "axes", "disturbance_nm")
+            .iter()
+            .map(|torque| torque.abs())
+            .fold(0.0, f64::max)
     };
     let table = "model = \"table\", table = [[4e5, 2e-12], [8e5, 2e-14]]";
     for keys in ["density = 1e-12", "model = \"harris_priester\"", table] {
         let ratio = torque(&format!("{keys}, scale = 1.5")) / torque(keys);
         assert!((ratio - 1.5).abs() < 1e-12, "{keys}: {ratio}");
     }
-    let campaign = format!("{}[uncertain]\n\"environment.drag.scale\" = {{ uniform = [0.5, 2.0] }}\n", drag(table));
+    let campaign =
+        format!("{}[uncertain]\n\"environment.drag.scale\" = {{ uniform = [0.5, 2.0] }}\n", drag(table));
     assert!(Scenario::parse("campaign.toml", &campaign).is_ok());
     let refused = |keys: &str, words: &[&str]| {
         let error = Scenario::parse("bad.toml", &drag(keys)).expect_err(words[0]).to_string();
@@ -151,7 +185,10 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
     refused("scale_height = 6e4", &["`environment.drag.density`", "must be given"]);
     refused("model = \"table\"", &["`environment.drag.table`", "must be given"]);
     refused("model = \"table\", density = 1e-12", &["`environment.drag.density`", "exponential"]);
-    refused("model = \"table\", table = [[6e5, 1e-12], [8e5, 1e-14]]", &["`environment.drag.table`", "heights from"]);
+    refused(
+        "model = \"table\", table = [[6e5, 1e-12], [8e5, 1e-14]]",
+        &["`environment.drag.table`", "heights from"],
+    );
     refused("model = \"table\", table = [[4e5, 1e-12], [8e5, -1.0]]", &["row 2", "positive density"]);
     refused("model = \"table\", table = \"missing.csv\"", &["`environment.drag.table`", "missing.csv"]);
     refused("model = \"harris_priester\", bulge_exponent = 50", &["`environment.drag.bulge_exponent`"]);
@@ -161,7 +198,12 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
     let error = Scenario::parse("bad.toml", &no_sun).expect_err("no Sun").to_string();
     assert!(error.contains("environment.sun"), "{error}");
     let tle = drag("density = 1e-12").replace(KEPLER, TLE);
-    assert!(Scenario::parse("bad.toml", &tle).expect_err("no height").to_string().contains("`environment.drag.altitude`"));
+    assert!(
+        Scenario::parse("bad.toml", &tle)
+            .expect_err("no height")
+            .to_string()
+            .contains("`environment.drag.altitude`")
+    );
 }
 
 #[test]

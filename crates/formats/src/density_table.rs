@@ -177,7 +177,10 @@ mod tests {
     #[test]
     fn damaged_tables_are_refused_with_their_lines() {
         let table = |text: &str| read(text.as_bytes());
-        assert_eq!(table("height,density\n1e5,5e-7\n# c\n\n2e5,3e-10\n"), Ok(vec![[1e5, 5e-7], [2e5, 3e-10]]));
+        assert_eq!(
+            table("height,density\n1e5,5e-7\n# c\n\n2e5,3e-10\n"),
+            Ok(vec![[1e5, 5e-7], [2e5, 3e-10]])
+        );
         let refused = |text: &str, words: &str| {
             let error = table(text).unwrap_err();
             assert!(error.contains(words), "{error}");

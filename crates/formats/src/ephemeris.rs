@@ -143,8 +143,7 @@ fn read(file: impl Read) -> Result<(Rows, Option<u64>), String> {
         }
     };
     let mut lines = lines.map(|(index, line)| (index + 1, line));
-    let (rows, places, epoch) =
-        if is_message { message::read(&mut lines)? } else { read_table(&mut lines)? };
+    let (rows, places, epoch) = if is_message { message::read(&mut lines)? } else { read_table(&mut lines)? };
     check(&rows, &|row| format!("line {}", places.get(row).copied().unwrap_or_default()))?;
     Ok((rows, epoch))
 }
@@ -178,7 +177,9 @@ fn read_table(lines: Lines<'_>) -> Result<PlacedRows, String> {
             columns = fields.len();
             if fields.first().is_some_and(|first| first.parse::<f64>().is_err()) {
                 if fields.len() < 4 || fields[..4] != ["t", "x", "y", "z"] {
-                    return Err(format!("line {number}: must be a header `t,x,y,z`, or numbers, got `{line}`"));
+                    return Err(format!(
+                        "line {number}: must be a header `t,x,y,z`, or numbers, got `{line}`"
+                    ));
                 }
                 continue;
             }

@@ -145,7 +145,8 @@ mod tests {
     #[test]
     fn it_measures_the_nadir_within_its_field_of_view() {
         let sensor: EarthSensor =
-            flexsc_formats::document::from_text("period = 1.0\nboresight = [0, 0, 2]\nfield_of_view = 0.5").unwrap();
+            flexsc_formats::document::from_text("period = 1.0\nboresight = [0, 0, 2]\nfield_of_view = 0.5")
+                .unwrap();
         assert_eq!(sensor.inconsistency(), None);
         let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let mut measure = |t: f64, rotation_angle: f64, nadir: Option<Vector>| {

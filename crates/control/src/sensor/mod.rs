@@ -298,10 +298,7 @@ impl SensorKind {
 
     /// Returns true if the sensor measures a vector, which alone does not determine the attitude.
     pub fn measures_vector(&self) -> bool {
-        matches!(
-            self,
-            Self::Magnetometer(_) | Self::SunSensor(_) | Self::SunCells(_) | Self::EarthSensor(_)
-        )
+        matches!(self, Self::Magnetometer(_) | Self::SunSensor(_) | Self::SunCells(_) | Self::EarthSensor(_))
     }
 
     /// Returns true if the sensor measures the magnetic field.

@@ -269,10 +269,13 @@ mod tests {
     #[test]
     fn cells_that_give_no_direction_are_refused() {
         let fault = |keys: &str| cells(keys).inconsistency().unwrap().to_string();
-        let two = "period = 1.0\ncells = [{ normal = [1, 0, 0] }, { normal = [0, 1, 0] }, { normal = [1, 1, 0] }]";
+        let two =
+            "period = 1.0\ncells = [{ normal = [1, 0, 0] }, { normal = [0, 1, 0] }, { normal = [1, 1, 0] }]";
         assert!(fault(two).starts_with("`cells` must have three normals"));
         assert!(fault("period = 1.0\ncells = []").starts_with("`cells` must have three"));
-        assert!(fault("period = 1.0\ncells = [{ normal = [0, 0, 0] }]").starts_with("`cells[0].normal` must"));
+        assert!(
+            fault("period = 1.0\ncells = [{ normal = [0, 0, 0] }]").starts_with("`cells[0].normal` must")
+        );
         assert!(fault(&format!("{CUBE}field_of_view = 1.6")).starts_with("`field_of_view` must be at most"));
         assert!(fault(&format!("{CUBE}threshold = 1.0")).starts_with("`threshold` must be below 1"));
     }

@@ -59,8 +59,7 @@ pub fn date(nanoseconds: u64) -> Option<Datetime> {
     let month = (5 * in_year + 2) / 153;
     let day = in_year - (153 * month + 2) / 5 + 1;
     let (month, turned) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
-    let (year, hour, minute, second) =
-        (year + 400 * era + turned, clock / 3600, clock / 60 % 60, clock % 60);
+    let (year, hour, minute, second) = (year + 400 * era + turned, clock / 3600, clock / 60 % 60, clock % 60);
     let text = format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{fraction:09}Z");
     text.parse().ok().filter(|_| year < 2500)
 }
@@ -71,7 +70,12 @@ mod tests {
 
     #[test]
     fn dates_are_those_of_their_counts() {
-        for text in ["1970-01-01T00:00:00Z", "2000-02-29T23:59:59.123456789Z", "2006-06-26T18:52:04.079712Z", "2100-03-01T12:00:00Z"] {
+        for text in [
+            "1970-01-01T00:00:00Z",
+            "2000-02-29T23:59:59.123456789Z",
+            "2006-06-26T18:52:04.079712Z",
+            "2100-03-01T12:00:00Z",
+        ] {
             let count = nanoseconds_since_1970(&text.parse().expect("a date")).expect("a count");
             let found = date(count).expect("a date");
             assert_eq!(nanoseconds_since_1970(&found), Some(count), "{text} {found}");

@@ -68,7 +68,9 @@ struct MotionLimits {
 impl Blinding {
     /// Creates the exclusion angles of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
-        let (Some(body), study) = (scenario.model.three_axis(), &scenario.study) else { return Self::default() };
+        let (Some(body), study) = (scenario.model.three_axis(), &scenario.study) else {
+            return Self::default();
+        };
         let sky = scenario.orbit_environment();
         let norm = |point: &str| {
             let squares = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm_squared());
@@ -88,8 +90,7 @@ impl Blinding {
             }
         }
         let least = body.inertia.symmetric_eigenvalues().min();
-        let limits =
-            MotionLimits { inverse_inertia: 1.0 / least, modal_torque: norm(&study.torque_point) };
+        let limits = MotionLimits { inverse_inertia: 1.0 / least, modal_torque: norm(&study.torque_point) };
         Self { sky, watches, limits, next: None }
     }
 
@@ -157,7 +158,8 @@ impl Blinding {
         let Some(motion) = plant.quantities().three_axis() else { return 0.0 };
         let rate = Vector::from(plant.truth().rigid).norm();
         let (_, momentum) = motion.rotational_energy();
-        let torque = torque + motion.surroundings().map_or(0.0, flexsc_dynamics::three_axis::Surroundings::bound);
+        let torque =
+            torque + motion.surroundings().map_or(0.0, flexsc_dynamics::three_axis::Surroundings::bound);
         let elastic = watch.modal_rotation * f64::sqrt(2.0 * motion.elastic_energies().0.max(0.0));
         let growth = self.limits.inverse_inertia * (torque + rate * momentum)
             + watch.modal_rotation * self.limits.modal_torque * torque;

@@ -45,7 +45,8 @@ fn messages_have_dates_and_kilometres() {
     let off = (0..3).map(|axis| (turned[0][1 + axis] - found[0][1 + axis]).powi(2)).sum::<f64>().sqrt() / 7e6;
     // General precession of 50.3 arc seconds a year along the ecliptic, at the equinox: 1353 arc seconds.
     assert!((off.to_degrees() * 3600.0 - 1353.0).abs() < 3.0, "{}", off.to_degrees() * 3600.0);
-    let mut shared = EphemerisTable { file: Some("a.oem".to_owned()), rows: Arc::new(found), epoch_ns: epoch };
+    let mut shared =
+        EphemerisTable { file: Some("a.oem".to_owned()), rows: Arc::new(found), epoch_ns: epoch };
     assert_eq!(shared.rows(epoch.map(|at| at - 30_000_000_000)).unwrap()[0][0], 30.0);
     assert_eq!(shared.rows(None), None);
     shared.inline(epoch);
@@ -74,11 +75,15 @@ fn damaged_files_are_refused_with_their_lines() {
     refused(&message().replace("REF_FRAME = TOD\n", ""), "must have a `REF_FRAME`");
     refused(&message().replace("= EARTH", "= MARS"), "line 8: must have `CENTER_NAME = EARTH`");
     refused(&message().replace("T00:03", "T25:03"), "line 18: must begin with a date");
-    refused(&message().replace("2026-11-24T00:03:00.500 7000.0", "2026-11-24T00:03:00.500 7OOO"), "line 18: must be a number");
+    refused(
+        &message().replace("2026-11-24T00:03:00.500 7000.0", "2026-11-24T00:03:00.500 7OOO"),
+        "line 18: must be a number",
+    );
     refused(&message().replace("T00:03", "T00:02"), "line 18: must have increasing times");
     refused(&format!("{}META_START\n", message()), "begins a second segment");
     refused(MESSAGE, "at least 8 rows, got 0");
-    for bad in ["2026-13-01T00:00:00", "2026-02-29T00:00:00", "2026-366T00:00:00", "1969-01-01T00:00:00", "x"] {
+    for bad in ["2026-13-01T00:00:00", "2026-02-29T00:00:00", "2026-366T00:00:00", "1969-01-01T00:00:00", "x"]
+    {
         assert_eq!(message::nanoseconds(bad), None, "{bad}");
     }
     assert_eq!(message::nanoseconds("2024-366T23:59:59.25Z"), message::nanoseconds("2024-12-31T23:59:59.25"));

@@ -26,8 +26,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
-pub use file::open_text_up_to;
 use eigen_reduced::EigenError;
+pub use file::open_text_up_to;
 pub use matrix::Matrix;
 pub use shape::Shape;
 

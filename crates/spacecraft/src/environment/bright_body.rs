@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::attitude::Vector;
 
-use super::orbit_environment::OrbitEnvironment;
 use super::moon;
+use super::orbit_environment::OrbitEnvironment;
 
 /// Body whose light blinds a sensor.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

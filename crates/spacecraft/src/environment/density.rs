@@ -120,8 +120,7 @@ mod tests {
 
     #[test]
     fn tables_are_exponential_between_rows() {
-        let table: DensityTable =
-            serde_json::from_str("[[4e5, 4e-12], [5e5, 1e-12], [7e5, 1e-13]]").unwrap();
+        let table: DensityTable = serde_json::from_str("[[4e5, 4e-12], [5e5, 1e-12], [7e5, 1e-13]]").unwrap();
         assert_eq!(table.fault(), None);
         assert!((tabulated(&table, 4.5e5) / 2e-12 - 1.0).abs() < 1e-14);
         assert!((tabulated(&table, 7e5) / 1e-13 - 1.0).abs() < 1e-14);

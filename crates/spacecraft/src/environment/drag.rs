@@ -144,7 +144,9 @@ impl Drag {
         let [low, high] = heights(orbit);
         match (self.model, &self.table) {
             (DensityModel::HarrisPriester, _) if low < LOWEST => {
-                let why = format!("\"harris_priester\" begins at {LOWEST} m, and the orbit goes down to {low:.0} m");
+                let why = format!(
+                    "\"harris_priester\" begins at {LOWEST} m, and the orbit goes down to {low:.0} m"
+                );
                 Some(ConfigError::new("model", why))
             }
             (DensityModel::Table, Some(table)) => {
@@ -263,7 +265,8 @@ mod tests {
         let centre = Vector::new(0.1, 0.0, 0.0);
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
-        let torque = |by: Vector| drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), &centre);
+        let torque =
+            |by: Vector| drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), &centre);
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
         assert!(torque(Vector::zeros()).norm() <= drag.bound(&orbit, &centre) * (1.0 + 1e-12));
         // Turned by 60 degrees about z the plate meets half of the flow; by more than 90 degrees, none.
@@ -272,7 +275,10 @@ mod tests {
         assert_eq!(torque(Vector::new(0.0, 0.0, 2.0)), Vector::zeros());
         // An atmosphere that turns with the planet changes the relative flow.
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
-        let slower = carried.torque(carried.density_at(&place, &orbit, None), &place, &turned(&Vector::zeros()), &centre).x / (0.5 * force);
+        let slower = carried
+            .torque(carried.density_at(&place, &orbit, None), &place, &turned(&Vector::zeros()), &centre)
+            .x
+            / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");
         assert!((drag.exponential(6.86e6, &orbit) / 4e-12 - libm::exp(-1.0)).abs() < 1e-15);
         assert_eq!(drag.fault(None, false).unwrap().key, "");

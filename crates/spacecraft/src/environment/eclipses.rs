@@ -82,8 +82,7 @@ fn interval_at(intervals: &[[Instant; 2]], t: f64) -> Option<[Instant; 2]> {
 
 /// Returns the part of the Sun's disc in view at a time since the start (s), from 0 to 1.
 pub(super) fn part_in_view(orbit: &OrbitPath, sun: &SunPath, t: f64) -> f64 {
-    let (position, planet, [distance, _]) =
-        (orbit.at(t).position, orbit.planet_radius(), sun.distance(t));
+    let (position, planet, [distance, _]) = (orbit.at(t).position, orbit.planet_radius(), sun.distance(t));
     let sun = sun.direction(t) * (distance * ASTRONOMICAL_UNIT);
     // No shadow reaches the Sun's side of the planet by more than 0.11 of its radius.
     if position.dot(&sun) > 0.11 * planet * sun.norm() {

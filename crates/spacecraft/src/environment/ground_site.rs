@@ -19,10 +19,8 @@ pub(super) fn height(position: &Vector) -> f64 {
     let across = libm::hypot(position.x, position.y);
     let (sin, cos) = libm::sincos(libm::atan2(position.z * RADIUS, across * minor));
     let beyond = squared / (1.0 - squared) * minor;
-    let latitude = libm::atan2(
-        position.z + beyond * sin * sin * sin,
-        across - squared * RADIUS * cos * cos * cos,
-    );
+    let latitude =
+        libm::atan2(position.z + beyond * sin * sin * sin, across - squared * RADIUS * cos * cos * cos);
     let (sin, cos) = libm::sincos(latitude);
     across * cos + position.z * sin - RADIUS * f64::sqrt(1.0 - squared * sin * sin)
 }

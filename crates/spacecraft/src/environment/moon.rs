@@ -69,7 +69,8 @@ pub(super) fn position(seconds: f64) -> Vector {
         degrees(93.272_095_0, 483_202.017_523_3, -3.653_9e-3),
     ];
     let sine_and_cosine = |multiples: &[f64; 4]| {
-        let angle: f64 = multiples.iter().zip(arguments).map(|(multiple, argument)| multiple * argument).sum();
+        let angle: f64 =
+            multiples.iter().zip(arguments).map(|(multiple, argument)| multiple * argument).sum();
         libm::sincos(libm::fmod(angle, 360.0).to_radians())
     };
     let (mut longitude, mut distance) = (0.0, MEAN_DISTANCE);

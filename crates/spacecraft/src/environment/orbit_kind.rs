@@ -136,7 +136,9 @@ impl TryFrom<OrbitKeys> for OrbitKind {
         ];
         let given = elements.into_iter().find(|(_, is_given)| *is_given).map(|(key, _)| key);
         let twice = |kind: &str, other: &str| {
-            Err(format!("has `{other}` and `{kind}`: an orbit is given by Kepler elements, a `tle` or an `ephemeris`"))
+            Err(format!(
+                "has `{other}` and `{kind}`: an orbit is given by Kepler elements, a `tle` or an `ephemeris`"
+            ))
         };
         match (keys.semi_major_axis, keys.tle, keys.ephemeris, given) {
             (_, Some(_), Some(_), _) => twice("ephemeris", "tle"),
@@ -163,7 +165,8 @@ impl TryFrom<OrbitKeys> for OrbitKind {
                 j2: keys.j2.unwrap_or_default(),
             })),
             (None, None, None, _) => {
-                Err("must have a `semi_major_axis`, for Kepler elements, a `tle` or an `ephemeris`".to_owned())
+                Err("must have a `semi_major_axis`, for Kepler elements, a `tle` or an `ephemeris`"
+                    .to_owned())
             }
         }
     }
@@ -215,7 +218,9 @@ impl OrbitKind {
             Self::Kepler(_) => return None,
             Self::TwoLines(orbit) => {
                 if let Some(rows) = orbit.rows(duration).filter(|rows| *rows > MOST_ROWS as f64) {
-                    let why = format!("would need {rows:.0} rows in this run, and at most {MOST_ROWS} are computed");
+                    let why = format!(
+                        "would need {rows:.0} rows in this run, and at most {MOST_ROWS} are computed"
+                    );
                     return Some(ConfigError::new("tle", why));
                 }
                 ("tle", orbit.planet_radius.get())
@@ -224,7 +229,9 @@ impl OrbitKind {
         };
         let Some(path) = self.path(duration, epoch_ns) else {
             let why = match self {
-                Self::TwoLines(_) => "does not hold in this run: the theory SGP4 has no position, as after a decay",
+                Self::TwoLines(_) => {
+                    "does not hold in this run: the theory SGP4 has no position, as after a decay"
+                }
                 _ => "has dates: a scenario with another `epoch` than these needs one",
             };
             return Some(ConfigError::new(key, why));

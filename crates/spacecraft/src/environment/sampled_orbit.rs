@@ -75,7 +75,8 @@ impl SampledOrbit {
         bounds.speed += bounds.acceleration * longest;
         bounds.least_speed = (bounds.least_speed - bounds.acceleration * longest).max(0.0);
         let sag = bounds.speed * longest;
-        bounds.distance = [(bounds.distance[0] - sag.min(0.05 * bounds.distance[0])).max(0.0), bounds.distance[1] + sag];
+        bounds.distance =
+            [(bounds.distance[0] - sag.min(0.05 * bounds.distance[0])).max(0.0), bounds.distance[1] + sag];
         bounds.plane_rate *= 1.5;
         bounds
     }
@@ -250,7 +251,11 @@ mod tests {
                 assert!((turned - rate).norm() < 1e-9, "{t} {axis}: {:e}", (turned - rate).norm());
             }
             let change = (after.turning[0] - before.turning[0]) / (2.0 * h);
-            assert!((change - found.turning[1]).norm() < 1e-11, "{t}: {:e}", (change - found.turning[1]).norm());
+            assert!(
+                (change - found.turning[1]).norm() < 1e-11,
+                "{t}: {:e}",
+                (change - found.turning[1]).norm()
+            );
             let [position, velocity, acceleration, _] = orbit.motion(t);
             assert!((orbit.nearest()..=orbit.farthest()).contains(&position.norm()));
             assert!(velocity.norm() <= orbit.largest_speed());

@@ -68,7 +68,13 @@ impl Sgp4 {
         let parameter = axis * beta2;
         let lowest = axis * (1.0 - e);
         let height = (lowest - 1.0) * RADIUS / 1e3;
-        let floor = if height < 98.0 { 20.0 } else if height < 156.0 { height - 78.0 } else { 78.0 };
+        let floor = if height < 98.0 {
+            20.0
+        } else if height < 156.0 {
+            height - 78.0
+        } else {
+            78.0
+        };
         let fourth = |x: f64| (x * x) * (x * x);
         let radius_km = RADIUS / 1e3;
         let density = fourth((120.0 - floor) / radius_km);
@@ -94,25 +100,21 @@ impl Sgp4 {
             * (eta * (2.0 + 0.5 * eta2) + e * (0.5 + 2.0 * eta2)
                 - J2 * tsi / (axis * psi2)
                     * (-3.0 * con41 * (1.0 - 2.0 * e_eta + eta2 * (1.5 - 0.5 * e_eta))
-                        + 0.75
-                            * sin2
-                            * (2.0 * eta2 - e_eta * (1.0 + eta2))
-                            * libm::cos(2.0 * perigee)));
+                        + 0.75 * sin2 * (2.0 * eta2 - e_eta * (1.0 + eta2)) * libm::cos(2.0 * perigee)));
         let c5 = 2.0 * coef1 * axis * beta2 * (1.0 + 2.75 * (eta2 + e_eta) + e_eta * eta2);
         let cos4 = cos2 * cos2;
         let inverse2 = 1.0 / (parameter * parameter);
         let temp1 = 1.5 * J2 * inverse2 * motion;
         let temp2 = 0.5 * temp1 * J2 * inverse2;
         let temp3 = -0.468_75 * J4 * inverse2 * inverse2 * motion;
-        let anomaly_rate = motion
-            + 0.5 * temp1 * beta * con41
-            + 0.0625 * temp2 * beta * (13.0 - 78.0 * cos2 + 137.0 * cos4);
+        let anomaly_rate =
+            motion + 0.5 * temp1 * beta * con41 + 0.0625 * temp2 * beta * (13.0 - 78.0 * cos2 + 137.0 * cos4);
         let perigee_rate = -0.5 * temp1 * con42
             + 0.0625 * temp2 * (7.0 - 114.0 * cos2 + 395.0 * cos4)
             + temp3 * (3.0 - 36.0 * cos2 + 49.0 * cos4);
         let first_node_rate = -temp1 * cos;
-        let node_rate = first_node_rate
-            + (0.5 * temp2 * (4.0 - 19.0 * cos2) + 2.0 * temp3 * (3.0 - 7.0 * cos2)) * cos;
+        let node_rate =
+            first_node_rate + (0.5 * temp2 * (4.0 - 19.0 * cos2) + 2.0 * temp3 * (3.0 - 7.0 * cos2)) * cos;
         // An inclination of 180 degrees would divide by zero.
         let beside = if (1.0 + cos).abs() > 1.5e-12 { 1.0 + cos } else { 1.5e-12 };
         let c1_2 = c1 * c1;

@@ -61,7 +61,9 @@ pub(super) fn parse(lines: &[String; 2]) -> Result<MeanElements, ConfigError> {
     let revolutions = number(1, [53, 63], "")?;
     let period = 1440.0 / revolutions;
     if !(period > 80.0) {
-        let why = format!("must have a mean motion of up to 18 revolutions a day in columns 53 to 63, got {revolutions}");
+        let why = format!(
+            "must have a mean motion of up to 18 revolutions a day in columns 53 to 63, got {revolutions}"
+        );
         return Err(ConfigError::new("tle[1]", why));
     }
     if period >= DEEP_SPACE {
@@ -176,10 +178,8 @@ mod tests {
             assert!(lines[index].contains(from));
             lines[index] = lines[index].replace(from, to);
             if checks && lines[index].len() == LENGTH {
-                let sum: u32 = lines[index][..68]
-                    .chars()
-                    .map(|c| c.to_digit(10).unwrap_or(u32::from(c == '-')))
-                    .sum();
+                let sum: u32 =
+                    lines[index][..68].chars().map(|c| c.to_digit(10).unwrap_or(u32::from(c == '-'))).sum();
                 lines[index].replace_range(68.., &(sum % 10).to_string());
             }
             parse(&lines).unwrap_err().to_string()

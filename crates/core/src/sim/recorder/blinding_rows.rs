@@ -43,8 +43,7 @@ impl BlindingRows {
             let (time_s, time_whole_s, time_fs) = Command::times(run.now);
             let (body, onset) = (state.body.name(), Onset::from(state.is_blinded));
             let sensor = state.sensor as u64;
-            let event =
-                BlindingEvent { time_s, time_whole_s, time_fs, sensor, body: body.to_owned(), onset };
+            let event = BlindingEvent { time_s, time_whole_s, time_fs, sensor, body: body.to_owned(), onset };
             record.record(run.now, Sample::Row(&event))?;
             let (level, line) = if state.is_blinded {
                 (LogLevel::Warning, format!("{body}: blinds the star tracker"))
