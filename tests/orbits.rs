@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use flexsc_core::Scenario;
+use flexsc_core::numerics::time::Instant;
 
 use crate::traces::{column, times, traced, within};
 use crate::util::Dir;
@@ -96,7 +97,7 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
             scenario
                 .orbit_environment()
                 .shadow_edges()
-                .map(|at| at.seconds())
+                .map(Instant::seconds)
                 .filter(|t| *t < 7200.0)
                 .collect()
         };

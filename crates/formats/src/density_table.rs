@@ -66,10 +66,10 @@ impl DensityTable {
 /// Checks the rows, which `place` names in messages.
 fn check(rows: &[[f64; 2]], place: &dyn Fn(usize) -> String) -> Result<(), String> {
     for (index, [height, density]) in rows.iter().enumerate() {
-        if !(height.abs() <= 1e12) {
+        if height.is_nan() || height.abs() > 1e12 {
             return Err(format!("{}: must have a height (m), got {height}", place(index)));
         }
-        if !(*density > 0.0 && *density <= 1e3) {
+        if density.is_nan() || *density <= 0.0 || *density > 1e3 {
             let why = format!("must have a positive density (kg/m³), got {density}");
             return Err(format!("{}: {why}", place(index)));
         }

@@ -107,7 +107,7 @@ impl EphemerisTable {
 /// Checks the rows, which `place` names in messages.
 fn check(rows: &[[f64; 4]], place: &dyn Fn(usize) -> String) -> Result<(), String> {
     for (index, row) in rows.iter().enumerate() {
-        if let Some(bad) = row.iter().find(|part| !(part.abs() <= FARTHEST)) {
+        if let Some(bad) = row.iter().find(|part| part.is_nan() || part.abs() > FARTHEST) {
             let why = format!("must have times (s) and positions (m) of up to {FARTHEST:e}, got {bad}");
             return Err(format!("{}: {why}", place(index)));
         }

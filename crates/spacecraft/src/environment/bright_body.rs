@@ -4,8 +4,7 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::attitude::Vector;
 
-use super::moon;
-use super::orbit_environment::OrbitEnvironment;
+use super::{OrbitEnvironment, SunPath, moon};
 
 /// Body whose light blinds a sensor.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -55,7 +54,7 @@ impl OrbitEnvironment {
     pub fn angle_rate(&self, body: BrightBody) -> f64 {
         let orbit = self.orbit();
         match body {
-            BrightBody::Sun => self.sun().map_or(0.0, |sun| sun.fastest()),
+            BrightBody::Sun => self.sun().map_or(0.0, SunPath::fastest),
             BrightBody::Moon => {
                 let (speed, farthest) =
                     orbit.map_or((0.0, 0.0), |orbit| (orbit.largest_speed(), orbit.farthest()));

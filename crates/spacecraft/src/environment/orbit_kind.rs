@@ -243,7 +243,7 @@ impl OrbitKind {
             return Some(ConfigError::new(key, why));
         }
         let nearest = orbit.nearest_row().min(orbit.nearest());
-        (!(nearest > radius)).then(|| {
+        (nearest.is_nan() || nearest <= radius).then(|| {
             let why = format!("must stay above the planet's radius of {radius} m, got {nearest:.0} m");
             ConfigError::new(key, why)
         })

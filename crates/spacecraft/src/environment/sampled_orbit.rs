@@ -51,7 +51,7 @@ impl SampledOrbit {
     /// up to the next of these.
     fn bound(&self) -> OrbitBounds {
         let mut bounds =
-            OrbitBounds { distance: [f64::INFINITY, 0.0], least_speed: f64::INFINITY, ..Default::default() };
+            OrbitBounds { distance: [f64::INFINITY, 0.0], least_speed: f64::INFINITY, ..OrbitBounds::default() };
         let mut longest: f64 = 0.0;
         let mut jerk_bound: f64 = 0.0;
         for pair in self.times.windows(2) {
@@ -88,7 +88,7 @@ impl SampledOrbit {
 
     /// Returns the least distance of a row from the planet's centre (m).
     pub(super) fn nearest_row(&self) -> f64 {
-        self.positions.iter().map(|position| position.norm()).fold(f64::INFINITY, f64::min)
+        self.positions.iter().map(Vector::norm).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns a lower bound of the distance from the planet's centre (m).

@@ -60,7 +60,7 @@ pub(super) fn parse(lines: &[String; 2]) -> Result<MeanElements, ConfigError> {
     let (year, day) = (number(0, [19, 20], "")?, number(0, [21, 32], "")?);
     let revolutions = number(1, [53, 63], "")?;
     let period = 1440.0 / revolutions;
-    if !(period > 80.0) {
+    if period.is_nan() || period <= 80.0 {
         let why = format!(
             "must have a mean motion of up to 18 revolutions a day in columns 53 to 63, got {revolutions}"
         );
@@ -197,6 +197,6 @@ mod tests {
         assert!(fault(0, "06177.78615833", "58177.78615833", true).contains("from 1970 on"));
         assert!(fault(0, "1 28057", "3 28057", true).contains("begin with `1 `"));
         assert!(fault(0, "03049A ", "0304é ", true).contains("69 characters"));
-        assert!(parse(&["".to_owned(), "".to_owned()]).unwrap_err().to_string().contains("got 0"));
+        assert!(parse(&[String::new(), String::new()]).unwrap_err().to_string().contains("got 0"));
     }
 }
