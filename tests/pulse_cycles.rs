@@ -44,7 +44,10 @@ fn the_predicted_cycle_is_the_edge_of_attraction() {
     assert_eq!(cycles[0]["stable"], false);
     // 4/(pi f) times the torque of a pulse, where the demand is far above it.
     let demand = number(&cycles[0]["torque_amplitude_nm"]);
-    assert!((demand / (4.0 / (std::f64::consts::PI * number(&crossing["factor"]))) - 1.0).abs() < 0.02, "{demand}");
+    assert!(
+        (demand / (4.0 / (std::f64::consts::PI * number(&crossing["factor"]))) - 1.0).abs() < 0.02,
+        "{demand}"
+    );
     // The torque 4/pi swings the body by 4/(pi J w²): runs from rest at a part of that end at rest, or grow.
     let swing = 4.0 / (std::f64::consts::PI * 100.0 * number(&crossing["frequency_rad_s"]).powi(2));
     for (part, is_caught) in [(0.5, true), (1.6, false)] {

@@ -67,6 +67,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "station-keeping",
     "sun-tracking",
     "thruster-phase-plane",
+    "two-line-orbit",
     "wheel-ekf",
     "wheel-fast-mode",
     "wheel-fixed-gain",

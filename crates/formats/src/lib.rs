@@ -2,5 +2,7 @@
 //! programs.
 
 pub mod count;
+pub mod density_table;
 pub mod document;
+pub mod ephemeris;
 pub mod structure;

@@ -3,7 +3,7 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::Finite;
-use flexsc_spacecraft::environment::{GroundSite, Kepler, OrbitEnvironment, SunPath};
+use flexsc_spacecraft::environment::{GroundSite, OrbitEnvironment, OrbitPath, SunPath};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -87,9 +87,9 @@ impl SkyDirection {
     /// Returns an upper bound of the rate of the direction (rad/s) under a sky that defines it.
     pub fn fastest(&self, sky: &OrbitEnvironment) -> f64 {
         match self {
-            Self::Nadir => sky.orbit().map_or(0.0, Kepler::fastest),
-            Self::Velocity => sky.orbit().map_or(0.0, Kepler::fastest_velocity),
-            Self::OrbitNormal => sky.orbit().map_or(0.0, Kepler::plane_rate),
+            Self::Nadir => sky.orbit().map_or(0.0, OrbitPath::fastest),
+            Self::Velocity => sky.orbit().map_or(0.0, OrbitPath::fastest_velocity),
+            Self::OrbitNormal => sky.orbit().map_or(0.0, OrbitPath::plane_rate),
             Self::Inertial(_) => 0.0,
             Self::Sun => sky.sun().map_or(0.0, SunPath::fastest),
             // The line of sight turns at most at the relative speed over the least distance.

@@ -37,7 +37,7 @@ impl ScenarioSpec {
                 orbit: around.is_some_and(|around| around.orbit.is_some()),
                 moon: around.is_some() && self.date_ns().is_some(),
                 is_below_moon: around
-                    .and_then(|around| around.orbit.as_ref())
+                    .and_then(|around| around.orbit.as_ref()?.path(self.duration.seconds(), self.date_ns()))
                     .is_none_or(|orbit| orbit.farthest() <= BELOW_MOON),
             },
             laws: (0..self.axis_count()).map(law).collect(),

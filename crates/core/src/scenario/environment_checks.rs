@@ -1,11 +1,39 @@
 //! Environment of a scenario: its checks, and its state in inertial axes.
 
+use std::path::Path;
+
 use flexsc_formats::document::ConfigError;
 use flexsc_spacecraft::environment::OrbitEnvironment;
 
-use super::ScenarioSpec;
+use super::{Scenario, ScenarioSpec, epoch};
 
 impl ScenarioSpec {
+    /// Reads the files of the environment, relative to `directory`, or takes their contents from `parent` if that has read
+    /// them. A scenario without an `epoch` has that of its orbit, if the orbit has dates.
+    pub(super) fn read_environment(
+        &mut self,
+        parent: Option<&Scenario>,
+        directory: &Path,
+    ) -> Option<ConfigError> {
+        let around = self.environment.as_mut()?;
+        let before = parent.and_then(|parent| parent.environment.as_ref());
+        let orbit = around.orbit.as_mut().filter(|orbit| orbit.kepler().is_none());
+        let is_sampled = orbit.is_some();
+        if let Some(orbit) = orbit {
+            if let Some(fault) = orbit.read(directory, before.and_then(|before| before.orbit.as_ref())) {
+                return Some(fault.within("environment.orbit"));
+            }
+            if self.epoch.is_none() {
+                self.epoch = orbit.epoch_ns().and_then(epoch::date);
+            }
+        }
+        if let Some(fault) = around.drag.as_mut().and_then(|drag| drag.read(directory)) {
+            return Some(fault.within("environment.drag"));
+        }
+        // Orbits that are interpolated must be known before anything follows from them.
+        if is_sampled { self.validate_environment() } else { None }
+    }
+
     /// Checks that the environment is consistent in itself and with the run.
     pub(super) fn validate_environment(&self) -> Option<ConfigError> {
         let around = self.environment.as_ref()?;

@@ -53,9 +53,42 @@ pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {
     (date.year < 2500).then(|| seconds * 1_000_000_000 + nanoseconds)
 }
 
+/// Returns the date and time, UTC, of a count of nanoseconds since 1970; `None` after 2500.
+pub fn date(nanoseconds: u64) -> Option<Datetime> {
+    let (seconds, fraction) = (nanoseconds / 1_000_000_000, nanoseconds % 1_000_000_000);
+    let (days, clock) = (seconds / 86_400, seconds % 86_400);
+    // Years that begin in March, in eras of 400 years from 0000-03-01.
+    let past = days + 719_468;
+    let (era, in_era) = (past / 146_097, past % 146_097);
+    let year = (in_era - in_era / 1460 + in_era / 36_524 - in_era / 146_096) / 365;
+    let in_year = in_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * in_year + 2) / 153;
+    let day = in_year - (153 * month + 2) / 5 + 1;
+    let (month, turned) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    let (year, hour, minute, second) = (year + 400 * era + turned, clock / 3600, clock / 60 % 60, clock % 60);
+    let text = format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{fraction:09}Z");
+    text.parse().ok().filter(|_| year < 2500)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dates_are_those_of_their_counts() {
+        for text in [
+            "1970-01-01T00:00:00Z",
+            "2000-02-29T23:59:59.123456789Z",
+            "2006-06-26T18:52:04.079712Z",
+            "2100-03-01T12:00:00Z",
+        ] {
+            let count = nanoseconds_since_1970(&text.parse().expect("a date")).expect("a count");
+            let found = date(count).expect("a date");
+            assert_eq!(nanoseconds_since_1970(&found), Some(count), "{text} {found}");
+            assert!(found.to_string().starts_with(&text[..19]), "{text} {found}");
+        }
+        assert_eq!(date(u64::MAX), None);
+    }
 
     #[test]
     fn epochs_count_from_1970() {

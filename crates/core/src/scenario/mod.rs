@@ -135,6 +135,9 @@ impl Scenario {
             written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
+        if let Some(fault) = written.read_environment(parent, directory) {
+            return Err(document.at_key(&fault));
+        }
         let model = written.assemble(document, parent, directory)?;
         if written.law.offers().is_open
             && !document.has("law")

@@ -184,12 +184,16 @@ impl ScenarioSpec {
         self.log.period_for(self.duration)
     }
 
-    /// Replaces references to mode files by the modes that were read from them.
+    /// Replaces references to files of modes, orbits and densities by what was read from them.
     pub(crate) fn inline_files(&mut self) {
         if let Some(Body::Spatial(spatial)) = &mut self.body {
             spatial.modes.inline();
         }
         self.appendage.iter_mut().for_each(Appendage::inline_modes);
+        let date = self.date_ns();
+        if let Some(around) = &mut self.environment {
+            around.inline_files(date);
+        }
     }
 
     /// The date of the start in nanoseconds since 1970 UTC, if it has one.

@@ -27,6 +27,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
 use eigen_reduced::EigenError;
+pub use file::open_text_up_to;
 pub use matrix::Matrix;
 pub use shape::Shape;
 

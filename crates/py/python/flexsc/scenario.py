@@ -70,11 +70,14 @@ __all__ = [
     "DriftKind",
     "DrivePoint",
     "Each",
+    "EarthSensor",
     "Ei",
     "ElasticStates",
     "Envelope",
     "Environment",
+    "EphemerisOrbit",
     "EstimatorKind",
+    "Exclusion",
     "ExtendedKalman",
     "ExtraKind",
     "FailureKind",
@@ -179,6 +182,8 @@ __all__ = [
     "StuckFailure",
     "StuckFault",
     "Sum",
+    "SunCell",
+    "SunCells",
     "SunSensor",
     "TableProfile",
     "Tachometer",
@@ -189,6 +194,7 @@ __all__ = [
     "Tracker",
     "TruthEstimator",
     "Turn",
+    "TwoLineOrbit",
     "Uniform",
     "Unloading",
     "Unloads",
@@ -565,8 +571,10 @@ class AttitudeEstimator(Part):
         field_degree: Degree of the magnetic field that the filter takes as the reference of magnetometers,
             from 1 to that of the environment's; default: the environment's field itself, without a model
             error.
-        sun_noise: Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's
-            own.
+        sun_noise: Standard deviation of a measured direction to the Sun (rad); default: that of the Sun
+            sensor or cells.
+        earth_noise: Standard deviation of a measured direction to the planet (rad); default: the Earth
+            sensor's own.
         initial: Standard deviations of the estimate at the start.
         prior: Initial estimate of attitude and bias. Default: "drawn".
         elastic: Elastic modes as further states; none by default.
@@ -596,7 +604,11 @@ class AttitudeEstimator(Part):
     of the environment's; default: the environment's field itself, without a model error.
     """
     sun_noise: float | None = None
-    """Standard deviation of a measured direction to the Sun (rad); default: the Sun sensor's own."""
+    """Standard deviation of a measured direction to the Sun (rad); default: that of the Sun sensor or
+    cells.
+    """
+    earth_noise: float | None = None
+    """Standard deviation of a measured direction to the planet (rad); default: the Earth sensor's own."""
     initial: AttitudeFilterInitial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -1120,20 +1132,42 @@ class Drag(Part):
     """Drag of the atmosphere.
 
     Args:
-        density: Density at a distance of the orbit's semi-major axis (kg/m³).
         plates: The plates.
+        model: Model of the density.
+        density: Density of the exponential model (kg/m³), at `altitude`.
         scale_height: Scale height, in which the density falls to 1/e (m); default: the density is uniform.
+        altitude: Height above the planet's radius at which `density` holds (m); default: that of the semi-
+            major axis.
+        table: Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a
+            .csv file.
+        bulge_exponent: Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the
+            equator, 6 for polar ones; default: 4.
+        scale: Factor of the density, of every model.
         coefficient: Drag coefficient. Default: 2.2.
         rotation: Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default:
             7.292115e-05.
     """
 
-    density: float
-    """Density at a distance of the orbit's semi-major axis (kg/m³)."""
     plates: Sequence[DragPlate]
     """The plates."""
+    model: Literal["exponential", "harris_priester", "table"] | None = None
+    """Model of the density."""
+    density: float | None = None
+    """Density of the exponential model (kg/m³), at `altitude`."""
     scale_height: float | None = None
     """Scale height, in which the density falls to 1/e (m); default: the density is uniform."""
+    altitude: float | None = None
+    """Height above the planet's radius at which `density` holds (m); default: that of the semi-major axis.
+    """
+    table: Rows | str | None = None
+    """Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a .csv file.
+    """
+    bulge_exponent: float | None = None
+    """Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the equator, 6 for
+    polar ones; default: 4.
+    """
+    scale: float | None = None
+    """Factor of the density, of every model."""
     coefficient: float | None = None
     """Drag coefficient. Default: 2.2."""
     rotation: float | None = None
@@ -1181,6 +1215,55 @@ class Each(Part, kw_only=False):
     _tag: ClassVar[str | None] = "each"
 
     value: Sequence[ProfileKind]
+
+
+class EarthSensor(Part):
+    """The direction to the planet's centre.
+
+    Args:
+        period: Period of its samples (s).
+        boresight: Centre of its field of view, a direction in the body's axes, of any length; default: z.
+        field_of_view: Half angle of the field of view (rad); default: all directions are visible. Default:
+            3.141592653589793.
+        point: Point of the structure at which it is mounted; default: the first of the body's points.
+        noise: Standard deviation of the white noise along each axis (rad). Default: 0.0.
+        bias: Constant error along each axis (rad). Default: 0.0.
+        resolution: Quantum of the output along each axis (rad); 0 for none. Default: 0.0.
+        scale: Relative error of the scale along each axis. Default: 0.0.
+        misalignment: Misalignment (rad): row i gives what axis i measures of the direction along the other
+            axes; the diagonal is 0.
+        latency: Time from a sample to its output (s). Default: 0.0.
+        faults: Intervals in which the Earth sensor fails.
+    """
+
+    _tag: ClassVar[str | None] = "earth_sensor"
+
+    period: float
+    """Period of its samples (s)."""
+    boresight: Vector | None = None
+    """Centre of its field of view, a direction in the body's axes, of any length; default: z."""
+    field_of_view: float | None = None
+    """Half angle of the field of view (rad); default: all directions are visible. Default:
+    3.141592653589793.
+    """
+    point: str | None = None
+    """Point of the structure at which it is mounted; default: the first of the body's points."""
+    noise: float | Vector | None = None
+    """Standard deviation of the white noise along each axis (rad). Default: 0.0."""
+    bias: float | Vector | None = None
+    """Constant error along each axis (rad). Default: 0.0."""
+    resolution: float | Vector | None = None
+    """Quantum of the output along each axis (rad); 0 for none. Default: 0.0."""
+    scale: float | Vector | None = None
+    """Relative error of the scale along each axis. Default: 0.0."""
+    misalignment: Rows | None = None
+    """Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the
+    diagonal is 0.
+    """
+    latency: float | None = None
+    """Time from a sample to its output (s). Default: 0.0."""
+    faults: Sequence[FaultKind] | None = None
+    """Intervals in which the Earth sensor fails."""
 
 
 class Ei(Part):
@@ -1278,7 +1361,7 @@ class Environment(Part):
         torque: A torque that is constant in inertial axes (N m).
     """
 
-    orbit: Kepler | None = None
+    orbit: Kepler | TwoLineOrbit | EphemerisOrbit | None = None
     """Orbit of the body; default: none, or the one given with a torque below."""
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
@@ -1298,6 +1381,46 @@ class Environment(Part):
     """Drag of the atmosphere on plates."""
     torque: Vector | None = None
     """A torque that is constant in inertial axes (N m)."""
+
+
+class EphemerisOrbit(Part):
+    """Orbit by positions at instants.
+
+    Args:
+        ephemeris: Positions, or the path of their file.
+        gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
+            398600441800000.0.
+        planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
+            Default: 6378137.0.
+    """
+
+    ephemeris: Rows | str
+    """Positions, or the path of their file."""
+    gravity: float | None = None
+    """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
+    planet_radius: float | None = None
+    """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
+    """
+
+
+class Exclusion(Part):
+    """Angles between the boresight and bright bodies below which a star tracker gives no measurement.
+
+    Args:
+        sun: Least angle to the Sun's centre (rad); default: the Sun does not blind it.
+        moon: Least angle to the Moon's centre (rad), at the scenario's `epoch`; default: the Moon does not
+            blind it.
+        limb: Least angle to the limb of the orbit's planet (rad); default: the planet does not blind it.
+    """
+
+    sun: float | None = None
+    """Least angle to the Sun's centre (rad); default: the Sun does not blind it."""
+    moon: float | None = None
+    """Least angle to the Moon's centre (rad), at the scenario's `epoch`; default: the Moon does not blind
+    it.
+    """
+    limb: float | None = None
+    """Least angle to the limb of the orbit's planet (rad); default: the planet does not blind it."""
 
 
 class ExtendedKalman(Part):
@@ -1516,6 +1639,7 @@ class Gyro(Part):
         scale: Relative error of the scale about each axis.
         misalignment: Misalignment (rad), on a body with three axes: row i gives what axis i measures of the
             rates about the other axes; the diagonal is 0.
+        range: Largest rate that it outputs about each axis (rad/s), at which it clips; default: no limit.
         faults: Intervals in which the gyro fails; star trackers still give the attitude.
     """
 
@@ -1555,6 +1679,8 @@ class Gyro(Part):
     """Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about
     the other axes; the diagonal is 0.
     """
+    range: float | Vector | None = None
+    """Largest rate that it outputs about each axis (rad/s), at which it clips; default: no limit."""
     faults: Sequence[FaultKind] | None = None
     """Intervals in which the gyro fails; star trackers still give the attitude."""
 
@@ -2028,6 +2154,7 @@ class Magnetometer(Part):
         misalignment: Misalignment (rad): row i gives what axis i measures of the field along the other
             axes; the diagonal is 0.
         latency: Time from a sample to its output (s). Default: 0.0.
+        range: Largest field that it outputs along each axis (T), at which it clips; default: no limit.
         faults: Intervals in which the magnetometer fails.
     """
 
@@ -2051,6 +2178,8 @@ class Magnetometer(Part):
     """
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
+    range: float | Vector | None = None
+    """Largest field that it outputs along each axis (T), at which it clips; default: no limit."""
     faults: Sequence[FaultKind] | None = None
     """Intervals in which the magnetometer fails."""
 
@@ -3500,6 +3629,8 @@ class StarTracker(Part):
             an instant.
         blackout_rate: Rate at the star tracker from which on it gives no measurement (rad/s); default: no
             limit.
+        exclusion: Angles between the boresight, its z axis, and bright bodies below which it gives no
+            measurement; default: none.
         faults: Intervals in which the star tracker fails.
     """
 
@@ -3526,6 +3657,10 @@ class StarTracker(Part):
     """
     blackout_rate: float | None = None
     """Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit."""
+    exclusion: Exclusion | None = None
+    """Angles between the boresight, its z axis, and bright bodies below which it gives no measurement;
+    default: none.
+    """
     faults: Sequence[FaultKind] | None = None
     """Intervals in which the star tracker fails."""
 
@@ -3647,6 +3782,61 @@ class Sum(Part):
     """Weight of each coordinate."""
     unit: str | None = None
     """Unit. Default: "rad"."""
+
+
+class SunCell(Part):
+    """A Sun cell.
+
+    Args:
+        normal: Outward normal in the body's axes, of any length.
+        scale: Relative error of its signal. Default: 0.0.
+        bias: Constant error of its signal. Default: 0.0.
+    """
+
+    normal: Vector
+    """Outward normal in the body's axes, of any length."""
+    scale: float | None = None
+    """Relative error of its signal. Default: 0.0."""
+    bias: float | None = None
+    """Constant error of its signal. Default: 0.0."""
+
+
+class SunCells(Part):
+    """The direction to the Sun, from the currents of cells.
+
+    Args:
+        cells: The cells.
+        period: Period of their samples (s).
+        field_of_view: Half angle within which light reaches a cell (rad), at most pi/2; default: pi/2.
+            Default: 1.5707963267948966.
+        threshold: Signal below which a cell counts as dark; a cell that faces the Sun has the signal 1.
+            Default: 0.1.
+        point: Point of the structure at which they are mounted; default: the first of the body's points.
+        noise: Standard deviation of the white noise of each signal. Default: 0.0.
+        latency: Time from a sample to its output (s). Default: 0.0.
+        faults: Intervals in which all cells fail.
+    """
+
+    _tag: ClassVar[str | None] = "sun_cells"
+
+    cells: Sequence[SunCell]
+    """The cells."""
+    period: float
+    """Period of their samples (s)."""
+    field_of_view: float | None = None
+    """Half angle within which light reaches a cell (rad), at most pi/2; default: pi/2. Default:
+    1.5707963267948966.
+    """
+    threshold: float | None = None
+    """Signal below which a cell counts as dark; a cell that faces the Sun has the signal 1. Default: 0.1."""
+    point: str | None = None
+    """Point of the structure at which they are mounted; default: the first of the body's points."""
+    noise: float | None = None
+    """Standard deviation of the white noise of each signal. Default: 0.0."""
+    latency: float | None = None
+    """Time from a sample to its output (s). Default: 0.0."""
+    faults: Sequence[FaultKind] | None = None
+    """Intervals in which all cells fail."""
 
 
 class SunSensor(Part):
@@ -3866,6 +4056,27 @@ class Turn(Part):
     """Axis, of any nonzero length."""
     by: float
     """The angle (rad)."""
+
+
+class TwoLineOrbit(Part):
+    """Orbit by two-line elements, in the axes of the true equator and the mean equinox, which differ from
+    the inertial axes by the nutation.
+
+    Args:
+        tle: Both lines, of 69 characters.
+        gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
+            398600441800000.0.
+        planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
+            Default: 6378137.0.
+    """
+
+    tle: Sequence[str]
+    """Both lines, of 69 characters."""
+    gravity: float | None = None
+    """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
+    planet_radius: float | None = None
+    """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
+    """
 
 
 class Uniform(Part, kw_only=False):
@@ -4216,6 +4427,8 @@ SensorKind: TypeAlias = (
     | StarTracker
     | Magnetometer
     | SunSensor
+    | SunCells
+    | EarthSensor
     | Tachometer
     | Accelerometer
 )

@@ -4,9 +4,7 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::attitude::Vector;
 
-use super::moon;
-use super::orbit_environment::OrbitEnvironment;
-use super::sun::SunPath;
+use super::{OrbitEnvironment, SunPath, moon};
 
 /// Body whose light blinds a sensor.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -64,7 +62,7 @@ impl OrbitEnvironment {
             }
             BrightBody::Limb => orbit.map_or(0.0, |orbit| {
                 // asin(R/r) falls by R r'/(r sqrt(r² - R²)).
-                let (nearest, radius) = (orbit.nearest(), orbit.planet_radius.get());
+                let (nearest, radius) = (orbit.nearest(), orbit.planet_radius());
                 let tangent = f64::sqrt((nearest - radius) * (nearest + radius));
                 orbit.fastest() + radius * orbit.largest_speed() / (nearest * tangent)
             }),

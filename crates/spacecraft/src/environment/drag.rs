@@ -3,6 +3,9 @@
 //! On a plate of area A and outward normal n that moves at v relative to the air, the force is -rho/2 C A (n.v) v where
 //! n.v > 0, and zero otherwise: a plate with two sides is two plates. The atmosphere turns with the planet.
 
+use std::path::Path;
+
+use flexsc_formats::density_table::DensityTable;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, Positive};
@@ -10,18 +13,36 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::density::LOWEST;
 use super::orbit::to_body;
-use super::{Kepler, OrbitPosition};
+use super::{DensityModel, OrbitKind, OrbitPath, OrbitPosition, density, ground_site};
 
 /// Drag of the atmosphere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drag {
-    /// Density at a distance of the orbit's semi-major axis (kg/m³).
-    pub density: Positive,
+    /// Model of the density.
+    #[serde(default, skip_serializing_if = "DensityModel::is_exponential")]
+    pub model: DensityModel,
+    /// Density of the exponential model (kg/m³), at `altitude`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density: Option<Positive>,
     /// Scale height, in which the density falls to 1/e (m); default: the density is uniform.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_height: Option<Positive>,
+    /// Height above the planet's radius at which `density` holds (m); default: that of the semi-major axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub altitude: Option<Positive>,
+    /// Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a .csv file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<DensityTable>,
+    /// Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the equator, 6 for polar ones;
+    /// default: 4.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bulge_exponent: Option<Positive>,
+    /// Factor of the density, of every model.
+    #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
+    pub scale: Positive,
     /// Drag coefficient.
     #[serde(default = "coefficient")]
     pub coefficient: Positive,
@@ -53,35 +74,155 @@ fn rotation() -> Finite {
     Finite::new(7.292_115e-5).unwrap_or_default()
 }
 
+fn unscaled() -> Positive {
+    Positive::ONE
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_unscaled(scale: &Positive) -> bool {
+    *scale == Positive::ONE
+}
+
+/// Exponent of the bulge between those of equatorial and polar orbits.
+const BULGE_EXPONENT: f64 = 4.0;
+
 impl Drag {
     /// Returns an inconsistency between values: a key within the drag, and the reason.
-    pub(super) fn fault(&self, on_orbit: bool) -> Option<ConfigError> {
-        if !on_orbit {
+    pub(super) fn fault(&self, orbit: Option<&OrbitKind>, has_sun: bool) -> Option<ConfigError> {
+        let Some(orbit) = orbit else {
             return Some(ConfigError::new("", "needs an `orbit`, and there is none"));
+        };
+        if let Some(fault) = self.model_fault(orbit, has_sun) {
+            return Some(fault);
         }
         let flat = |plate: &DragPlate| plate.normal.iter().all(|part| part.get() == 0.0);
         let index = self.plates.iter().position(flat)?;
         Some(ConfigError::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"))
     }
 
-    /// Returns the density at a distance from the planet's centre (m), in kg/m³.
-    fn density_at(&self, distance: f64, orbit: &Kepler) -> f64 {
-        let above = distance - orbit.semi_major_axis.get();
-        let fallen = self.scale_height.map_or(1.0, |height| libm::exp(-above / height.get()));
-        self.density.get() * fallen
+    /// Checks the keys of the density; returns a key and the reason.
+    fn model_fault(&self, orbit: &OrbitKind, has_sun: bool) -> Option<ConfigError> {
+        let (exponential, harris, table) =
+            (DensityModel::Exponential, DensityModel::HarrisPriester, DensityModel::Table);
+        let given = [
+            ("density", self.density.is_some(), exponential, "exponential"),
+            ("scale_height", self.scale_height.is_some(), exponential, "exponential"),
+            ("altitude", self.altitude.is_some(), exponential, "exponential"),
+            ("bulge_exponent", self.bulge_exponent.is_some(), harris, "harris_priester"),
+            ("table", self.table.is_some(), table, "table"),
+        ];
+        let other = given.into_iter().find(|(_, is_given, model, _)| *is_given && *model != self.model);
+        if let Some((key, .., model)) = other {
+            return Some(ConfigError::new(key, format!("is for `model = \"{model}\"`: leave it out")));
+        }
+        match self.model {
+            DensityModel::Exponential if self.density.is_none() => {
+                Some(ConfigError::new("density", "must be given for the exponential model"))
+            }
+            DensityModel::Exponential if self.altitude.is_none() && orbit.kepler().is_none() => {
+                let why = "must be given with a `tle` or an `ephemeris`: the height at which `density` holds";
+                Some(ConfigError::new("altitude", why))
+            }
+            DensityModel::HarrisPriester if !has_sun => {
+                let why = "\"harris_priester\" has a bulge towards `environment.sun`, and there is none";
+                Some(ConfigError::new("model", why))
+            }
+            DensityModel::HarrisPriester => {
+                let exponent = self.bulge_exponent.map(Positive::get).filter(|exponent| *exponent > 20.0)?;
+                Some(ConfigError::new("bulge_exponent", format!("must be at most 20, got {exponent}")))
+            }
+            DensityModel::Table => match &self.table {
+                None => Some(ConfigError::new("table", "must be given for `model = \"table\"`")),
+                Some(table) => table.fault().map(|why| ConfigError::new("table", why)),
+            },
+            DensityModel::Exponential => None,
+        }
     }
 
-    /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude, in its axes (N m).
+    /// Checks that the density is known on the whole orbit; returns a key and the reason.
+    pub(super) fn run_fault(&self, orbit: &OrbitPath) -> Option<ConfigError> {
+        let [low, high] = heights(orbit);
+        match (self.model, &self.table) {
+            (DensityModel::HarrisPriester, _) if low < LOWEST => {
+                let why = format!(
+                    "\"harris_priester\" begins at {LOWEST} m, and the orbit goes down to {low:.0} m"
+                );
+                Some(ConfigError::new("model", why))
+            }
+            (DensityModel::Table, Some(table)) => {
+                let ([from, _], [to, _]) = (table.rows().first()?, table.rows().last()?);
+                (*from > low || *to < high).then(|| {
+                    let why = format!(
+                        "must have heights from {low:.0} to {high:.0} m, where the orbit is, got {from} to {to} m"
+                    );
+                    ConfigError::new("table", why)
+                })
+            }
+            _ => None,
+        }
+    }
+
+    /// Reads the file of a table relative to `directory`; returns a key within the drag and the reason.
+    pub fn read(&mut self, directory: &Path) -> Option<ConfigError> {
+        let table = self.table.as_mut()?;
+        table.locate(directory);
+        table.read().err().map(|why| ConfigError::new("table", why))
+    }
+
+    /// Returns the exponential density (kg/m³) at a distance from the planet's centre (m).
+    fn exponential(&self, distance: f64, orbit: &OrbitPath) -> f64 {
+        let reference = match (self.altitude, orbit) {
+            (Some(altitude), _) => orbit.planet_radius() + altitude.get(),
+            (None, OrbitPath::Kepler(orbit)) => orbit.semi_major_axis.get(),
+            (None, OrbitPath::Sampled(_)) => distance,
+        };
+        let above = distance - reference;
+        let fallen = self.scale_height.map_or(1.0, |height| libm::exp(-above / height.get()));
+        self.density.map_or(0.0, Positive::get) * fallen
+    }
+
+    /// Returns the density (kg/m³) at a position on an orbit, with the direction of the Sun, if there is one.
+    pub(super) fn density_at(&self, place: &OrbitPosition, orbit: &OrbitPath, sun: Option<&Vector>) -> f64 {
+        let density = match (self.model, &self.table, sun) {
+            (DensityModel::HarrisPriester, _, Some(sun)) => {
+                let exponent = self.bulge_exponent.map_or(BULGE_EXPONENT, Positive::get);
+                density::harris_priester(ground_site::height(&place.position), &place.position, sun, exponent)
+            }
+            (DensityModel::Table, Some(table), _) => {
+                density::tabulated(table, ground_site::height(&place.position))
+            }
+            _ => self.exponential(place.position.norm(), orbit),
+        };
+        density * self.scale.get()
+    }
+
+    /// Returns an upper bound of the density on an orbit (kg/m³).
+    fn density_bound(&self, orbit: &OrbitPath) -> f64 {
+        let [low, high] = heights(orbit);
+        let density = match (self.model, &self.table) {
+            (DensityModel::HarrisPriester, _) => density::harris_priester_range(low)[1],
+            (DensityModel::Table, Some(table)) => {
+                let within = table.rows().iter().filter(|[height, _]| (low..=high).contains(height));
+                let ends = [low, high].map(|height| density::tabulated(table, height));
+                within.map(|[_, density]| *density).chain(ends).fold(0.0, f64::max)
+            }
+            _ => self.exponential(orbit.nearest(), orbit),
+        };
+        density * self.scale.get()
+    }
+
+    /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude in air of a density (kg/m³), in
+    /// its axes (N m).
     pub(super) fn torque(
         &self,
-        orbit: &Kepler,
+        density: f64,
         place: &OrbitPosition,
         attitude: &Quaternion<f64>,
         centre: &Vector,
     ) -> Vector {
         let carried = Vector::z().cross(&place.position) * self.rotation.get();
         let flow = to_body(attitude, &(place.velocity - carried));
-        let factor = -0.5 * self.coefficient.get() * self.density_at(place.position.norm(), orbit);
+        let factor = -0.5 * self.coefficient.get() * density;
         self.plates.iter().fold(Vector::zeros(), |sum, plate| {
             let projected_area = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
             sum + (vector(&plate.at) - centre).cross(&flow) * (factor * projected_area)
@@ -89,13 +230,19 @@ impl Drag {
     }
 
     /// Returns an upper bound of the torque (N m).
-    pub(super) fn bound(&self, orbit: &Kepler, centre: &Vector) -> f64 {
+    pub(super) fn bound(&self, orbit: &OrbitPath, centre: &Vector) -> f64 {
         let nearest = orbit.nearest();
         let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
-        let factor = 0.5 * self.coefficient.get() * self.density_at(nearest, orbit) * speed * speed;
+        let factor = 0.5 * self.coefficient.get() * self.density_bound(orbit) * speed * speed;
         let arm = |plate: &DragPlate| plate.area.get() * (vector(&plate.at) - centre).norm();
         factor * self.plates.iter().map(arm).sum::<f64>()
     }
+}
+
+/// Returns bounds of the height above the Earth's ellipsoid on an orbit (m): it is flatter than the sphere of the equator.
+fn heights(orbit: &OrbitPath) -> [f64; 2] {
+    let [equator, pole] = [1.0, 1.0 - ground_site::FLATTENING].map(|factor| factor * ground_site::RADIUS);
+    [orbit.nearest() - equator, orbit.farthest() - pole]
 }
 
 #[cfg(test)]
@@ -106,18 +253,20 @@ mod tests {
     #[test]
     fn a_plate_is_pushed_back_where_it_meets_the_flow() {
         // Without rotation of the atmosphere: rho/2 C A v² at the plate's arm.
-        let orbit: Kepler = flexsc_formats::document::from_text("semi_major_axis = 6.8e6").unwrap();
+        let kind: OrbitKind = flexsc_formats::document::from_text("semi_major_axis = 6.8e6").unwrap();
+        let orbit = kind.path(100.0, None).unwrap();
         let drag: Drag = flexsc_formats::document::from_text(
             "density = 4e-12\nscale_height = 6e4\nrotation = 0\nplates = [{ area = 2.0, normal = [0, 3, 0], at = [0.1, 0, 0.5] }]",
         )
         .unwrap();
-        assert_eq!(drag.fault(true), None);
+        assert_eq!(drag.fault(Some(&kind), false), None);
         // At the start the body is on the inertial x axis and moves along y.
         let place = orbit.at(0.0);
         let centre = Vector::new(0.1, 0.0, 0.0);
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
-        let torque = |by: Vector| drag.torque(&orbit, &place, &turned(&by), &centre);
+        let torque =
+            |by: Vector| drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), &centre);
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
         assert!(torque(Vector::zeros()).norm() <= drag.bound(&orbit, &centre) * (1.0 + 1e-12));
         // Turned by 60 degrees about z the plate meets half of the flow; by more than 90 degrees, none.
@@ -126,9 +275,12 @@ mod tests {
         assert_eq!(torque(Vector::new(0.0, 0.0, 2.0)), Vector::zeros());
         // An atmosphere that turns with the planet changes the relative flow.
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
-        let slower = carried.torque(&orbit, &place, &turned(&Vector::zeros()), &centre).x / (0.5 * force);
+        let slower = carried
+            .torque(carried.density_at(&place, &orbit, None), &place, &turned(&Vector::zeros()), &centre)
+            .x
+            / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");
-        assert!((drag.density_at(6.86e6, &orbit) / 4e-12 - libm::exp(-1.0)).abs() < 1e-15);
-        assert_eq!(drag.fault(false).unwrap().key, "");
+        assert!((drag.exponential(6.86e6, &orbit) / 4e-12 - libm::exp(-1.0)).abs() < 1e-15);
+        assert_eq!(drag.fault(None, false).unwrap().key, "");
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shadow::ShadowRegion;
 use super::solar_disc::{ASTRONOMICAL_UNIT, Discs};
-use super::{Kepler, SunPath};
+use super::{OrbitPath, SunPath};
 
 /// Shape of the planet's shadow.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -33,7 +33,7 @@ pub(super) struct Eclipses {
 
 impl Eclipses {
     /// Finds the eclipses on an orbit that begin before `duration` (s).
-    pub fn new(shape: ShadowShape, orbit: &Kepler, sun: &SunPath, duration: f64) -> Self {
+    pub fn new(shape: ShadowShape, orbit: &OrbitPath, sun: &SunPath, duration: f64) -> Self {
         let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         let within = |region: ShadowRegion| -> Vec<[Instant; 2]> {
             let passages = orbit.shadows(region, sun, duration);
@@ -81,9 +81,8 @@ fn interval_at(intervals: &[[Instant; 2]], t: f64) -> Option<[Instant; 2]> {
 }
 
 /// Returns the part of the Sun's disc in view at a time since the start (s), from 0 to 1.
-pub(super) fn part_in_view(orbit: &Kepler, sun: &SunPath, t: f64) -> f64 {
-    let (position, planet, [distance, _]) =
-        (orbit.at(t).position, orbit.planet_radius.get(), sun.distance(t));
+pub(super) fn part_in_view(orbit: &OrbitPath, sun: &SunPath, t: f64) -> f64 {
+    let (position, planet, [distance, _]) = (orbit.at(t).position, orbit.planet_radius(), sun.distance(t));
     let sun = sun.direction(t) * (distance * ASTRONOMICAL_UNIT);
     // No shadow reaches the Sun's side of the planet by more than 0.11 of its radius.
     if position.dot(&sun) > 0.11 * planet * sun.norm() {

@@ -67,7 +67,7 @@ impl GravityGradient {
     pub(super) fn bound(&self, inertia: &Matrix3<f64>, sky: &OrbitEnvironment) -> f64 {
         let on_orbit = sky.orbit().map_or(0.0, |orbit| {
             let nearest = orbit.nearest();
-            orbit.gravity.get() / (nearest * nearest * nearest)
+            orbit.gravity() / (nearest * nearest * nearest)
         });
         3.0 * self.orbit_rate.map_or(on_orbit, |rate| rate.get() * rate.get()) * inertia.norm()
     }

@@ -6,11 +6,24 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Equatorial radius of the Earth (m), WGS 84.
-const RADIUS: f64 = 6_378_137.0;
+pub(super) const RADIUS: f64 = 6_378_137.0;
 /// Flattening of the Earth, WGS 84.
-const FLATTENING: f64 = 1.0 / 298.257_223_563;
+pub(super) const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Rotation rate of the Earth (rad/s).
 const ROTATION: f64 = 7.292_115e-5;
+
+/// Returns the height (m) above the Earth's ellipsoid of a position in axes with z along the Earth's axis, by Bowring's
+/// formula for the latitude.
+pub(super) fn height(position: &Vector) -> f64 {
+    let (squared, minor) = (FLATTENING * (2.0 - FLATTENING), RADIUS * (1.0 - FLATTENING));
+    let across = libm::hypot(position.x, position.y);
+    let (sin, cos) = libm::sincos(libm::atan2(position.z * RADIUS, across * minor));
+    let beyond = squared / (1.0 - squared) * minor;
+    let latitude =
+        libm::atan2(position.z + beyond * sin * sin * sin, across - squared * RADIUS * cos * cos * cos);
+    let (sin, cos) = libm::sincos(latitude);
+    across * cos + position.z * sin - RADIUS * f64::sqrt(1.0 - squared * sin * sin)
+}
 
 /// Site that turns with the Earth.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,6 +3,7 @@
 mod bright_body;
 mod date;
 mod deferred;
+mod density;
 mod dipole;
 mod drag;
 mod eclipses;
@@ -16,6 +17,10 @@ mod moon;
 mod oblateness;
 mod orbit;
 mod orbit_environment;
+mod orbit_kind;
+mod orbit_path;
+mod sampled_orbit;
+mod sgp4;
 mod shadow;
 mod solar_disc;
 mod solar_pressure;
@@ -25,6 +30,7 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 mod thermal_response;
+mod two_lines;
 mod wmm_2025;
 
 use std::f64::consts::TAU;
@@ -37,6 +43,7 @@ use serde::{Deserialize, Serialize};
 use solar_disc::ASTRONOMICAL_UNIT;
 
 pub use bright_body::BrightBody;
+pub use density::DensityModel;
 pub use dipole::Dipole;
 pub use drag::{Drag, DragPlate};
 pub use eclipses::ShadowShape;
@@ -48,6 +55,9 @@ pub use magnetic_field::MagneticField;
 pub use oblateness::Oblateness;
 pub use orbit::to_body;
 pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
+pub use orbit_kind::{EphemerisOrbit, OrbitKind, TwoLineOrbit};
+pub use orbit_path::OrbitPath;
+pub use sampled_orbit::SampledOrbit;
 pub use solar_pressure::{SolarPlate, SolarPressure};
 pub use sun::{Sun, SunMotion, SunPath};
 pub use surroundings::SurroundingsState;
@@ -61,7 +71,7 @@ const MOST_ORBITS: f64 = 1e5;
 pub struct Environment {
     /// Orbit of the body; default: none, or the one given with a torque below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub orbit: Option<Kepler>,
+    pub orbit: Option<OrbitKind>,
     /// The magnetic field of the orbit's planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic_field: Option<MagneticField>,
@@ -91,7 +101,7 @@ pub struct Environment {
 impl Environment {
     /// Returns an inconsistency between values: a key within the environment, and the reason.
     pub fn fault(&self) -> Option<ConfigError> {
-        if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
+        if let Some(fault) = self.orbit.as_ref().and_then(OrbitKind::fault) {
             return Some(fault.within("orbit"));
         }
         if self.sun.is_some_and(|sun| sun.has_no_direction()) {
@@ -107,11 +117,22 @@ impl Environment {
         if let Some(fault) = self.shadow_fault() {
             return Some(fault);
         }
-        if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
+        let drag = self.drag.as_ref();
+        if let Some(fault) = drag.and_then(|drag| drag.fault(self.orbit.as_ref(), self.sun.is_some())) {
             return Some(fault.within("drag"));
         }
         let pressed = self.solar_pressure.as_ref().and_then(|pressure| pressure.fault(self.sun.is_some()));
         pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
+    }
+
+    /// Replaces references to files by their rows, in a run from `epoch_ns` nanoseconds after 1970, if known.
+    pub fn inline_files(&mut self, epoch_ns: Option<u64>) {
+        if let Some(orbit) = &mut self.orbit {
+            orbit.inline(epoch_ns);
+        }
+        if let Some(table) = self.drag.as_mut().and_then(|drag| drag.table.as_mut()) {
+            table.inline();
+        }
     }
 
     /// Checks the environment against a run of this duration from `epoch_ns` nanoseconds after 1970, if known; returns a
@@ -123,7 +144,17 @@ impl Environment {
         if let Some(fault) = self.magnetic_field.and_then(|field| field.run_error(duration, epoch_ns)) {
             return Some(fault.within("magnetic_field"));
         }
-        let turns = self.orbit.filter(|_| self.sun.is_some())?.mean_motion() * duration.seconds() / TAU;
+        let orbit = self.orbit.as_ref()?;
+        if let Some(fault) = orbit.run_fault(duration.seconds(), epoch_ns) {
+            return Some(fault.within("orbit"));
+        }
+        if let Some(drag) = &self.drag
+            && let Some(path) = orbit.path(duration.seconds(), epoch_ns)
+            && let Some(fault) = drag.run_fault(&path)
+        {
+            return Some(fault.within("drag"));
+        }
+        let turns = orbit.kepler().filter(|_| self.sun.is_some())?.mean_motion() * duration.seconds() / TAU;
         let why = || {
             format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
         };
@@ -132,7 +163,7 @@ impl Environment {
 
     /// Returns the key and the reason, if a conical shadow does not fit between the orbit and the Sun.
     fn shadow_fault(&self) -> Option<ConfigError> {
-        let orbit = self.orbit.filter(|_| self.sun.is_some())?;
+        let orbit = self.orbit.as_ref().and_then(OrbitKind::kepler).filter(|_| self.sun.is_some())?;
         let (farthest, most) = (orbit.farthest(), 0.1 * ASTRONOMICAL_UNIT);
         (self.shadow != Some(ShadowShape::Cylinder) && farthest > most).then(|| {
             let why = format!(

@@ -8,12 +8,12 @@ use super::date::greenwich;
 use super::deferred::Deferred;
 use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
-use super::{Environment, Kepler, OrbitPosition, ShadowShape, SunPath, moon};
+use super::{Environment, OrbitPath, OrbitPosition, ShadowShape, SunPath, moon};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OrbitEnvironment {
-    orbit: Option<Kepler>,
+    orbit: Option<OrbitPath>,
     field: Option<PlanetField>,
     sun: Option<SunPath>,
     /// Shape of the planet's shadow.
@@ -42,8 +42,9 @@ pub struct EnvironmentObservation {
 impl OrbitEnvironment {
     /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
+        let orbit = environment.orbit.as_ref();
         Self {
-            orbit: environment.orbit,
+            orbit: orbit.and_then(|orbit| orbit.path(duration.seconds(), epoch_ns)),
             field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
             sun: environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0))),
             shadow: environment.shadow.unwrap_or_default(),
@@ -68,12 +69,7 @@ impl OrbitEnvironment {
     /// Returns the orbit's normal with its first two derivatives in inertial axes at `t` seconds after the start, if the
     /// body is on an orbit; the length is any.
     pub fn orbit_normal(&self, t: f64) -> Option<[Vector; 3]> {
-        if let Some(orbit) = self.orbit.as_ref().filter(|orbit| orbit.drifts()) {
-            return Some(orbit.normal_motion(t));
-        }
-        let [position, velocity, acceleration, jerk] = self.orbit_motion(t)?;
-        let change = velocity.cross(&acceleration) + position.cross(&jerk);
-        Some([position.cross(&velocity), position.cross(&acceleration), change])
+        self.orbit.as_ref().map(|orbit| orbit.normal_motion(t))
     }
 
     /// Returns the angle from the inertial x to the meridian of Greenwich at the start (rad): 0 without a date.
@@ -93,7 +89,7 @@ impl OrbitEnvironment {
     }
 
     /// Returns the orbit.
-    pub fn orbit(&self) -> Option<&Kepler> {
+    pub fn orbit(&self) -> Option<&OrbitPath> {
         self.orbit.as_ref()
     }
 
@@ -109,7 +105,7 @@ impl OrbitEnvironment {
 
     /// Returns the radius of the planet (m), if the body is on an orbit.
     pub fn planet_radius(&self) -> Option<f64> {
-        self.orbit.as_ref().map(|orbit| orbit.planet_radius.get())
+        self.orbit.as_ref().map(OrbitPath::planet_radius)
     }
 
     /// Returns the eclipses of the run; `None` without an orbit or a Sun.

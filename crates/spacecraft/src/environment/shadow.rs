@@ -12,8 +12,10 @@ mod tests;
 
 use std::f64::consts::TAU;
 
+use flexsc_numerics::attitude::Vector;
+
 use super::solar_disc::{ASTRONOMICAL_UNIT, SUN_RADIUS};
-use super::{Kepler, SunPath};
+use super::{Kepler, OrbitPath, SampledOrbit, SunPath};
 
 /// Region behind a planet.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -45,6 +47,68 @@ impl ShadowRegion {
             Self::Penumbra => SUN_RADIUS + planet_radius,
             Self::Core => planet_radius - SUN_RADIUS,
         }
+    }
+}
+
+impl OrbitPath {
+    /// Returns the times (s) at which the body enters and leaves a region of the planet's shadow, for those passages that
+    /// begin before `duration` (s). A passage at the start begins at 0.
+    pub(super) fn shadows(&self, region: ShadowRegion, sun: &SunPath, duration: f64) -> Vec<[f64; 2]> {
+        match self {
+            Self::Kepler(orbit) => orbit.shadows(region, sun, duration),
+            Self::Sampled(orbit) => orbit.shadows(region, sun, duration),
+        }
+    }
+}
+
+impl SampledOrbit {
+    /// Returns the passages through a region, of which the last may end with the run.
+    fn shadows(&self, region: ShadowRegion, sun: &SunPath, duration: f64) -> Vec<[f64; 2]> {
+        let planet = self.planet_radius();
+        // Distance towards the Sun with its derivative, and the sine of the cone's angle with its derivative.
+        let seen = |t: f64, position: &Vector, velocity: &Vector| {
+            let (motion, [distance, climb]) = (sun.motion(t), sun.distance(t));
+            let slant = region.slant(planet) / (distance * ASTRONOMICAL_UNIT);
+            let x = position.dot(&motion.direction);
+            let dx = velocity.dot(&motion.direction) + position.dot(&motion.rate);
+            ([x, dx], [slant, -slant * climb / distance])
+        };
+        // Function that is negative in the region, with its derivative.
+        let beyond = |t: f64| {
+            let [position, velocity, ..] = self.motion(t);
+            let ([x, dx], [s, ds]) = seen(t, &position, &velocity);
+            let (squared, climb, cut) = (position.norm_squared(), position.dot(&velocity), 1.0 - s * s);
+            [
+                cut * squared - x * (x - 2.0 * planet * s) - planet * planet,
+                2.0 * (cut * climb - s * ds * squared - x * dx + planet * (s * dx + ds * x)),
+            ]
+        };
+        // Upper bound of the second derivative: with |x'| <= v + w r and |x''| <= a + 2 w v + 1.1 w² r, that of r² is at most
+        // 2 (v² + r a), that of x² at most 2 (x'² + r x''), and that of the rest, with s below 0.11 and R below r, at most a
+        // quarter of both.
+        let (w, r) = (sun.fastest(), self.farthest());
+        let (v, a) = (self.largest_speed(), self.largest_acceleration());
+        let (dx, ddx) = (v + w * r, a + 2.0 * w * v + 1.1 * w * w * r);
+        let bend = 2.5 * (v * v + r * a + dx * dx + r * ddx);
+        let mut crossings = Vec::new();
+        crossings_within(&beyond, [0.0, duration], bend, &mut crossings);
+        let is_behind = |t: f64| {
+            let [position, velocity, ..] = self.motion(t);
+            let ([x, _], [s, _]) = seen(t, &position, &velocity);
+            x < planet * s
+        };
+        let mut entry = (beyond(0.0)[0] < 0.0 && is_behind(0.0)).then_some(0.0);
+        let mut shadows = Vec::new();
+        for (t, enters) in crossings.into_iter().filter(|(t, _)| is_behind(*t)) {
+            if enters {
+                entry = entry.or(Some(t));
+            } else if let Some(from) = entry.take() {
+                shadows.push([from, t]);
+            }
+        }
+        // A passage that the run does not leave ends after it.
+        shadows.extend(entry.filter(|from| *from < duration).map(|from| [from, duration + 1.0]));
+        shadows
     }
 }
 

@@ -9,7 +9,7 @@ use super::dipole::AxialDipole;
 use super::orbit::to_body;
 use super::thermal_response::ThermalResponse;
 use super::{
-    Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure, SunPath,
+    Environment, EnvironmentObservation, GravityGradient, OrbitEnvironment, OrbitPath, SolarPressure, SunPath,
 };
 use crate::body::craft::Bending;
 
@@ -57,7 +57,7 @@ impl SurroundingsState {
         let axial = dipole.and_then(super::Dipole::own_field);
         let own =
             gradient.and_then(|gradient| gradient.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
-        let orbits = [own, axial.map(|orbit| orbit.rate), sky.orbit().map(Kepler::fastest)];
+        let orbits = [own, axial.map(|orbit| orbit.rate), sky.orbit().map(OrbitPath::fastest)];
         let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + sky.field_rotation();
         Self {
             environment: environment.clone(),
@@ -138,7 +138,9 @@ impl Surroundings for SurroundingsState {
             }
         }
         if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
-            torque += drag.torque(orbit, place, attitude, &self.centre);
+            let sun = self.sky.sun().map(|sun| sun.direction(t));
+            let density = drag.density_at(place, orbit, sun.as_ref());
+            torque += drag.torque(density, place, attitude, &self.centre);
         }
         let is_held = self.held != Vector::zeros();
         let magnetic = place.filter(|_| is_held || dipole.is_some());

@@ -1,0 +1,260 @@
+//! Ephemerides: positions at instants, as rows of a scenario, of a CSV file, or of an Orbit Ephemeris Message of the CCSDS
+//! in keyword-value notation (\[CCSDS502\]).
+
+mod message;
+#[cfg(test)]
+mod tests;
+
+use std::borrow::Cow;
+use std::fmt;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
+use std::sync::Arc;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::ser::SerializeSeq;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::structure::open_text_up_to;
+
+/// Least number of rows, those of one polynomial.
+const LEAST: usize = 8;
+/// Largest number of rows.
+const MOST: usize = 1_000_000;
+/// Largest size of a file (bytes).
+const LONGEST: u64 = 256 << 20;
+/// Largest distance (m) and time (s) of a row.
+const FARTHEST: f64 = 1e15;
+
+/// Time (s) and position (m) of each row.
+type Rows = Vec<[f64; 4]>;
+
+/// Positions at instants, or the path of the file that contains them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct EphemerisTable {
+    file: Option<String>,
+    rows: Arc<Rows>,
+    /// Date (ns after 1970, UTC) of the time 0 of the rows, if they have dates.
+    epoch_ns: Option<u64>,
+}
+
+impl EphemerisTable {
+    /// Makes the path of the file absolute, relative to `directory`.
+    pub fn locate(&mut self, directory: &Path) {
+        if let Some(file) = &mut self.file
+            && let Ok(path) = std::path::absolute(directory.join(&*file))
+        {
+            *file = path.to_string_lossy().into_owned();
+        }
+    }
+
+    /// Reads the file, if the positions are in one, or takes the rows of `other` if that has read the same file.
+    ///
+    /// # Errors
+    /// The error in the file, with its line.
+    pub fn read(&mut self, other: Option<&Self>) -> Result<(), String> {
+        let Some(file) = &self.file else { return Ok(()) };
+        if let Some(other) = other.filter(|other| other.file == self.file) {
+            (self.rows, self.epoch_ns) = (other.rows.clone(), other.epoch_ns);
+            return Ok(());
+        }
+        let (rows, epoch_ns) =
+            read_file(Path::new(file)).map_err(|why| format!("cannot be used: {file}: {why}"))?;
+        (self.rows, self.epoch_ns) = (Arc::new(rows), epoch_ns);
+        Ok(())
+    }
+
+    /// Keeps the rows inline, and removes the reference to their file; times then count from the start of a run at
+    /// `epoch_ns` (ns after 1970).
+    pub fn inline(&mut self, epoch_ns: Option<u64>) {
+        if self.file.is_some()
+            && let Some(rows) = self.rows(epoch_ns)
+        {
+            *self = Self { file: None, rows: Arc::new(rows), epoch_ns: None };
+        }
+    }
+
+    /// Returns the date (ns after 1970, UTC) of the first row, if the rows have dates.
+    pub fn epoch_ns(&self) -> Option<u64> {
+        self.epoch_ns
+    }
+
+    /// Returns the rows with times (s) since the start of a run at `epoch_ns` (ns after 1970): time, and position (m);
+    /// `None` of rows with dates in a run without one, or of too few rows.
+    pub fn rows(&self, epoch_ns: Option<u64>) -> Option<Rows> {
+        if self.rows.len() < LEAST {
+            return None;
+        }
+        let Some(own) = self.epoch_ns else { return Some(self.rows.to_vec()) };
+        let shift = (i128::from(own) - i128::from(epoch_ns?)) as f64 / 1e9;
+        Some(self.rows.iter().map(|[t, x, y, z]| [t + shift, *x, *y, *z]).collect())
+    }
+
+    /// Returns true if both have the same rows in memory.
+    pub fn shares_rows(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.rows, &other.rows)
+    }
+
+    /// Returns the reason for which rows of a scenario are no ephemeris.
+    pub fn fault(&self) -> Option<String> {
+        let number = |row: usize| format!("row {}", row + 1);
+        check(&self.rows, &number).err()
+    }
+}
+
+/// Checks the rows, which `place` names in messages.
+fn check(rows: &[[f64; 4]], place: &dyn Fn(usize) -> String) -> Result<(), String> {
+    for (index, row) in rows.iter().enumerate() {
+        if let Some(bad) = row.iter().find(|part| part.is_nan() || part.abs() > FARTHEST) {
+            let why = format!("must have times (s) and positions (m) of up to {FARTHEST:e}, got {bad}");
+            return Err(format!("{}: {why}", place(index)));
+        }
+        if row[1..] == [0.0; 3] {
+            return Err(format!("{}: must not be the planet's centre", place(index)));
+        }
+        if index > 0 && row[0] <= rows[index - 1][0] {
+            let why = format!("must have increasing times, got {} s after {} s", row[0], rows[index - 1][0]);
+            return Err(format!("{}: {why}", place(index)));
+        }
+    }
+    if rows.len() < LEAST {
+        return Err(format!("must have at least {LEAST} rows, got {}", rows.len()));
+    }
+    if rows.len() > MOST {
+        return Err(format!("must have at most {MOST} rows, got {}", rows.len()));
+    }
+    Ok(())
+}
+
+/// Reads a file; returns the rows, and the date (ns after 1970) of their time 0, if they have dates.
+fn read_file(path: &Path) -> Result<(Rows, Option<u64>), String> {
+    read(open_text_up_to(path, LONGEST)?)
+}
+
+fn read(file: impl Read) -> Result<(Rows, Option<u64>), String> {
+    let mut lines = BufReader::new(file).lines().enumerate().peekable();
+    let is_message = loop {
+        match lines.peek() {
+            Some((_, Ok(line))) if line.trim().is_empty() => drop(lines.next()),
+            Some((_, Ok(line))) => break line.trim_start().starts_with("CCSDS_OEM_VERS"),
+            _ => break false,
+        }
+    };
+    let mut lines = lines.map(|(index, line)| (index + 1, line));
+    let (rows, places, epoch) = if is_message { message::read(&mut lines)? } else { read_table(&mut lines)? };
+    check(&rows, &|row| format!("line {}", places.get(row).copied().unwrap_or_default()))?;
+    Ok((rows, epoch))
+}
+
+/// Lines of a file with their numbers.
+type Lines<'a> = &'a mut dyn Iterator<Item = (usize, std::io::Result<String>)>;
+
+/// Rows of a file, the line of each, and the date (ns after 1970) of their time 0.
+type PlacedRows = (Rows, Vec<usize>, Option<u64>);
+
+/// Returns a line of a file.
+fn line_of((number, line): (usize, std::io::Result<String>)) -> Result<(usize, String), String> {
+    line.map(|line| (number, line)).map_err(|error| match error.kind() {
+        std::io::ErrorKind::InvalidData => format!("line {number}: is not UTF-8 text"),
+        _ => error.to_string(),
+    })
+}
+
+/// Reads the lines of a CSV file: a header if any, then time (s) and position (m), and columns that are not read.
+fn read_table(lines: Lines<'_>) -> Result<PlacedRows, String> {
+    let (mut rows, mut places) = (Rows::new(), Vec::new());
+    let mut columns = 0;
+    for line in lines {
+        let (number, line) = line_of(line)?;
+        let line = line.trim();
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+        if columns == 0 {
+            columns = fields.len();
+            if fields.first().is_some_and(|first| first.parse::<f64>().is_err()) {
+                if fields.len() < 4 || fields[..4] != ["t", "x", "y", "z"] {
+                    return Err(format!(
+                        "line {number}: must be a header `t,x,y,z`, or numbers, got `{line}`"
+                    ));
+                }
+                continue;
+            }
+        }
+        if fields.len() < 4 || fields.len() != columns {
+            let expected = if columns < 4 { 4 } else { columns };
+            return Err(format!("line {number}: must have {expected} numbers, got {}", fields.len()));
+        }
+        rows.push(numbers(&fields[..4]).map_err(|why| format!("line {number}: {why}"))?);
+        places.push(number);
+        if rows.len() > MOST {
+            return Err(format!("line {number}: must have at most {MOST} rows"));
+        }
+    }
+    Ok((rows, places, None))
+}
+
+/// Returns the first four fields as numbers.
+fn numbers(fields: &[&str]) -> Result<[f64; 4], String> {
+    let mut found = [0.0; 4];
+    for (found, field) in found.iter_mut().zip(fields) {
+        *found = field.parse().map_err(|_| format!("must be a number, got `{field}`"))?;
+    }
+    Ok(found)
+}
+
+impl Serialize for EphemerisTable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        if let Some(file) = &self.file {
+            return serializer.serialize_str(file);
+        }
+        let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
+        self.rows.iter().try_for_each(|row| rows.serialize_element(row))?;
+        rows.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for EphemerisTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TableOrFile;
+        impl<'de> Visitor<'de> for TableOrFile {
+            type Value = EphemerisTable;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("rows [t, x, y, z], or the path of a file: CSV, or an Orbit Ephemeris Message")
+            }
+
+            fn visit_str<E: Error>(self, file: &str) -> Result<EphemerisTable, E> {
+                Ok(EphemerisTable { file: Some(file.to_owned()), ..EphemerisTable::default() })
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<EphemerisTable, A::Error> {
+                let rows = Rows::deserialize(SeqAccessDeserializer::new(seq))?;
+                Ok(EphemerisTable { rows: Arc::new(rows), ..EphemerisTable::default() })
+            }
+        }
+        deserializer.deserialize_any(TableOrFile)
+    }
+}
+
+impl JsonSchema for EphemerisTable {
+    fn schema_name() -> Cow<'static, str> {
+        "EphemerisTable".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "Rows of time (s) and position (m), or the path of a file",
+            "anyOf": [
+                {
+                    "type": "array",
+                    "items": { "type": "array", "items": { "type": "number" }, "minItems": 4, "maxItems": 4 }
+                },
+                { "type": "string" }
+            ]
+        })
+    }
+}
