@@ -128,11 +128,8 @@ impl PartialEq for Scenario {
 impl Scenario {
     fn new(origin: &str, inner: Result<flexsc_core::Scenario, ScenarioError>) -> PyResult<Self> {
         let checked = inner.and_then(|inner| {
-            validate_metrics(&inner).map_err(|ConfigError { key, why, .. }| ScenarioError::Key {
-                origin: origin.to_owned(),
-                key,
-                why,
-            })?;
+            let at = |fault: ConfigError| Document::from_table(origin, inner.to_table()).at_key(&fault);
+            validate_metrics(&inner).map_err(at)?;
             Ok(inner)
         });
         Ok(Self { inner: checked.map_err(scenario_error)?, origin: origin.to_owned() })
