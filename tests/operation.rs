@@ -40,7 +40,8 @@ const STAGES: &str = "[[law.stages]]\nlaw.b_dot = { period = 1.0, gain = 8e5 }  
 /// Modes that end by time are the stages of a law: the motion and the filter are equal to the bit.
 #[test]
 fn modes_that_end_by_time_are_stages() {
-    let text = std::fs::read_to_string(format!("{}/detumble-and-point.toml", crate::util::SCENARIOS)).expect("a file");
+    let text = std::fs::read_to_string(format!("{}/detumble-and-point.toml", crate::util::SCENARIOS))
+        .expect("a file");
     let text = text.replace("duration = 12000.0", "duration = 700.0").replace("12000.0]", "700.0]");
     let staged = text.replace("from = 6000.0", "from = 300.0");
     let head = "[[mode]]\nname = \"one\"\nlaw.b_dot = { period = 1.0, gain = 8e5 }\n\
@@ -49,7 +50,11 @@ fn modes_that_end_by_time_are_stages() {
     assert!(staged != text && moded != text);
     let [staged, moded] = [staged, moded].map(|text| traced(&scenario(&text)));
     assert_eq!(modes(&moded), [(0.0, "one".to_owned()), (300.0, "two".to_owned())]);
-    agree(&staged, &moded, &["/pointing", "/rates", "/energy", "/wheels", "/magnetorquers", "/attitude_filter"]);
+    agree(
+        &staged,
+        &moded,
+        &["/pointing", "/rates", "/energy", "/wheels", "/magnetorquers", "/attitude_filter"],
+    );
 }
 
 const BODY: &str = "duration = 30.0\n[body.planar]\ninertia = 100.0\nangle = 2e-3\nrate = 1e-4\n[log]\nperiod = 0.5\n\
@@ -102,7 +107,9 @@ fn changes_are_those_of_the_conditions_on_the_log() {
     assert_eq!(metrics.get("mode_times_s"), Some(&MetricValue::Numbers(times.to_vec())));
     assert_eq!(metrics.get("mode_starts_s"), Some(&MetricValue::Numbers(vec![0.0, point, safe])));
     assert_eq!(metrics.get("mode_changes"), Some(&MetricValue::Count(3)));
-    let Some(Column::Texts(causes)) = trace.topic("/mode").and_then(|rows| rows.get("cause")) else { panic!() };
+    let Some(Column::Texts(causes)) = trace.topic("/mode").and_then(|rows| rows.get("cause")) else {
+        panic!()
+    };
     assert_eq!(causes[2], "silent(star_tracker) > 30");
 }
 
@@ -116,7 +123,8 @@ fn the_example_meets_its_goal() {
 /// A law that begins again has no state of its last time: an integrator commands nothing at first.
 #[test]
 fn laws_start_without_a_past() {
-    let integrator = "law.state_space = { period = 0.5, a = [[1.0]], b = [[0.1]], c = [[-1.0]], d = [[0.0]] }";
+    let integrator =
+        "law.state_space = { period = 0.5, a = [[1.0]], b = [[0.1]], c = [[-1.0]], d = [[0.0]] }";
     let text = format!(
         "duration = 20.0\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n[log]\nperiod = 0.25\n\
          [[mode]]\nname = \"a\"\n{integrator}\nleave = [{{ to = \"b\", when = \"time >= 5\" }}]\n\
@@ -136,7 +144,8 @@ fn laws_start_without_a_past() {
 #[test]
 fn a_sensor_that_is_not_in_use_is_silent() {
     let text = std::fs::read_to_string(format!("{}/safe-mode.toml", crate::util::SCENARIOS)).expect("a file");
-    let text = text.replace("duration = 9000.0", "duration = 200.0").replace("[600.0, 9000.0]", "[0.0, 200.0]");
+    let text =
+        text.replace("duration = 9000.0", "duration = 200.0").replace("[600.0, 9000.0]", "[0.0, 200.0]");
     let all = "sensors = [\"gyro\", \"magnetometer\", \"sun_sensor\"]\n";
     assert!(text.contains(all));
     let silent = text.replace(all, "").replace("from = 5800.0, to = 6400.0", "from = 0.0, to = 300.0");
@@ -152,7 +161,9 @@ fn conditions_on_the_truth_end_a_mode_at_their_instant() {
     );
     let trace = traced(&scenario(&text));
     assert_eq!(modes(&trace)[1].0, 2.345_678_901);
-    let Some(Column::Counts(fs)) = trace.topic("/mode").and_then(|rows| rows.get("time_fs")) else { panic!() };
+    let Some(Column::Counts(fs)) = trace.topic("/mode").and_then(|rows| rows.get("time_fs")) else {
+        panic!()
+    };
     assert_eq!(fs[1], 345_678_901_000_000);
 }
 
@@ -181,9 +192,7 @@ fn a_run_in_pieces_is_the_whole() {
         let until = flexsc_core::numerics::time::Span::from_seconds(f64::from(piece) * 51.3);
         let mut copy = simulation.clone();
         copy.run_until(flexsc_core::numerics::time::Instant::START + until, &mut ()).expect("a run");
-        simulation
-            .run_until(flexsc_core::numerics::time::Instant::START + until, &mut trace)
-            .expect("a run");
+        simulation.run_until(flexsc_core::numerics::time::Instant::START + until, &mut trace).expect("a run");
     }
     agree(&whole, &trace, &["/mode", "/rates", "/wheels", "/attitude_filter"]);
 }
@@ -223,7 +232,12 @@ fn linear_tools_take_one_mode() {
 fn a_figure_has_a_band_of_each_mode() {
     let dir = Dir::with(&["safe-mode"]);
     let said = dir.run("simulate safe-mode.toml --set duration=1500 --log full -o .").exits(0);
-    assert!(said.err.contains("detumble 1377 s, first at 0 s; point 123 s, first at 1377 s; safe never; 1 change"), "{}", said.err);
+    assert!(
+        said.err
+            .contains("detumble 1377 s, first at 0 s; point 123 s, first at 1377 s; safe never; 1 change"),
+        "{}",
+        said.err
+    );
     dir.run("plot safe-mode.mcap --what rates -o .").exits(0);
     let svg = dir.text("safe-mode-rates.svg");
     assert!(svg.contains("detumble") && svg.contains("point") && !svg.contains(">safe<"));
@@ -239,16 +253,25 @@ fn what_does_not_fit_is_refused() {
         (format!("{LAW}\n{}", one("")), "`law` must be left out with `[[mode]]`"),
         (one("target = { yaw = 0.1 }"), "`mode[0].target` is for a body with three axes"),
         (one("actuators = [\"wheels\"]"), "`mode[0].actuators[0]` must be one of the actuators"),
-        (one("sensors = [\"gyro\"]"), "`mode[0].sensors[0]` must be one of the sensors, `sampled`, got `gyro`"),
+        (
+            one("sensors = [\"gyro\"]"),
+            "`mode[0].sensors[0]` must be one of the sensors, `sampled`, got `gyro`",
+        ),
         (one("sensors = []"), "`mode[0].sensors` must include `sensor.sampled`, which the law `pd` needs"),
-        (one("leave = [{ to = \"c\", when = \"time > 1\" }]"), "`mode[0].leave[0].to` must name one of the modes, `a`, `b`, got `c`"),
+        (
+            one("leave = [{ to = \"c\", when = \"time > 1\" }]"),
+            "`mode[0].leave[0].to` must name one of the modes, `a`, `b`, got `c`",
+        ),
         (when("momentum > 1"), "`mode[0].leave[0].when` reads a stored momentum"),
         (when("wheel_speed > 1"), "`mode[0].leave[0].when` reads the speeds of `wheels`"),
         (when("field > 1"), "`mode[0].leave[0].when` reads the measured field"),
         (when("sunlight < 0.5"), "`mode[0].leave[0].when` reads the light"),
         (when("lock_lost"), "`mode[0].leave[0].when` reads the lock"),
         (when("truth.rate < 1"), "`mode[0].leave[0].when` reads the truth"),
-        (one("leave = [{ to = \"b\", when = \"time > 1\", for = -1.0 }]"), "`mode[0].leave[0].for`: must be a time of 0 to 1e13 s, got -1"),
+        (
+            one("leave = [{ to = \"b\", when = \"time > 1\", for = -1.0 }]"),
+            "`mode[0].leave[0].for`: must be a time of 0 to 1e13 s, got -1",
+        ),
         (one("leave = [{ to = \"b\", when = 3 }]"), "leave[0].when"),
         (one("leave = [{ to = \"b\", if = \"time > 1\" }]"), "if"),
     ] {

@@ -111,7 +111,19 @@ impl RunEvents {
         };
         let commanded = log.commands().map_or(Some(CommandLog::default()), CommandLog::parse);
         let commanded = commanded.ok_or_else(|| unusable(path, "holds commands that are none".to_owned()))?;
-        Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps, modes })
+        Ok(Self {
+            scenario,
+            run,
+            end,
+            commanded,
+            shown: None,
+            start,
+            switchings,
+            means,
+            objective,
+            steps,
+            modes,
+        })
     }
 
     /// Returns the motion from a full log, or else from the repeated run, which keeps the whole motion only up to

@@ -121,7 +121,10 @@ impl ModeTarget {
     /// Checks the target against the sky; returns a key within it and the reason.
     pub fn fault(&self, sky: &OrbitEnvironment) -> Option<ConfigError> {
         let fault = AttitudeProfile::validate(&[self.at_start()], sky, &[])?;
-        Some(ConfigError { key: fault.key.trim_start_matches("[0]").trim_start_matches('.').to_owned(), ..fault })
+        Some(ConfigError {
+            key: fault.key.trim_start_matches("[0]").trim_start_matches('.').to_owned(),
+            ..fault
+        })
     }
 }
 

@@ -68,7 +68,8 @@ impl<'a> Parser<'a> {
     fn take(&mut self, sign: &str) -> bool {
         self.skip_spaces();
         let is_word = sign.starts_with(char::is_alphabetic);
-        let comes = if is_word { &self.text[self.next_part()] == sign } else { self.rest().starts_with(sign) };
+        let comes =
+            if is_word { &self.text[self.next_part()] == sign } else { self.rest().starts_with(sign) };
         if comes {
             self.at += sign.len();
         }
@@ -338,6 +339,8 @@ mod tests {
         }
         let deep = format!("{}rate < 1{}", "(".repeat(400), ")".repeat(400));
         assert!(parse(&deep, &known()).unwrap_err().why.starts_with("has at most 32 brackets"));
-        assert!(parse(&"rate < 1 and ".repeat(100), &known()).unwrap_err().why.starts_with("has at most 1000"));
+        assert!(
+            parse(&"rate < 1 and ".repeat(100), &known()).unwrap_err().why.starts_with("has at most 1000")
+        );
     }
 }

@@ -238,7 +238,15 @@ mod tests {
         let rate = |t: f64| if t == 6.0 { 1.5 } else { 0.5 };
         assert_eq!(changes(sequence(TWO), 30.0, rate), [(14.0, 1)]);
         // Hysteresis: a rate between the two limits changes nothing; samples of the second mode are 1 s apart.
-        let rate = |t: f64| if t < 17.0 { 0.5 } else if t < 20.5 { 1.5 } else { 2.5 };
+        let rate = |t: f64| {
+            if t < 17.0 {
+                0.5
+            } else if t < 20.5 {
+                1.5
+            } else {
+                2.5
+            }
+        };
         assert_eq!(changes(sequence(TWO), 30.0, rate), [(8.0, 1), (21.0, 0)]);
         assert_eq!(changes(sequence(TWO), 30.0, |_| f64::NAN), []);
     }
@@ -274,12 +282,23 @@ mod tests {
             let modes = flexsc_formats::document::from_text::<Of>(text).unwrap().mode;
             OperatingMode::fault(&modes, &["gyro"]).unwrap().to_string()
         };
-        let mode = |keys: &str| format!("[[mode]]\nname = 'a'\nlaw.open = {{}}\n{keys}\n[[mode]]\nname = 'b'\nlaw.open = {{}}");
+        let mode = |keys: &str| {
+            format!("[[mode]]\nname = 'a'\nlaw.open = {{}}\n{keys}\n[[mode]]\nname = 'b'\nlaw.open = {{}}")
+        };
         for (text, begins) in [
-            (mode("leave = [{ to = 'c', when = 'time > 1' }]"), "`[0].leave[0].to` must name one of the modes, `a`, `b`"),
+            (
+                mode("leave = [{ to = 'c', when = 'time > 1' }]"),
+                "`[0].leave[0].to` must name one of the modes, `a`, `b`",
+            ),
             (mode("leave = [{ to = 'a', when = 'time > 1' }]"), "`[0].leave[0].to` must name another mode"),
-            (mode("leave = [{ to = 'b', when = 'tme > 1' }]"), "`[0].leave[0].when` must begin with a quantity"),
-            (mode("leave = [{ to = 'b', when = 'truth.time > 1 or rate > 2' }]"), "`[0].leave[0].when` joins the truth"),
+            (
+                mode("leave = [{ to = 'b', when = 'tme > 1' }]"),
+                "`[0].leave[0].when` must begin with a quantity",
+            ),
+            (
+                mode("leave = [{ to = 'b', when = 'truth.time > 1 or rate > 2' }]"),
+                "`[0].leave[0].when` joins the truth",
+            ),
             (mode("sensors = ['gyro', 'sun_sensor']"), "`[0].sensors[1]` must be one of the sensors, `gyro`"),
             (mode("").replace("'b'", "'a'"), "`[1].name` is that of a mode before"),
             (mode("").replace("'b'", "''"), "`[1].name` must be a name"),

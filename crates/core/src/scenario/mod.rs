@@ -135,7 +135,11 @@ impl Scenario {
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let model = written.assemble(document, parent, directory)?;
-        if written.law.offers().is_open && !document.has("law") && written.manoeuvre.is_none() && written.mode.is_empty() {
+        if written.law.offers().is_open
+            && !document.has("law")
+            && written.manoeuvre.is_none()
+            && written.mode.is_empty()
+        {
             return Err(document.missing("law"));
         }
         Self::fitted(written, model).map_err(|fault| document.at_key(&fault))

@@ -50,9 +50,11 @@ impl ScenarioSpec {
         if model.three_axis().is_some_and(|body| body.small_angles.is_some()) {
             return at("must be left out with `small_angles`, for which the target must stay fixed");
         }
-        if self.appendage.iter().any(|appendage| {
-            appendage.drive.as_ref().is_some_and(|drive| drive.track.is_some())
-        }) {
+        if self
+            .appendage
+            .iter()
+            .any(|appendage| appendage.drive.as_ref().is_some_and(|drive| drive.track.is_some()))
+        {
             return at(
                 "must be left out with a drive that tracks the Sun, whose angle has to be known before the run",
             );
@@ -78,7 +80,9 @@ impl ScenarioSpec {
         let in_use = self.sensors_in_use(index);
         let missing = |wanted: &dyn Fn(usize, &SensorKind) -> bool| {
             let all = self.sensor.iter().enumerate();
-            all.filter(|(place, sensor)| !in_use[*place] && wanted(*place, sensor)).map(|(place, _)| place).next()
+            all.filter(|(place, sensor)| !in_use[*place] && wanted(*place, sensor))
+                .map(|(place, _)| place)
+                .next()
         };
         let at = |why: String| Some(ConfigError::new("sensors", why));
         let name = |place: usize| self.sensor_key(place);
@@ -100,7 +104,8 @@ impl ScenarioSpec {
             ));
         }
         if self.estimator.is_some() || mode.law.needs() > EstimateNeeds::Field {
-            let of_motion = |_: usize, sensor: &SensorKind| sensor.measures_motion() && !sensor.measures_vector();
+            let of_motion =
+                |_: usize, sensor: &SensorKind| sensor.measures_motion() && !sensor.measures_vector();
             let place = missing(&of_motion)?;
             let reader = match &self.estimator {
                 Some(estimator) => format!("the `[estimator.{}]`", estimator.kind()),
@@ -123,8 +128,8 @@ impl ScenarioSpec {
         let used = |wanted: &dyn Fn(&SensorKind) -> bool| {
             self.sensor.iter().zip(&in_use).any(|(sensor, in_use)| *in_use && wanted(sensor))
         };
-        let knows_motion = self.estimator.is_some()
-            || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
+        let knows_motion =
+            self.estimator.is_some() || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
         let filters = self.estimator.as_ref().is_some_and(|estimator| {
             ["kalman", "extended_kalman", "unscented_kalman"].contains(&estimator.kind())
         });

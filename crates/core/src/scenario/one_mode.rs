@@ -30,7 +30,10 @@ impl Scenario {
     pub fn mode_choice_fault(&self) -> Option<ConfigError> {
         let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
         (!names.is_empty()).then(|| {
-            let why = format!("has several loops, one in each mode: choose one with `--mode`: {}", names.join(", "));
+            let why = format!(
+                "has several loops, one in each mode: choose one with `--mode`: {}",
+                names.join(", ")
+            );
             ConfigError::new("mode", why)
         })
     }

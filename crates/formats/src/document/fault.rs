@@ -37,7 +37,8 @@ impl ConfigError {
         let Some(part) = &self.part else { return value };
         let Some(written) = text.get(value.clone()) else { return value };
         let quotes = ["\"\"\"", "'''", "\"", "'"].into_iter().find(|quotes| written.starts_with(quotes));
-        let Some(quotes) = quotes.filter(|quotes| !(quotes.starts_with('"') && written.contains('\\'))) else {
+        let Some(quotes) = quotes.filter(|quotes| !(quotes.starts_with('"') && written.contains('\\')))
+        else {
             return value;
         };
         let within = value.start + quotes.len();

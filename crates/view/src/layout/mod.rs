@@ -59,7 +59,8 @@ impl Layout {
             BodyAxes::Three(body) => three_axis::tabs(scenario, body),
         };
         if let Some(first) = tabs.first_mut().filter(|_| !scenario.mode.is_empty()) {
-            let mode = LayoutPanel::states("mode", "Mode of operation", vec![panel::line("/mode.mode", "mode")]);
+            let mode =
+                LayoutPanel::states("mode", "Mode of operation", vec![panel::line("/mode.mode", "mode")]);
             first.panels.insert(1, mode);
         }
         tabs.extend(declared::tab(scenario));
