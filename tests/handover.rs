@@ -244,3 +244,19 @@ fn a_file_of_other_content_is_kept() {
         assert!(first == dir.read(name));
     }
 }
+
+/// A reader interpolates with no more states than there are.
+#[test]
+fn runs_with_few_rows_are_exported() {
+    let dir = Dir::holding("free.toml", FREE);
+    // A log period beyond the end leaves the rows of the start and of the end.
+    dir.run("simulate free.toml --set log.period=1000 --log full").exits(0);
+    for name in ["free.aem", "free.oem", "free.glb", "free.bin"] {
+        dir.run(&format!("export free.mcap -o {name}")).exits(0);
+    }
+    let text = dir.text("free.oem");
+    let (keys, rows) = message(&text);
+    let degree: usize =
+        keys.get("INTERPOLATION_DEGREE").map_or(0, |degree| degree.parse().expect("a number"));
+    assert!(degree < rows.len(), "{degree} {}", rows.len());
+}

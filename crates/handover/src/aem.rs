@@ -11,7 +11,7 @@ use crate::options::{HandoverOptions, keyword_value};
 pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, HandoverError> {
     let rows = run.attitude_rows()?;
     let (epoch, (_, frame)) = (options.date(run)?, options.frame(run)?);
-    let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch + time_ns).to_text();
+    let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch.saturating_add(time_ns)).to_text();
     let end = rows.last().map_or(0, |row| row.time_ns);
     let name = keyword_value(&run.scenario.name);
     let id = keyword_value(options.object_id.as_deref().unwrap_or_default());

@@ -57,8 +57,10 @@ impl RunLog<'_> {
             self.three_axis_rows()
         }?;
         rows.dedup_by_key(|row| row.time_ns);
+        check_order(rows.iter().map(|row| row.time_ns))?;
         let mut before = Quaternion::new(1.0, 0.0, 0.0, 0.0);
         for row in &mut rows {
+            check_unit(row.time_ns, &row.attitude)?;
             if row.attitude.dot(&before) < 0.0 {
                 row.attitude = -row.attitude;
             }
@@ -163,6 +165,7 @@ impl RunLog<'_> {
             rows.push(row);
         }
         rows.dedup_by_key(|row| row.time_ns);
+        check_order(rows.iter().map(|row| row.time_ns))?;
         Ok(Some(rows))
     }
 }
@@ -213,10 +216,26 @@ fn same_length(times: &[f64], others: &[&[f64]]) -> Result<(), HandoverError> {
     Err(damaged("rows of its topics do not belong together"))
 }
 
-fn check_finite(time_ns: u64, mut values: impl Iterator<Item = f64>) -> Result<(), HandoverError> {
+/// Checks that times increase.
+pub fn check_order(times: impl Iterator<Item = u64>) -> Result<(), HandoverError> {
+    if times.is_sorted() { Ok(()) } else { Err(damaged("its rows are not in the order of their times")) }
+}
+
+/// Checks that a quaternion is that of a rotation.
+pub fn check_unit(time_ns: u64, q: &Quaternion<f64>) -> Result<(), HandoverError> {
+    const NEAR: f64 = 1e-6;
+    if (q.norm() - 1.0).abs() < NEAR {
+        return Ok(());
+    }
+    let time = time_ns as f64 / 1e9;
+    Err(damaged(&format!("the attitude at {time} s is not a unit quaternion")))
+}
+
+/// Checks that values at a time are finite.
+pub fn check_finite(time_ns: u64, mut values: impl Iterator<Item = f64>) -> Result<(), HandoverError> {
     if values.all(f64::is_finite) {
         return Ok(());
     }
     let time = time_ns as f64 / 1e9;
-    Err(HandoverError::Refused(format!("a value of the motion at {time} s is not a number")))
+    Err(HandoverError::Refused(format!("a value of the motion at {time} s is not a finite number")))
 }

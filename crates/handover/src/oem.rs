@@ -25,7 +25,7 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Hand
     };
     let rows = run.orbit_rows()?.ok_or_else(none)?;
     let (epoch, (frame, _), center) = (options.date(run)?, options.frame(run)?, center(run, options)?);
-    let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch + time_ns).to_text();
+    let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch.saturating_add(time_ns)).to_text();
     let name = keyword_value(&run.scenario.name);
     let id = keyword_value(options.object_id.as_deref().unwrap_or_default());
     let (start, end) = (date(rows[0].time_ns), date(rows[rows.len() - 1].time_ns));

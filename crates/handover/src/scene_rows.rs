@@ -11,7 +11,9 @@ use flexsc_view::scene::Scene;
 use nalgebra::Quaternion;
 
 use crate::error::HandoverError;
-use crate::motion_rows::{RunLog, motion, nanoseconds, nested, numbers};
+use crate::motion_rows::{
+    RunLog, check_finite, check_order, check_unit, motion, nanoseconds, nested, numbers,
+};
 
 /// Motion of the hub as it is drawn.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -89,16 +91,17 @@ impl RunLog<'_> {
         } else {
             self.three_axis_scene(spacing)
         }?;
+        check_order(rows.iter().map(|row| row.time_ns))?;
         for row in &rows {
-            let hub = match row.hub {
-                HubMotion::OneAxis { angle, rigid_angle } => angle + rigid_angle,
-                HubMotion::ThreeAxis(q) => q.norm(),
+            let angles = match &row.hub {
+                HubMotion::OneAxis { angle, rigid_angle } => [*angle, *rigid_angle],
+                HubMotion::ThreeAxis(attitude) => {
+                    check_unit(row.time_ns, attitude)?;
+                    [0.0; 2]
+                }
             };
-            if !row.modes.iter().chain(&row.angles).chain([&hub]).all(|value| value.is_finite()) {
-                let time = row.time_ns as f64 / 1e9;
-                let why = format!("a value of the motion at {time} s is not a number");
-                return Err(HandoverError::Refused(why));
-            }
+            let numbers = row.modes.iter().chain(&row.angles).copied();
+            check_finite(row.time_ns, numbers.chain(angles))?;
         }
         Ok(rows)
     }
@@ -151,9 +154,14 @@ impl RunLog<'_> {
     }
 }
 
-/// Returns the values of a row, of nested rows of equal widths; empty if the log has none.
+/// Returns the values of a row, of nested rows of equal widths: zeros past the end of a topic, and none if the log does
+/// not have it.
 fn of_row(values: &[f64], row: usize, width: usize) -> Vec<f64> {
-    values.get(row * width..(row + 1) * width).unwrap_or_default().to_vec()
+    match values.get(row * width..(row + 1) * width) {
+        Some(values) => values.to_vec(),
+        None if values.is_empty() => Vec::new(),
+        None => vec![0.0; width],
+    }
 }
 
 /// Returns the indices and times (ns) of rows at least `spacing` apart, and of the last.
@@ -161,9 +169,9 @@ fn spaced(times: &[f64], spacing: u64) -> impl Iterator<Item = (usize, u64)> + '
     let mut next = 0;
     times.iter().enumerate().filter_map(move |(index, time)| {
         let time = nanoseconds(*time);
-        let is_due = time >= next || (index + 1 == times.len() && time + spacing > next);
+        let is_due = time >= next || (index + 1 == times.len() && time.saturating_add(spacing) > next);
         if is_due {
-            next = time + spacing.max(1);
+            next = time.saturating_add(spacing.max(1));
         }
         is_due.then_some((index, time))
     })

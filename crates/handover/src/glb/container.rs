@@ -48,9 +48,16 @@ pub struct BinaryData {
     bytes: Vec<u8>,
     views: Vec<Json>,
     accessors: Vec<Json>,
+    /// True if a number is too large for single precision.
+    overflows: bool,
 }
 
 impl BinaryData {
+    /// Returns true if a number is too large for single precision, so that there is no valid file.
+    pub fn overflows(&self) -> bool {
+        self.overflows
+    }
+
     /// Adds values of vertices; returns the index of their accessor.
     pub fn add_vertices(&mut self, values: &[f32]) -> usize {
         self.add_floats(values, AccessorKind::Vector, Some(BufferTarget::Vertices))
@@ -72,6 +79,7 @@ impl BinaryData {
         let start = self.bytes.len();
         // A negative zero would be another byte for an equal value.
         self.bytes.extend(values.iter().flat_map(|value| (value + 0.0).to_le_bytes()));
+        self.overflows |= values.iter().any(|value| !value.is_finite());
         let width = kind.width();
         let index = self.add_accessor(start, target, FLOAT, values.len() / width, kind);
         let bound = |pick: fn(f32, f32) -> f32| -> Vec<f64> {

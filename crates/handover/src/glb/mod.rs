@@ -43,7 +43,8 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<Vec<u8>, Han
         let count = rows.first().map_or(0, |row| row.modes.len());
         let angles = rows.first().map_or(0, |row| row.angles.len());
         let rest = SceneRow { time_ns: 0, hub, modes: vec![0.0; count], angles: vec![0.0; angles] };
-        let reached = |mode: usize| rows.iter().map(|row| row.modes[mode].abs()).fold(0.0, f64::max);
+        let reached =
+            |mode: usize| rows.iter().filter_map(|row| Some(row.modes.get(mode)?.abs())).fold(0.0, f64::max);
         let largest: Vec<f64> = (0..count).map(reached).collect();
         SceneModel::new(&mut scene, &sections, &rest, &largest, options.mode_shapes)
     };
@@ -57,6 +58,9 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<Vec<u8>, Han
     file.add_run(&model, &tracks, &plumes);
     if options.mode_shapes {
         file.add_shapes(&model, &frequencies(run));
+    }
+    if file.data.overflows() {
+        return Err(HandoverError::Refused("a value of the motion is too large to be drawn".to_owned()));
     }
     let magnification = scene.magnification();
     let unit = if scenario.model.one_axis().is_some() { "rad" } else { "m sqrt(kg)" };

@@ -153,8 +153,8 @@ impl PlumeIntervals {
         let interval = time / self.spacing;
         if interval > self.interval {
             self.show(self.interval, self.largest);
-            if interval > self.interval + 1 {
-                self.show(self.interval + 1, self.level);
+            if interval > self.interval.saturating_add(1) {
+                self.show(self.interval.saturating_add(1), self.level);
             }
             (self.interval, self.largest) = (interval, self.level);
         }
@@ -163,7 +163,7 @@ impl PlumeIntervals {
     }
 
     fn show(&mut self, interval: u64, level: f64) {
-        let time = interval * self.spacing;
+        let time = interval.saturating_mul(self.spacing);
         match self.shown.last_mut() {
             Some((_, last)) if *last == level => {}
             Some((at, last)) if *at == time => *last = level,
@@ -173,7 +173,7 @@ impl PlumeIntervals {
 
     fn finish(mut self) -> PlumeLevels {
         self.show(self.interval, self.largest);
-        self.show(self.interval + 1, self.level);
+        self.show(self.interval.saturating_add(1), self.level);
         self.shown
     }
 }

@@ -29,7 +29,7 @@ pub fn jet_pulses(
     let mut add = |thruster: usize, time: f64, on: f64| {
         let from = nanoseconds(time);
         if on > 0.0 && on.is_finite() {
-            pulses[thruster].push(JetPulse { from, to: from + nanoseconds(on) });
+            pulses[thruster].push(JetPulse { from, to: from.saturating_add(nanoseconds(on)) });
         }
     };
     if let Some(table) = thrusters {
@@ -70,10 +70,10 @@ pub fn open_parts(pulses: &[JetPulse], times: &[u64]) -> Vec<f64> {
             first += 1;
         }
         let started = pulses[first..].iter().take_while(|pulse| pulse.from < *time);
-        let within = started.map(|pulse| pulse.to.min(*time).saturating_sub(pulse.from.max(before)));
-        let open: u64 = within.sum();
+        let within = started.map(|pulse| pulse.to.min(*time).saturating_sub(pulse.from.max(before)) as f64);
+        let open: f64 = within.sum();
         let long = time - before;
-        parts.push(if long > 0 { (open as f64 / long as f64).min(1.0) } else { 0.0 });
+        parts.push(if long > 0 { (open / long as f64).min(1.0) } else { 0.0 });
         before = *time;
     }
     parts

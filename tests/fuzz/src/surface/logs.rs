@@ -27,8 +27,22 @@ const RUNS: &[(&str, &str, Detail)] = &[
     ("iss-ringdown", "2.0", Detail::Scene),
     ("relay-fixed", "30.0", Detail::Events),
 ];
-const TOPICS: &[&str] =
-    &["/attitude", "/command", "/metrics", "/params", "/tf", "/scene", "/torque", "/estimate", "/x"];
+const TOPICS: &[&str] = &[
+    "/attitude",
+    "/command",
+    "/metrics",
+    "/params",
+    "/tf",
+    "/scene",
+    "/torque",
+    "/estimate",
+    "/x",
+    "/pointing",
+    "/vibrations",
+    "/modes",
+];
+/// Files of a whole run.
+const HANDED_OVER: &[&str] = &["a.aem", "a.oem", "a.glb", "a.bin"];
 const TABLE: &str = "run,seed,law.relay.k_t,settled,peak_torque_nm,settling_time_s,why\n\
     0,7,0.31,true,1.5,58.09,\n1,8,0.312,false,1.25,,\n2,9,0.309,true,1e-3,50.0,\n";
 
@@ -90,7 +104,7 @@ pub fn make(logs: &[Vec<u8>], seeds: &Seeds, chance: &mut Chance) -> Case {
         return campaign(seeds, chance);
     }
     let topic = chance.one(TOPICS);
-    let command = match chance.below(16) {
+    let command = match chance.below(20) {
         0..5 => format!("export l.mcap --topic {topic}"),
         5 => format!("export l.mcap --topic {topic} --format jsonl -o t.jsonl"),
         6 => "export l.mcap".to_owned(),
@@ -99,7 +113,8 @@ pub fn make(logs: &[Vec<u8>], seeds: &Seeds, chance: &mut Chance) -> Case {
         11 => "layout l.mcap -o l.json".to_owned(),
         12 => "log scenario l.mcap".to_owned(),
         13 => "log recover l.mcap --json".to_owned(),
-        _ => "log recover l.mcap -o r.mcap".to_owned(),
+        14..16 => "log recover l.mcap -o r.mcap".to_owned(),
+        _ => format!("export l.mcap --epoch 2026-01-01T00:00:00Z -o {}", chance.one(HANDED_OVER)),
     };
     Case::new(&command, vec![("l.mcap".to_owned(), log(logs, seeds, topic, chance))])
 }
