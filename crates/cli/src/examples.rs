@@ -62,6 +62,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "rotation-spin-up",
     "rotation-thrusters",
     "safe-mode",
+    "cubesat-day",
     "shaped-slew",
     "slew-wheel-lqg",
     "station-keeping",
