@@ -64,7 +64,7 @@ pub fn center(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Han
         return Ok(keyword_value(center).to_uppercase());
     }
     let sky = run.scenario.study.surroundings.as_ref().map(SurroundingsState::sky);
-    let gravity = sky.and_then(|sky| sky.orbit()).map_or(EARTH, |orbit| orbit.gravity.get());
+    let gravity = sky.and_then(|sky| sky.orbit()).map_or(EARTH, |orbit| orbit.gravity());
     if (gravity / EARTH - 1.0).abs() < NEAR {
         return Ok("EARTH".to_owned());
     }

@@ -220,7 +220,7 @@ fn bodies(run: &RunLog<'_>, planet: &str, time_ns: u64) -> Vec<VizCelestialBody>
         }
     };
     let rate = if planet == "earth" { EARTH_RATE } else { 0.0 };
-    let orbit = sky.orbit().map(|orbit| [orbit.gravity.get() / 1e9, orbit.planet_radius.get() / 1e3]);
+    let orbit = sky.orbit().map(|orbit| [orbit.gravity() / 1e9, orbit.planet_radius() / 1e3]);
     let [mu, radius_km] = orbit.unwrap_or_default();
     let own = body(planet, Vector::zeros(), sky.greenwich() + rate * t);
     let mut all = vec![VizCelestialBody { mu, radius_km, ..own }];
