@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::spacecraft::environment::OrbitPath;
 use flexsc_core::spacecraft::environment::SurroundingsState;
 
 use crate::calendar::CivilDate;
@@ -64,7 +65,7 @@ pub fn center(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Han
         return Ok(keyword_value(center).to_uppercase());
     }
     let sky = run.scenario.study.surroundings.as_ref().map(SurroundingsState::sky);
-    let gravity = sky.and_then(|sky| sky.orbit()).map_or(EARTH, |orbit| orbit.gravity());
+    let gravity = sky.and_then(|sky| sky.orbit()).map_or(EARTH, OrbitPath::gravity);
     if (gravity / EARTH - 1.0).abs() < NEAR {
         return Ok("EARTH".to_owned());
     }
