@@ -182,7 +182,7 @@ mod tests {
             Ok(vec![[1e5, 5e-7], [2e5, 3e-10]])
         );
         let refused = |text: &str, words: &str| {
-            let error = table(text).unwrap_err();
+            let error = table(text).expect_err("damaged");
             assert!(error.contains(words), "{error}");
         };
         refused("", "from 2 to 10000 rows, got 0");
@@ -192,6 +192,6 @@ mod tests {
         refused("1e300,1e-9\n", "line 1: must have a height");
         refused("1e5\n", "line 1: must have a height (m) and a density");
         refused("1e5,x\n", "line 1: must be a number, got `x`");
-        assert!(read(&b"1,2\n\xff\n"[..]).unwrap_err().contains("line 2: is not UTF-8"));
+        assert!(read(&b"1,2\n\xff\n"[..]).expect_err("damaged").contains("line 2: is not UTF-8"));
     }
 }

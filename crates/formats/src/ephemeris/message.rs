@@ -32,9 +32,8 @@ pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
             (_, "META_START") => {
                 return refused("begins a second segment: the states must be in one".to_owned());
             }
-            (Part::Metadata, "META_STOP") => Part::Rows,
+            (Part::Metadata, "META_STOP") | (Part::Covariance, "COVARIANCE_STOP") => Part::Rows,
             (Part::Rows, "COVARIANCE_START") => Part::Covariance,
-            (Part::Covariance, "COVARIANCE_STOP") => Part::Rows,
             (Part::Header | Part::Covariance, _) => part,
             (Part::Metadata, _) => {
                 let Some((key, value)) = line.split_once('=') else {
@@ -48,13 +47,13 @@ pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
                     ("TIME_SYSTEM", system) => {
                         return refused(format!("must have `TIME_SYSTEM = UTC`, got `{system}`"));
                     }
-                    ("REF_FRAME", name) => match Frame::named(name) {
-                        Some(found) => frame = Some(found),
-                        None => {
+                    ("REF_FRAME", name) => {
+                        frame = Frame::named(name);
+                        if frame.is_none() {
                             let why = "must have `REF_FRAME` EME2000, GCRF, ICRF, TOD or TEME";
                             return refused(format!("{why}, got `{name}`"));
                         }
-                    },
+                    }
                     _ => {}
                 }
                 part

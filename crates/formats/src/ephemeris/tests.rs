@@ -7,7 +7,7 @@ fn table(text: &str) -> Result<(Rows, Option<u64>), String> {
 }
 
 fn rows(count: usize) -> String {
-    (0..count).map(|row| format!("{},7e6,{},0\n", 60 * row, 450_000 * row)).collect()
+    (0..count).fold(String::new(), |text, row| format!("{text}{},7e6,{},0\n", 60 * row, 450_000 * row))
 }
 
 const MESSAGE: &str = "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2026-11-24T00:00:00\nORIGINATOR = TEST\n\nMETA_START\n\
@@ -15,48 +15,48 @@ const MESSAGE: &str = "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2026-11-24T00:00:00
     START_TIME = 2026-11-24T00:00:00\nSTOP_TIME = 2026-11-24T00:07:00\nMETA_STOP\nCOMMENT states\n";
 
 fn message() -> String {
-    let states: String = (0..8)
-        .map(|row| format!("2026-11-24T00:0{row}:00.500 7000.0 {} -1.5 0 7.5 0\n", 450 * row))
-        .collect();
+    let states = (0..8).fold(String::new(), |text, row| {
+        format!("{text}2026-11-24T00:0{row}:00.500 7000.0 {} -1.5 0 7.5 0\n", 450 * row)
+    });
     format!("{MESSAGE}{states}COVARIANCE_START\nEPOCH = 2026-11-24T00:00:00\n1.0\nCOVARIANCE_STOP\n")
 }
 
 #[test]
 fn tables_have_times_and_positions() {
     for text in [rows(9), format!("t,x,y,z\n{}", rows(9)), format!("# a comment\n\n{}", rows(9))] {
-        let (found, epoch) = table(&text).unwrap();
+        let (found, epoch) = table(&text).expect("an ephemeris");
         assert!(found.len() == 9 && epoch.is_none());
         assert_eq!(found[2], [120.0, 7e6, 9e5, 0.0]);
     }
-    let wide: String = rows(8).lines().map(|line| format!("{line},1,2,3\n")).collect();
-    assert_eq!(table(&format!("t,x,y,z,vx,vy,vz\n{wide}")).unwrap().0.len(), 8);
+    let wide = rows(8).lines().fold(String::new(), |text, line| format!("{text}{line},1,2,3\n"));
+    assert_eq!(table(&format!("t,x,y,z,vx,vy,vz\n{wide}")).expect("an ephemeris").0.len(), 8);
 }
 
 #[test]
 fn messages_have_dates_and_kilometres() {
-    let (found, epoch) = table(&message()).unwrap();
+    let (found, epoch) = table(&message()).expect("an ephemeris");
     // date --utc --date=2026-11-24T00:00:00Z +%s: 1795478400.
     assert_eq!(epoch, Some(1_795_478_400_500_000_000));
     assert_eq!(found[2], [120.0, 7e6, 9e5, -1500.0]);
     let by_day = message().replace("2026-11-24T00:0", "2026-328T00:0");
-    assert_eq!(table(&by_day).unwrap(), (found.clone(), epoch));
+    assert_eq!(table(&by_day).expect("an ephemeris"), (found.clone(), epoch));
     // Axes of 2000: the pole of the date is 2004.3 arc seconds of a century away, 26.9 years of it.
-    let (turned, _) = table(&message().replace("= TOD", "= EME2000")).unwrap();
+    let (turned, _) = table(&message().replace("= TOD", "= EME2000")).expect("an ephemeris");
     let off = (0..3).map(|axis| (turned[0][1 + axis] - found[0][1 + axis]).powi(2)).sum::<f64>().sqrt() / 7e6;
     // General precession of 50.3 arc seconds a year along the ecliptic, at the equinox: 1353 arc seconds.
     assert!((off.to_degrees() * 3600.0 - 1353.0).abs() < 3.0, "{}", off.to_degrees() * 3600.0);
     let mut shared =
         EphemerisTable { file: Some("a.oem".to_owned()), rows: Arc::new(found), epoch_ns: epoch };
-    assert_eq!(shared.rows(epoch.map(|at| at - 30_000_000_000)).unwrap()[0][0], 30.0);
+    assert_eq!(shared.rows(epoch.map(|at| at - 30_000_000_000)).expect("an ephemeris")[0][0], 30.0);
     assert_eq!(shared.rows(None), None);
     shared.inline(epoch);
-    assert!(shared.file.is_none() && shared.rows(None).unwrap()[1][0] == 60.0);
+    assert!(shared.file.is_none() && shared.rows(None).expect("an ephemeris")[1][0] == 60.0);
 }
 
 #[test]
 fn damaged_files_are_refused_with_their_lines() {
     let refused = |text: &str, words: &str| {
-        let error = table(text).unwrap_err();
+        let error = table(text).expect_err("damaged");
         assert!(error.contains(words), "{error}");
     };
     refused("", "at least 8 rows, got 0");
@@ -69,7 +69,7 @@ fn damaged_files_are_refused_with_their_lines() {
     refused(&rows(9).replace("180,7e6", "180,1e300"), "line 4: must have times");
     refused(&rows(9).replace("180,7e6,1350000,0", "180,0,0,0"), "line 4: must not be the planet's centre");
     refused(&rows(9).replace("180,7e6,1350000,0", "180,7e6"), "line 4: must have 4 numbers, got 2");
-    assert!(read(&b"0,1,2,3\n\xff\xfe,1,2\n"[..]).unwrap_err().contains("line 2: is not UTF-8"));
+    assert!(read(&b"0,1,2,3\n\xff\xfe,1,2\n"[..]).expect_err("damaged").contains("line 2: is not UTF-8"));
     refused(&message().replace("= UTC", "= TAI"), "line 10: must have `TIME_SYSTEM = UTC`, got `TAI`");
     refused(&message().replace("= TOD", "= ITRF2014"), "line 9: must have `REF_FRAME`");
     refused(&message().replace("REF_FRAME = TOD\n", ""), "must have a `REF_FRAME`");

@@ -24,7 +24,6 @@ pub enum DensityModel {
 
 impl DensityModel {
     /// Returns true for the exponential model.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
     pub fn is_exponential(&self) -> bool {
         *self == Self::Exponential
     }
