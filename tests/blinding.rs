@@ -34,7 +34,7 @@ fn events(scenario: &Scenario) -> Vec<f64> {
 fn a_short_visit_of_the_sun_is_found_where_it_is() {
     let found = events(&scenario("{ sun = 0.6981317007977318 }"));
     assert_eq!(found.len(), 2, "{found:?}");
-    for (found, expected) in found.iter().zip([5356.646926884, 5635.876754175]) {
+    for (found, expected) in found.iter().zip([5_356.646_926_884, 5_635.876_754_175]) {
         assert!((found - expected).abs() < 1e-5, "{found} {expected}");
     }
     assert!(events(&scenario("{ sun = 0.68 }")).is_empty());

@@ -36,9 +36,9 @@ fn a_log_has_the_states_of_two_line_elements() {
     let [position, velocity] = ["position_m", "velocity_m_s"]
         .map(|name| within(&trace, "/orbit", "axes", name)[3 * row..3 * row + 3].to_vec());
     for (axis, (place, speed)) in [
-        (-1_816_879.209_42, 2325.140_071),
-        (-1_835_787.621_32, 6655.669_329),
-        (6_661_079.264_65, 2463.394_512),
+        (-1_816_879.209_42, 2_325.140_071),
+        (-1_835_787.621_32, 6_655.669_329),
+        (6_661_079.264_65, 2_463.394_512),
     ]
     .into_iter()
     .enumerate()
