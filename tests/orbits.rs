@@ -160,7 +160,7 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
         drifting(
             KEPLER,
             &format!(
-                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"
+                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }}, {{ area = 1.0, normal = [0, 0, 1], at = [0, 0.1, 0.2] }}] }}\n"
             ),
         )
     };
