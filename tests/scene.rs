@@ -249,7 +249,7 @@ fn panels_visibly_bend() {
         // nothing beside what wheels could, a force bends two wings alike, which turns no hub to draw them against, and the
         // turns of a pass are too smooth.
         let straight = "detumble-and-point sun-tracking panel-deployment adaptive-bandwidth bounded-jitter \
-                        orbit-correction ground-pass safe-mode cubesat-day blinded-tracker \
+                        orbit-correction ground-pass safe-mode cubesat-day s2e-sample basilisk-momentum forty-two-leo blinded-tracker \
                         two-line-orbit";
         if straight.split(' ').any(|straight| straight == name) {
             continue;
