@@ -55,7 +55,7 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
     let dir = Dir::with(&[]);
     let rest = "sun = [0.9, 0.4, 0.17]\ngravity_gradient = {}\n\
                 solar_pressure = { force = [1e-4, 2e-4, 0], at = [0.1, 0, 0.2] }\n\
-                drag = { density = 1e-12, altitude = 6e5, scale_height = 6e4, plates = [{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }] }\n\
+                drag = { density = 1e-12, altitude = 6e5, scale_height = 6e4, plates = [{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }] }\n\
                 magnetic_field = {}\ndipole = { moment = [1, 0, 0.5] }\n";
     let kepler = scenario(&drifting(KEPLER, rest));
     let sky = kepler.orbit_environment();
@@ -160,7 +160,7 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
         drifting(
             KEPLER,
             &format!(
-                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"
+                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"
             ),
         )
     };
