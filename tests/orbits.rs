@@ -55,7 +55,7 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
     let dir = Dir::with(&[]);
     let rest = "sun = [0.9, 0.4, 0.17]\ngravity_gradient = {}\n\
                 solar_pressure = { force = [1e-4, 2e-4, 0], at = [0.1, 0, 0.2] }\n\
-                drag = { density = 1e-12, altitude = 6e5, scale_height = 6e4, plates = [{ area = 1.0, normal = [1, 0, 0], at = [0, 0.1, 0.2] }] }\n\
+                drag = { density = 1e-12, altitude = 6e5, scale_height = 6e4, plates = [{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }] }\n\
                 magnetic_field = {}\ndipole = { moment = [1, 0, 0.5] }\n";
     let kepler = scenario(&drifting(KEPLER, rest));
     let sky = kepler.orbit_environment();
@@ -160,12 +160,15 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
         drifting(
             KEPLER,
             &format!(
-                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }}, {{ area = 1.0, normal = [0, 0, 1], at = [0, 0.1, 0.2] }}] }}\n"
+                "sun = [0.9, 0.4, 0.17]\ndrag = {{ {keys}, plates = [{{ area = 1.0, normal = [-1, 0, 0], at = [0, 0.1, 0.2] }}] }}\n"
             ),
         )
     };
     let torque = |keys: &str| {
-        let trace = traced(&scenario(&drag(keys)));
+        // A body that hardly moves, whatever the density.
+        let heavy = drag(keys)
+            .replace("[[20, 0, 0], [0, 24, 0], [0, 0, 28]]", "[[2e7, 0, 0], [0, 2e7, 0], [0, 0, 2e7]]");
+        let trace = traced(&scenario(&heavy));
         within(&trace, "/torques", "axes", "disturbance_nm")
             .iter()
             .map(|torque| torque.abs())
@@ -174,7 +177,7 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
     let table = "model = \"table\", table = [[4e5, 2e-12], [8e5, 2e-14]]";
     for keys in ["density = 1e-12", "model = \"harris_priester\"", table] {
         let ratio = torque(&format!("{keys}, scale = 1.5")) / torque(keys);
-        assert!((ratio - 1.5).abs() < 1e-12, "{keys}: {ratio}");
+        assert!((ratio - 1.5).abs() < 1e-5, "{keys}: {ratio}");
     }
     let campaign =
         format!("{}[uncertain]\n\"environment.drag.scale\" = {{ uniform = [0.5, 2.0] }}\n", drag(table));
