@@ -17,7 +17,7 @@ const SHIPPED: [(&str, &str); 5] = [
 ];
 
 /// Runs with the estimators, actuators and bodies that the others lack.
-const OTHERS: [(&str, &str); 16] = [
+const OTHERS: [(&str, &str); 15] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
     ("rotation-nonlinear", ""),
@@ -30,7 +30,6 @@ const OTHERS: [(&str, &str); 16] = [
     ("thruster-phase-plane", "--set duration=60"),
     ("detumble-and-point", "--set duration=60"),
     ("safe-mode", "--set duration=60"),
-    ("cubesat-day", "--set duration=60"),
     ("station-keeping", "--set duration=300"),
     ("wheel-friction", "--set duration=60"),
     ("wheel-run-up", "--set duration=10"),
