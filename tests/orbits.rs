@@ -179,9 +179,12 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
         let ratio = torque(&format!("{keys}, scale = 1.5")) / torque(keys);
         assert!((ratio - 1.5).abs() < 1e-5, "{keys}: {ratio}");
     }
-    let campaign =
-        format!("{}[uncertain]\n\"environment.drag.scale\" = {{ uniform = [0.5, 2.0] }}\n", drag(table));
-    assert!(Scenario::parse("campaign.toml", &campaign).is_ok());
+    let scaled = drag(&format!("{table}, scale = 1"));
+    let campaign = format!("{scaled}[uncertain]\n\"environment.drag.scale\" = {{ uniform = [0.5, 2.0] }}\n");
+    assert_eq!(
+        Scenario::parse("campaign.toml", &campaign).map(|_| ()).map_err(|error| error.to_string()),
+        Ok(())
+    );
     let refused = |keys: &str, words: &[&str]| {
         let error = Scenario::parse("bad.toml", &drag(keys)).expect_err(words[0]).to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{error}");

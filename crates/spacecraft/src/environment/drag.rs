@@ -40,9 +40,9 @@ pub struct Drag {
     /// default: 4.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bulge_exponent: Option<Positive>,
-    /// Factor of the density, of every model.
-    #[serde(default = "unscaled", skip_serializing_if = "is_unscaled")]
-    pub scale: Positive,
+    /// Factor of the density, of every model; default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Positive>,
     /// Drag coefficient.
     #[serde(default = "coefficient")]
     pub coefficient: Positive,
@@ -72,15 +72,6 @@ fn coefficient() -> Positive {
 
 fn rotation() -> Finite {
     Finite::new(7.292_115e-5).unwrap_or_default()
-}
-
-fn unscaled() -> Positive {
-    Positive::ONE
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
-fn is_unscaled(scale: &Positive) -> bool {
-    *scale == Positive::ONE
 }
 
 /// Exponent of the bulge between those of equatorial and polar orbits.
@@ -193,7 +184,7 @@ impl Drag {
             }
             _ => self.exponential(place.position.norm(), orbit),
         };
-        density * self.scale.get()
+        density * self.scale.map_or(1.0, Positive::get)
     }
 
     /// Returns an upper bound of the density on an orbit (kg/m³).
@@ -208,7 +199,7 @@ impl Drag {
             }
             _ => self.exponential(orbit.nearest(), orbit),
         };
-        density * self.scale.get()
+        density * self.scale.map_or(1.0, Positive::get)
     }
 
     /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude in air of a density (kg/m³), in
