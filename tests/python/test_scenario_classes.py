@@ -75,7 +75,8 @@ class Builder:
             origin = origin if isinstance(origin, type) else None
             if isinstance(one, type) and issubclass(one, Part):
                 if one._tag is None or bare:
-                    if isinstance(given, dict):
+                    fields = {name.rstrip("_") for name in one.__dataclass_fields__}
+                    if isinstance(given, dict) and (one._holds_one or fields >= set(given)):
                         return self.part(one, given)
                 elif isinstance(given, dict) and list(given) == [one._tag]:
                     return self.part(one, given[one._tag])
