@@ -75,7 +75,7 @@ class Builder:
             origin = origin if isinstance(origin, type) else None
             if isinstance(one, type) and issubclass(one, Part):
                 if one._tag is None or bare:
-                    fields = {name.rstrip("_") for name in one.__dataclass_fields__}
+                    fields = {name.rstrip("_") for name in typing.get_type_hints(one, self.names)}
                     if isinstance(given, dict) and (one._holds_one or fields >= set(given)):
                         return self.part(one, given)
                 elif isinstance(given, dict) and list(given) == [one._tag]:

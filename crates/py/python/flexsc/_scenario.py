@@ -133,7 +133,7 @@ class Scenario(ScenarioAnalysis):
         return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
 
     def in_mode(self, name: str, /) -> Scenario:
-        """Return a scenario in which one of the modes of operation, `[[mode]]`, acts throughout, for linear tools.
+        """Return a scenario in which one `[[mode]]` of operation acts throughout, for linear tools.
 
         >>> flexsc.Scenario.example("safe-mode").in_mode("point")
         <flexsc.Scenario safe-mode: 9000 s, 0 modes, seed 0>
