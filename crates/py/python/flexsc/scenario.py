@@ -1139,7 +1139,7 @@ class Drag(Part):
             .csv file.
         bulge_exponent: Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the
             equator, 6 for polar ones; default: 4.
-        scale: Factor of the density, of every model.
+        scale: Factor of the density, of every model; default: 1.
         coefficient: Drag coefficient. Default: 2.2.
         rotation: Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default:
             7.292115e-05.
@@ -1164,7 +1164,7 @@ class Drag(Part):
     polar ones; default: 4.
     """
     scale: float | None = None
-    """Factor of the density, of every model."""
+    """Factor of the density, of every model; default: 1."""
     coefficient: float | None = None
     """Drag coefficient. Default: 2.2."""
     rotation: float | None = None
