@@ -45,10 +45,10 @@ pub struct Imbalance {
 pub struct Harmonic {
     /// Order k: periods per turn of the wheel; it may be fractional.
     pub order: Positive,
-    /// Force perpendicular to the axis per (rad/s)² (kg m).
+    /// Force perpendicular to the axis over the square of the speed (kg m).
     #[serde(default)]
     pub force: NonNegative,
-    /// Torque perpendicular to the axis per (rad/s)² (kg m²).
+    /// Torque perpendicular to the axis over the square of the speed (kg m²).
     #[serde(default)]
     pub torque: NonNegative,
     /// Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase).

@@ -1690,8 +1690,8 @@ class Harmonic(Part):
 
     Args:
         order: Order k: periods per turn of the wheel; it may be fractional.
-        force: Force perpendicular to the axis per (rad/s)² (kg m). Default: 0.0.
-        torque: Torque perpendicular to the axis per (rad/s)² (kg m²). Default: 0.0.
+        force: Force perpendicular to the axis over the square of the speed (kg m). Default: 0.0.
+        torque: Torque perpendicular to the axis over the square of the speed (kg m²). Default: 0.0.
         axial: Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0.
         phase: Phase of the harmonic (rad). Default: 0.0.
     """
@@ -1699,9 +1699,9 @@ class Harmonic(Part):
     order: float
     """Order k: periods per turn of the wheel; it may be fractional."""
     force: float | None = None
-    """Force perpendicular to the axis per (rad/s)² (kg m). Default: 0.0."""
+    """Force perpendicular to the axis over the square of the speed (kg m). Default: 0.0."""
     torque: float | None = None
-    """Torque perpendicular to the axis per (rad/s)² (kg m²). Default: 0.0."""
+    """Torque perpendicular to the axis over the square of the speed (kg m²). Default: 0.0."""
     axial: float | None = None
     """Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0."""
     phase: float | None = None
