@@ -116,7 +116,7 @@ impl RunLog<'_> {
         let row = |index: usize, time_ns: u64| SceneRow {
             time_ns,
             hub: HubMotion::OneAxis { angle: angles[index], rigid_angle: rigid[index] },
-            modes: of_row(modal, index, count),
+            modes: nested_values(modal, index, count),
             angles: Vec::new(),
         };
         Ok(spaced(numbers(&attitude, "time_s")?, spacing).map(|(index, time)| row(index, time)).collect())
@@ -142,21 +142,21 @@ impl RunLog<'_> {
         let (drive, hinge) = (drive.unwrap_or_default(), hinge.unwrap_or_default());
         let hub = self.hub_rotations().filter(|_| hinges.is_none());
         let row = |index: usize, time_ns: u64| {
-            let modes = of_row(modal, index, count);
+            let modes = nested_values(modal, index, count);
             let logged = Quaternion::new(w[index], x[index], y[index], z[index]);
             let bent = hub.iter().flatten().zip(&modes);
             let bent = bent.fold(Vector::zeros(), |sum, (shape, x)| sum + shape * *x);
-            let mut angles = of_row(drive, index, driven);
-            angles.extend(of_row(hinge, index, hinged));
+            let mut angles = nested_values(drive, index, driven);
+            angles.extend(nested_values(hinge, index, hinged));
             SceneRow { time_ns, hub: HubMotion::ThreeAxis(logged * rotation(&-bent)), modes, angles }
         };
         Ok(spaced(numbers(&pointing, "time_s")?, spacing).map(|(index, time)| row(index, time)).collect())
     }
 }
 
-/// Returns the values of a row, of nested rows of equal widths: zeros past the end of a topic, and none if the log does
+/// Returns the values of the nested rows at a row, of equal widths: zeros past the end of a topic, and none if the log does
 /// not have it.
-fn of_row(values: &[f64], row: usize, width: usize) -> Vec<f64> {
+fn nested_values(values: &[f64], row: usize, width: usize) -> Vec<f64> {
     match values.get(row * width..(row + 1) * width) {
         Some(values) => values.to_vec(),
         None if values.is_empty() => Vec::new(),

@@ -7,7 +7,7 @@ use std::io::Write;
 
 use clap::ValueEnum;
 use flexsc_core::analysis::margins::{DiskMargin, PeakMargin, SignalMargins, StabilityMargins};
-use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
+use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::settling_time::SETTLING_BAND;
 use flexsc_core::formats::count::counted;
@@ -70,7 +70,6 @@ impl BreakPoint {
 pub struct LoopMargins {
     /// Name of the scenario.
     name: String,
-    opened: OpenLoop,
     margins: ScenarioMargins,
     /// Least margins over the uncertain keys.
     worst: Vec<(MarginKind, WorstCase)>,
@@ -83,7 +82,6 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
     let key = |fault: ConfigError| {
         CliError::from(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
     };
-    let opened = OpenLoop::from_scenario(scenario, args.opened.loop_break()).map_err(key)?;
     let margins =
         ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
             MarginsFault::Key(fault) => key(fault),
@@ -96,7 +94,7 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         found.map(|case| (kind, case))
     };
     let worst = kinds.map(least).collect::<Result<_, CliError>>()?;
-    Ok(LoopMargins { name, opened, margins, worst, units: args.units.units })
+    Ok(LoopMargins { name, margins, worst, units: args.units.units })
 }
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
@@ -298,7 +296,7 @@ impl Results for LoopMargins {
             "singular-values".to_owned(),
             figures::singular_values(&self.name, &self.margins.stability),
         ));
-        figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.opened)));
+        figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.margins.cut)));
         figures
     }
 

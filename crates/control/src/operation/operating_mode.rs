@@ -171,11 +171,12 @@ impl OperatingMode {
         };
         modes.iter().enumerate().find_map(|(index, mode)| {
             let named = known.modes[..index].contains(&mode.name.as_str());
-            mode.own_fault(&known, named).map(|fault| fault.within(&format!("[{index}]")))
+            mode.validate_mode(&known, named).map(|fault| fault.within(&format!("[{index}]")))
         })
     }
 
-    fn own_fault(&self, known: &Vocabulary<'_>, is_taken: bool) -> Option<ConfigError> {
+    /// Checks the name, the sensors and the leave conditions of the mode; returns the inconsistent key and the reason.
+    fn validate_mode(&self, known: &Vocabulary<'_>, is_taken: bool) -> Option<ConfigError> {
         let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         let valid = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         if self.name.is_empty() || !self.name.chars().all(valid) {

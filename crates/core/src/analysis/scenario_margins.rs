@@ -25,6 +25,9 @@ pub struct ScenarioMargins {
     /// Margins of the signals.
     #[serde(flatten)]
     pub stability: StabilityMargins,
+    /// Loop, cut open.
+    #[serde(skip)]
+    pub cut: OpenLoop,
     /// Smallest additional delay of all actuators together that makes the loop unstable (s); none if there is none.
     pub common_delay_s: Option<f64>,
     /// Settling times of each angle after a step of the target about each axis; none if they cannot be computed.
@@ -61,7 +64,7 @@ impl ScenarioMargins {
         let stability = StabilityMargins::new(&cut).map_err(MarginsFault::Unstable)?;
         let common_delay_s = common_delay(scenario, &stability).map_err(MarginsFault::Key)?;
         let settling = settling_times(scenario).unwrap_or_default();
-        Ok(Self { stability, common_delay_s, settling })
+        Ok(Self { stability, cut, common_delay_s, settling })
     }
 }
 

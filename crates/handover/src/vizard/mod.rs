@@ -27,7 +27,7 @@ use messages::{
     VizCelestialBody, VizEpoch, VizMessage, VizModel, VizSensor, VizSettings, VizSpacecraft, VizThruster,
     VizTime, VizWheel,
 };
-use pulses::{jet_pulses, of_parts, open_parts};
+use pulses::{jet_pulses, nested_numbers, open_parts};
 
 /// Astronomical unit (m).
 const UNIT: f64 = 149_597_870_700.0;
@@ -275,7 +275,8 @@ impl Equipment {
                 ..VizWheel::default()
             }));
             let width = made.wheels.len();
-            let values = |field: &str, row: usize| of_parts(wheels.as_ref(), "wheels", field, row, width);
+            let values =
+                |field: &str, row: usize| nested_numbers(wheels.as_ref(), "wheels", field, row, width);
             let row = |row: usize| [values("speed_rad_s", row), values("torque_nm", row)];
             made.wheel_rows = wheels.iter().flat_map(distinct_rows).map(row).collect();
         } else if let Some(table) = wheel {

@@ -80,7 +80,13 @@ pub fn open_parts(pulses: &[JetPulse], times: &[u64]) -> Vec<f64> {
 }
 
 /// Returns the numbers of a field of nested rows at a row; empty if the log has no such table.
-pub fn of_parts(table: Option<&Columns>, name: &str, field: &str, row: usize, width: usize) -> Vec<f64> {
+pub fn nested_numbers(
+    table: Option<&Columns>,
+    name: &str,
+    field: &str,
+    row: usize,
+    width: usize,
+) -> Vec<f64> {
     let Some(Column::Rows(_, inner)) = table.and_then(|table| table.get(name)) else { return Vec::new() };
     let values = inner.numbers(field).unwrap_or_default();
     values.get(row * width..(row + 1) * width).unwrap_or_default().to_vec()

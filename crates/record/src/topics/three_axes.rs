@@ -250,7 +250,7 @@ rows! {
         sensor: u64,
         /// The body: `sun`, `moon` or `limb`.
         body: String,
-        /// Whether it begins or ends.
+        /// Start or end of the blinding.
         onset: Onset,
     }
     /// Attitude of a spatial body.
