@@ -1,0 +1,51 @@
+//! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
+
+use crate::maths::clamp;
+
+/// Derivative of the error.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ErrorDerivative {
+    /// The measured rate.
+    Measured,
+    /// The difference of two samples divided by their period.
+    Difference,
+    /// The difference of two samples: the derivative gain then has the unit of the proportional one.
+    Raw,
+}
+
+/// State of the PD law about an axis.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct PdLaw {
+    /// Proportional gain (N m/rad; for a wheel, units of its command per rad).
+    pub k_p: f64,
+    /// Derivative gain (N m s/rad; without the second where the difference is raw).
+    pub k_d: f64,
+    /// Largest torque (N m).
+    pub limit: f64,
+    /// Period of its samples (s).
+    pub period: f64,
+    /// Derivative of the error.
+    pub derivative: ErrorDerivative,
+    /// True from the first sample on.
+    pub has_last: bool,
+    /// Error that was fed back at the last sample (rad).
+    pub last: f64,
+}
+
+impl PdLaw {
+    /// Returns the torque (N m) for an error of the angle (rad) and of the rate (rad/s).
+    #[inline]
+    pub fn torque(&mut self, error: f64, rate_error: f64) -> f64 {
+        let last: f64 = if self.has_last { self.last } else { error };
+        let difference: f64 = error - last;
+        let derivative: f64 = match self.derivative {
+            ErrorDerivative::Measured => rate_error,
+            ErrorDerivative::Difference => difference / self.period,
+            ErrorDerivative::Raw => difference,
+        };
+        self.has_last = true;
+        self.last = error;
+        let torque: f64 = -self.k_p * error - self.k_d * derivative;
+        clamp(torque, -self.limit, self.limit)
+    }
+}
