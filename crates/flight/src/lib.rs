@@ -5,9 +5,17 @@
 //! such structs, enums without data, plain loops and branches. `docs/flight-code.md` describes it; a test of the translator
 //! refuses whatever is outside of it.
 #![cfg_attr(not(feature = "std"), no_std)]
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    clippy::return_self_not_must_use,
+    clippy::struct_excessive_bools,
+    clippy::trivially_copy_pass_by_ref,
+    reason = "plain structs and comparisons that also stop at NaN translate to plain C"
+)]
 
 pub mod active_damping;
 pub mod attitude_law;
+pub mod axis_motion;
 pub mod biquad;
 pub mod error_measure;
 pub mod gain_schedule;

@@ -117,8 +117,8 @@ impl RelayLaw {
         let back: f64 = self.dead_zone - self.hysteresis;
         match self.state {
             RelayState::WeakLeft => self.between_boundaries(-self.weak),
-            RelayState::PushFromRight => self.until_guard(-self.strong, Guard::at_most(back)),
-            RelayState::PushFromLeft => self.until_guard(self.strong, Guard::at_least(-back)),
+            RelayState::PushFromRight => Self::until_guard(-self.strong, Guard::at_most(back)),
+            RelayState::PushFromLeft => Self::until_guard(self.strong, Guard::at_least(-back)),
             RelayState::BrakeFromRight => self.until_braked(self.strong, now),
             RelayState::BrakeFromLeft => self.until_braked(-self.strong, now),
             RelayState::Start | RelayState::WeakRight => self.between_boundaries(self.weak),
@@ -133,7 +133,7 @@ impl RelayLaw {
     }
 
     /// Returns a torque (N m) that acts until a guard trips.
-    fn until_guard(&self, torque: f64, guard: Guard) -> RelayCommand {
+    fn until_guard(torque: f64, guard: Guard) -> RelayCommand {
         let until: Ticks = Ticks { whole: 0, part: 0 };
         RelayCommand { torque, has_timeout: false, until, guard_count: 1, guards: [guard, guard] }
     }

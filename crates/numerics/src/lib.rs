@@ -15,6 +15,7 @@ pub mod enclosure;
 pub mod exp_branch_free;
 pub mod exponential;
 pub mod extrapolation;
+pub mod flight_types;
 pub mod gauss_legendre;
 pub mod lanes;
 pub mod normal;

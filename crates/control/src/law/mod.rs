@@ -39,6 +39,7 @@ mod tunable;
 use std::ops::Deref;
 
 use flexsc_dynamics::guard::Guard;
+use flexsc_flight::axis_motion::AxisReference;
 use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,7 +54,7 @@ use flexsc_numerics::time::{Instant, Span};
 
 use crate::state_estimate::{DampingStatus, StateEstimate};
 
-pub use active_damping::{ActiveDamping, ActiveDampingState, DampingGuards};
+pub use active_damping::{ActiveDamping, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
 pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
@@ -72,10 +73,10 @@ pub use output_quantity::OutputQuantity;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis_laws::PerAxisLaws;
 pub use phase_plane::{AttitudeTarget, PhasePlane};
-pub use relay::{Relay, RelaySides};
+pub use relay::{Relay, RelayRun, RelaySides};
 pub use stages::{Stage, Stages};
 pub use state_space::{StateSpace, TimeDomain};
-pub use switching_lines::{SwitchingLines, error_band};
+pub use switching_lines::{error_band, switching_lines};
 pub use target_frame::TargetFrame;
 pub use three_axis_law::{ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput};
 pub use torque_conditions::TorqueConditions;
@@ -187,7 +188,7 @@ pub trait Law: Part {
     fn enter_mode(&mut self, _mode: usize) {}
 
     /// Returns the relay law, if the law is one.
-    fn as_relay(&mut self) -> Option<&mut Relay> {
+    fn as_relay(&mut self) -> Option<&mut RelayRun> {
         None
     }
 
@@ -304,6 +305,12 @@ impl Setpoint {
         // Without a rate, the elapsed time has no effect.
         let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
         (self.angle + travel, self.rate)
+    }
+
+    /// Returns the reference at an instant as flight code has it.
+    pub fn flight_reference(&self, now: Instant) -> AxisReference {
+        let (angle, rate) = self.at(now);
+        AxisReference { angle, rate, acceleration: self.acceleration }
     }
 }
 
