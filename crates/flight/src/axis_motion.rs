@@ -1,5 +1,7 @@
 //! Inputs of a law about an axis: the estimated motion and its reference.
 
+use crate::maths::sqrt;
+
 /// Estimated motion about an axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct AxisMotion {
@@ -28,4 +30,10 @@ pub struct AxisReference {
     pub rate: f64,
     /// Feedforward acceleration (rad/s²).
     pub acceleration: f64,
+}
+
+/// Returns the length of the rotation vector (rad) with these components (rad).
+#[inline]
+pub fn total_angle(roll: f64, pitch: f64, yaw: f64) -> f64 {
+    sqrt(roll * roll + pitch * pitch + yaw * yaw)
 }

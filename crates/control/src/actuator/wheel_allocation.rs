@@ -1,6 +1,6 @@
 //! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
-use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate};
+use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::flight_vector;
 use nalgebra::{Cholesky, Matrix3};
@@ -61,8 +61,15 @@ impl Allocation {
 
     /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
     pub fn torques(&self, demanded: &Vector) -> Vec<f64> {
+        self.limited_torques(demanded, f64::INFINITY)
+    }
+
+    /// Returns the torques of all wheels that give the torque `demanded` about the three axes (N m), or less about the same
+    /// axis if one of them would exceed `limit` (N m).
+    pub fn limited_torques(&self, demanded: &Vector, limit: f64) -> Vec<f64> {
         let mut wheels = self.wheels.clone();
         allocate(&mut wheels, &flight_vector(demanded), self.is_least_largest());
+        limit_torques(&mut wheels, limit);
         wheels.iter().map(|wheel| wheel.torque).collect()
     }
 

@@ -58,7 +58,7 @@ pub use active_damping::{ActiveDamping, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
 pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
-pub use controllers::{Controllers, Event};
+pub use controllers::{AxisDecision, Controllers, Event};
 pub use direction_motion::{DirectionMotion, SkyDirection};
 pub use direction_pair::{DirectionPair, PointedAxis};
 pub use distribution::TorqueDistribution;
