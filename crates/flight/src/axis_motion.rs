@@ -1,6 +1,6 @@
 //! Inputs of a law about an axis: the estimated motion and its reference.
 
-use crate::maths::sqrt;
+use crate::square_root::sqrt;
 
 /// Estimated motion about an axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
