@@ -1,0 +1,41 @@
+//! Source of an exported control system: the translated flight code, and the functions that call it.
+
+use std::fmt::Write as _;
+
+use super::{Plan, calls};
+use crate::control_system::{ControlSystem, LawsOfAxes};
+use crate::translate::Translation;
+
+/// Returns the paths of the functions of the flight code that the exported functions call.
+pub fn roots(system: &ControlSystem) -> Vec<&'static str> {
+    let mut roots = vec!["binary64::infinity"];
+    match system {
+        ControlSystem::Relays(_) => roots.extend(["relay::RelayLaw::decide", "relay::PolledRelay::step"]),
+        ControlSystem::Sampled(laws) => {
+            if laws.axis_count() == 3 {
+                roots.push("axis_motion::total_angle");
+            }
+            match laws.laws {
+                LawsOfAxes::Pd(_) => roots.push("pd::PdLaw::step"),
+                LawsOfAxes::PhasePlane(..) => roots.push("phase_plane::PhasePlaneLaw::step"),
+                LawsOfAxes::Attitude(_) => {
+                    roots.extend(["attitude_law::AttitudeFeedback::step", "torque_distribution::torque"]);
+                }
+            }
+            if laws.wheels.is_some() {
+                roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques", "vector3::Vector3::dot"]);
+            }
+        }
+    }
+    roots
+}
+
+/// Returns the source.
+pub fn source(plan: &Plan<'_>, translation: &Translation) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "/* Control system of {}: see {}.h. */\n\n#include \"{}.h\"\n", plan.origin, plan.prefix, plan.prefix);
+    text.push_str(translation.definitions.trim());
+    text.push_str("\n\n");
+    text.push_str(&calls::functions(plan));
+    text
+}
