@@ -33,7 +33,7 @@ struct PairCase {
     reference: fn(f64, f64) -> f64,
 }
 
-const CASES: [Case; 18] = [
+const CASES: [Case; 20] = [
     Case { name: "sin", function: sin, reference: libm::sin, range: [-10.0, 10.0] },
     Case { name: "cos", function: cos, reference: libm::cos, range: [-10.0, 10.0] },
     Case { name: "tan", function: tan, reference: libm::tan, range: [-10.0, 10.0] },
@@ -46,6 +46,8 @@ const CASES: [Case; 18] = [
     Case { name: "asin", function: asin, reference: libm::asin, range: [-1.0, 1.0] },
     Case { name: "acos", function: acos, reference: libm::acos, range: [-1.0, 1.0] },
     Case { name: "exp", function: exp, reference: libm::exp, range: [-750.0, 715.0] },
+    Case { name: "exp of small numbers", function: exp, reference: libm::exp, range: [-3.0, 3.0] },
+    Case { name: "expm1 of small numbers", function: expm1, reference: libm::expm1, range: [-1.5, 1.5] },
     Case { name: "expm1", function: expm1, reference: libm::expm1, range: [-45.0, 45.0] },
     Case { name: "log", function: log, reference: libm::log, range: [0.0, 4.0] },
     Case { name: "sqrt", function: sqrt, reference: libm::sqrt, range: [0.0, 100.0] },
