@@ -10,6 +10,7 @@ mod damping;
 mod error;
 mod examples;
 mod export;
+mod export_c;
 mod figure_files;
 pub mod figures;
 mod files;
@@ -141,6 +142,14 @@ enum Verb {
     Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
     Export(export::ExportArgs),
+    /// Write the control system of a scenario as C99
+    ///
+    /// Translated from the Rust code that runs call, with a driver, vectors of a run, and a Makefile that compares them by bits: relays, PD, phase-plane and attitude laws.
+    ExportC(export_c::ExportCArgs),
+    /// Record the calls of the control system in a run
+    ///
+    /// Inputs and outputs of each call, which the driver of `flexsc export-c` replays.
+    Vectors(export_c::VectorsArgs),
     /// Inspect a log, or recover an incomplete one
     Log(log::LogArgs),
     /// Write a viewer layout for a log or a scenario
@@ -207,6 +216,8 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Plot(args) => plot::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
+        Verb::ExportC(args) => export_c::run(&args),
+        Verb::Vectors(args) => export_c::run_vectors(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),
