@@ -108,6 +108,7 @@ mod bad_spatial;
 mod bad_structures;
 mod craft_written;
 mod documented;
+mod flight_code;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;
