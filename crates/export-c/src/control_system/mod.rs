@@ -58,6 +58,10 @@ impl ControlSystem {
         if !scenario.mode.is_empty() {
             return Err(NotExportable::new("mode", "changes the laws in a run: export the law of one mode"));
         }
+        if scenario.adaptation.is_some() {
+            let reason = "tunes the law in a run: leave it out, and write the value that it reaches";
+            return Err(NotExportable::new("adaptation", reason));
+        }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
             _ => Ok(Self::Sampled(SampledLaws::new(scenario, &laws)?)),
