@@ -7,20 +7,26 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub mod active_damping;
+pub mod attitude_filter;
+pub mod attitude_history;
 pub mod attitude_law;
+pub mod attitude_observation;
 pub mod biquad;
+pub mod covariance_propagation;
 pub mod error_measure;
 pub mod gain_schedule;
 pub mod guard;
 pub mod inverse_trigonometry;
 pub mod maths;
 pub mod matrix3;
+pub mod matrix6;
 pub mod pd;
 pub mod phase_plane;
 pub mod pulse_timing;
 pub mod pulse_width;
 pub mod quaternion;
 pub mod relay;
+pub mod stumpff;
 pub mod switching_lines;
 pub mod ticks;
 pub mod torque_distribution;
