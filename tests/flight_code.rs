@@ -38,7 +38,8 @@ fn text(output: &Output) -> String {
 /// Returns the hashes in the description of an exported control system.
 fn hashes(dir: &Dir, within: &str) -> BTreeMap<u64, String> {
     let readme = dir.text(&format!("{within}/README.md"));
-    let rows = readme.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |")?.split_once(" | "));
+    let rows =
+        readme.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |")?.split_once(" | "));
     rows.filter_map(|(cycles, hash)| Some((cycles.parse().ok()?, hash.to_owned()))).collect()
 }
 
@@ -71,14 +72,19 @@ fn exported_laws_have_equal_bits_in_every_home() {
     }
     for name in EXPORTED {
         let dir = Dir::with(&[name]);
-        dir.run(&format!("export-c {name}.toml -o out --calls 2000")).exits(0).says(&["calls of the run as vectors"]);
+        dir.run(&format!("export-c {name}.toml -o out --calls 2000"))
+            .exits(0)
+            .says(&["calls of the run as vectors"]);
         let hash = &hashes(&dir, "out")[&20_000];
         let output = make(&dir, "out", &["check-all", "CYCLES=20000", &format!("HASH={hash}")]);
         let said = text(&output);
         assert!(output.status.success(), "{name}: {said}");
         said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
         if is_installed("gcc") {
-            assert!(said.contains("gcc -O0: 20000 cycles") && said.contains("gcc -O3: 20000 cycles"), "{said}");
+            assert!(
+                said.contains("gcc -O0: 20000 cycles") && said.contains("gcc -O3: 20000 cycles"),
+                "{said}"
+            );
         }
     }
 }
@@ -101,7 +107,8 @@ fn contraction_and_fast_mathematics_are_found() {
     let output = make(&dir, "out", &["driver", "CFLAGS=-O2 -ffast-math"]);
     assert!(!output.status.success() && text(&output).contains("#error"), "{}", text(&output));
     // A changed gain differs from the vectors.
-    let source = dir.text("out/earth_observer.c").replace("total_angle = axis", "total_angle = 1.0000001 * axis");
+    let source =
+        dir.text("out/earth_observer.c").replace("total_angle = axis", "total_angle = 1.0000001 * axis");
     dir.write("out/earth_observer.c", source);
     let output = make(&dir, "out", &["check"]);
     assert!(!output.status.success() && text(&output).contains("call "), "{}", text(&output));
@@ -127,9 +134,18 @@ fn scenarios_without_plain_laws_are_refused_at_their_key() {
             ["slew-wheel-lqg.toml:", "`law.state_space`", "has no code for flight"],
         ),
         ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "export the law of one mode"]),
-        ("vectors slew-wheel-lqg.toml -o out.bin", ["slew-wheel-lqg.toml:", "`law.state_space`", "`relay`, `pd`"]),
-        ("export-c relay-sampled.toml -o out --name 9", ["--name 9", "lower-case letters", "begin with a letter"]),
-        ("export-c relay-sampled.toml -o relay-sampled.toml", ["relay-sampled.toml", "must be a directory", "is a file"]),
+        (
+            "vectors slew-wheel-lqg.toml -o out.bin",
+            ["slew-wheel-lqg.toml:", "`law.state_space`", "`relay`, `pd`"],
+        ),
+        (
+            "export-c relay-sampled.toml -o out --name 9",
+            ["--name 9", "lower-case letters", "begin with a letter"],
+        ),
+        (
+            "export-c relay-sampled.toml -o relay-sampled.toml",
+            ["relay-sampled.toml", "must be a directory", "is a file"],
+        ),
         ("vectors relay-sampled.toml -o out.txt", ["out.txt", "must end in", ".bin"]),
         ("export-c relay-sampled.toml -o out --calls 0", ["--calls", "0", "1..="]),
     ] {
@@ -146,7 +162,9 @@ fn an_export_is_written_again_and_does_not_replace_other_files() {
     dir.run("export-c relay-sampled.toml -o out").exits(0);
     assert_eq!(dir.read("out/relay_sampled.c"), first);
     dir.write("out/relay_sampled.c", "changed");
-    dir.run("export-c relay-sampled.toml -o out").exits(2).says(&["already exists, with other content", "--force"]);
+    dir.run("export-c relay-sampled.toml -o out")
+        .exits(2)
+        .says(&["already exists, with other content", "--force"]);
     dir.run("export-c relay-sampled.toml -o out --force").exits(0);
     assert_eq!(dir.read("out/relay_sampled.c"), first);
     dir.run("vectors relay-sampled.toml -o all.bin --calls 20000").exits(0).says(&["calls"]);

@@ -60,7 +60,10 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         return Err(CliError::Arguments(format!("-o {path}: must be a directory, and is a file")));
     }
     let scenario = scenario::load(&args.scenario, &args.set, None)?;
-    let origin = args.scenario.file_name().map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned());
+    let origin = args
+        .scenario
+        .file_name()
+        .map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned());
     let prefix = match &args.name {
         Some(name) => checked_name(name)?,
         None => default_name(&args.scenario),
@@ -124,8 +127,11 @@ fn checked_name(name: &str) -> Result<String, CliError> {
 /// Returns the prefix that a scenario's file name gives.
 fn default_name(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let mut name: String =
-        stem.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' }).take(LONGEST_NAME).collect();
+    let mut name: String = stem
+        .chars()
+        .map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' })
+        .take(LONGEST_NAME)
+        .collect();
     if !name.starts_with(|first: char| first.is_ascii_lowercase()) {
         name = format!("control_{name}").chars().take(LONGEST_NAME).collect();
     }

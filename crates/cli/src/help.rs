@@ -75,7 +75,10 @@ const GROUPS: [(&str, &[Verb]); 4] = [
             (
                 "export-c",
                 [
-                    ("flexsc export-c relay-sampled.toml -o flight", "the relay as C99 in the directory flight"),
+                    (
+                        "flexsc export-c relay-sampled.toml -o flight",
+                        "the relay as C99 in the directory flight",
+                    ),
                     (
                         "flexsc export-c earth-observer.toml -o flight-observer --name aocs --calls 1000",
                         "names that begin with aocs, and the first 1000 calls of the run",

@@ -5,7 +5,9 @@ use flexsc_export_c::vectors;
 fn try_all() {
     for entry in std::fs::read_dir("../../scenarios").unwrap() {
         let path = entry.unwrap().path();
-        if path.extension().is_none_or(|e| e != "toml") { continue; }
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
         let scenario = Scenario::load(&path).unwrap();
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         match ControlSystem::new(&scenario) {

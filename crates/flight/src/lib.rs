@@ -20,10 +20,15 @@ extern crate std;
 
 pub mod active_damping;
 pub mod argument_reduction;
+pub mod attitude_estimator;
+pub mod attitude_filter;
+pub mod attitude_history;
 pub mod attitude_law;
+pub mod attitude_observation;
 pub mod axis_motion;
 pub mod binary64;
 pub mod biquad;
+pub mod covariance_propagation;
 pub mod error_measure;
 pub mod exponentials;
 pub mod gain_schedule;
@@ -33,6 +38,7 @@ pub mod integer_square_root;
 pub mod inverse_trigonometry;
 pub mod maths;
 pub mod matrix3;
+pub mod matrix6;
 pub mod payne_hanek;
 pub mod pd;
 pub mod phase_plane;
@@ -43,6 +49,7 @@ pub mod relay;
 // The translator takes `square_root.rs`.
 #[cfg_attr(feature = "std", path = "processor/square_root.rs")]
 pub mod square_root;
+pub mod stumpff;
 pub mod switching_lines;
 pub mod ticks;
 pub mod torque_distribution;

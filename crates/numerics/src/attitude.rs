@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 
+use flexsc_flight::quaternion as flight;
 use nalgebra::{Matrix3, Quaternion};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::flight_types::{from_quaternion, from_vector3, to_quaternion, to_vector3};
 use crate::quantity::Finite;
 
 /// Vector of three components along the body's axes x, y and z, about which it rolls, pitches and yaws.
@@ -118,23 +120,14 @@ pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
 
 /// Returns the rotation by a rotation vector (rad).
 pub fn rotation(by: &Vector) -> Quaternion<f64> {
-    let angle = by.norm();
-    if angle == 0.0 {
-        return Quaternion::new(1.0, 0.0, 0.0, 0.0);
-    }
-    let (sin, cos) = libm::sincos(0.5 * angle);
-    Quaternion::from_parts(cos, by * (sin / angle))
+    from_quaternion(&flight::Quaternion::rotation(&to_vector3(by)))
 }
 
 /// Returns the rotation vector from one attitude to another, in the body's axes and on the shorter way: its length is the angle
 /// (rad), from 0 to pi, and [`rotation`] by it makes the one of the other.
 #[inline]
 pub fn rotation_vector(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
-    let difference = from.conjugate() * to;
-    let sine = difference.vector().norm();
-    let twice = libm::copysign(2.0, difference.w);
-    let scale = if sine == 0.0 { 1.0 } else { libm::atan2(sine, difference.w.abs()) / sine };
-    difference.vector() * (twice * scale)
+    from_vector3(&to_quaternion(from).rotation_to(&to_quaternion(to)))
 }
 
 /// Converts a scenario's numbers to a vector.

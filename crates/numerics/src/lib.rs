@@ -28,7 +28,6 @@ pub mod quantity;
 pub mod random;
 pub mod scalar_search;
 pub mod simplex;
-pub mod stumpff;
 pub mod swing_damped;
 pub mod swing_integral;
 pub mod swing_series;

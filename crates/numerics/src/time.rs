@@ -84,6 +84,12 @@ impl Span {
         Self(Ticks::from_seconds(seconds))
     }
 
+    /// Returns the span as flight code counts it.
+    #[inline]
+    pub fn ticks(self) -> Ticks {
+        self.0
+    }
+
     /// Creates a span from femtoseconds.
     #[inline]
     pub fn from_femtoseconds(femtoseconds: i64) -> Self {

@@ -2,7 +2,7 @@
 
 use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::flight_types::flight_vector;
+use flexsc_numerics::flight_types::to_vector3;
 use nalgebra::{Cholesky, Matrix3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,7 +41,7 @@ impl Allocation {
         let solved = Cholesky::new(gram)?.inverse();
         let null = null_vector(axes);
         let wheel = |(index, axis): (usize, &Vector)| AllocatedWheel {
-            share: flight_vector(&(solved * axis)),
+            share: to_vector3(&(solved * axis)),
             null: null.map_or(0.0, |null| null[index]),
             torque: 0.0,
         };
@@ -68,7 +68,7 @@ impl Allocation {
     /// axis if one of them would exceed `limit` (N m).
     pub fn limited_torques(&self, demanded: &Vector, limit: f64) -> Vec<f64> {
         let mut wheels = self.wheels.clone();
-        allocate(&mut wheels, &flight_vector(demanded), self.is_least_largest());
+        allocate(&mut wheels, &to_vector3(demanded), self.is_least_largest());
         limit_torques(&mut wheels, limit);
         wheels.iter().map(|wheel| wheel.torque).collect()
     }

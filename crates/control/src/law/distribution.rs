@@ -2,7 +2,7 @@
 
 use flexsc_flight::torque_distribution;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::flight_types::{flight_matrix, flight_vector};
+use flexsc_numerics::flight_types::{to_matrix3, to_vector3};
 use nalgebra::Matrix3;
 
 use super::Command;
@@ -71,9 +71,8 @@ impl TorqueDistribution {
                 |command| if let Command::Acceleration(acceleration) = command { acceleration } else { 0.0 },
             );
         let [acceleration, rate, stored] =
-            [Vector::from(accelerations), rate, Vector::from(stored)].map(|v| flight_vector(&v));
-        let torque =
-            torque_distribution::torque(&flight_matrix(&self.inertia), &acceleration, &rate, &stored);
+            [Vector::from(accelerations), rate, Vector::from(stored)].map(|v| to_vector3(&v));
+        let torque = torque_distribution::torque(&to_matrix3(&self.inertia), &acceleration, &rate, &stored);
         [torque.x, torque.y, torque.z]
     }
 }

@@ -2,7 +2,9 @@
 
 use flexsc_control::law::AxisDecision;
 use flexsc_control::sensor::{Orientation, Reading};
+use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::time::Instant;
+use nalgebra::Quaternion;
 
 use super::Simulation;
 
@@ -22,8 +24,8 @@ pub struct SensorSample {
     pub now: Instant,
     /// Reading of each sensor, in the order of the scenario; `None` of a sensor that is not due or silent.
     pub readings: Vec<Option<Reading>>,
-    /// Estimated attitude from which angles are counted at the sample.
-    pub origin: Orientation,
+    /// True attitude; `None` of a body with one axis.
+    pub attitude: Option<Quaternion<f64>>,
 }
 
 /// Decision of the laws at one instant.
@@ -57,13 +59,16 @@ impl Simulation {
 
     /// Records a sample that was just taken.
     pub(super) fn trace_sample(&mut self, now: Instant) {
-        if let Some(trace) = &mut self.laws.trace {
-            trace.push(ControlCall::Sample(SensorSample {
-                now,
-                readings: self.sensors.new_readings.clone(),
-                origin: *self.estimation.origin(),
-            }));
-        }
+        let Some(trace) = &mut self.laws.trace else { return };
+        let origin = self.estimation.origin();
+        let attitude = if let Orientation::Attitude(target) = origin {
+            let beyond = |axis: usize| self.plant.about_axis(axis, origin).rigid_angle;
+            Some(target * rotation(&Vector::from([0, 1, 2].map(beyond))))
+        } else {
+            None
+        };
+        let readings = self.sensors.new_readings.clone();
+        trace.push(ControlCall::Sample(SensorSample { now, readings, attitude }));
     }
 
     /// Records the decisions that the actuator has just taken.

@@ -3,7 +3,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::law::{Authority, LawKind};
-use flexsc_core::numerics::flight_types::flight_matrix;
+use flexsc_core::numerics::flight_types::to_matrix3;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_flight::active_damping::ElasticRateEstimate;
 use flexsc_flight::attitude_law::AttitudeFeedback;
@@ -68,7 +68,7 @@ impl SampledLaws {
             let reason = "has laws with different periods: give them one period";
             return Err(NotExportable::new("law.per_axis", reason));
         }
-        let inertia = flight_matrix(scenario.study.distribution(scenario).inertia());
+        let inertia = to_matrix3(scenario.study.distribution(scenario).inertia());
         Ok(Self { period, laws: of_axes, inertia, wheels: wheels(scenario) })
     }
 

@@ -65,7 +65,7 @@ pub fn from_python(object: &Bound<'_, PyAny>) -> PyResult<Option<FilterUpdate>> 
     }
     let covariance = Matrix6::from_fn(|row, column| rows[row][column]);
     let learnt = learnt.filter(|learnt| !learnt.is_none()).map(innovation).transpose()?;
-    Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance, elastic: None }, learnt)))
+    Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance }, learnt)))
 }
 
 /// Returns the filter's row of the log, for this true orientation and true bias of the gyro (rad/s).

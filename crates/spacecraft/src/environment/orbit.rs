@@ -4,6 +4,7 @@
 //! the orbit's rate about -y.
 
 use flexsc_numerics::attitude::{Attitude, Vector};
+use flexsc_numerics::flight_types::{from_vector3, to_quaternion, to_vector3};
 use flexsc_numerics::quantity::Positive;
 use nalgebra::Quaternion;
 
@@ -37,6 +38,5 @@ impl Orbit {
 
 /// Transforms an inertial vector to the body's axes; the attitude quaternion need not have length 1.
 pub fn to_body(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
-    let rotated = attitude.conjugate() * Quaternion::from_imag(*v) * attitude;
-    rotated.vector() / attitude.norm_squared()
+    from_vector3(&to_quaternion(attitude).to_body(&to_vector3(v)))
 }

@@ -7,14 +7,15 @@
 
 use std::sync::Arc;
 
+use flexsc_flight::attitude_filter::GyroNoise;
+use flexsc_flight::stumpff::Stumpff;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::exponential::exponential;
-use flexsc_numerics::stumpff::stumpff;
 use flexsc_spacecraft::environment::to_body;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 
 use super::elastic::FilterModes;
-use super::measurement::{GyroNoise, perpendicular_pair};
+use super::measurement::perpendicular_pair;
 use crate::sensor::VectorMeasurement;
 
 /// States of the elastic modes of a filter at one instant.
@@ -177,7 +178,8 @@ impl ElasticFilterStates {
         let (first, order) = (transition.nrows(), self.covariance.nrows());
         let mut transition = transition.resize(order, order, 0.0);
         let mut added = added.resize(order, order, 0.0);
-        let ([_, half, sixth, ..], across) = (stumpff(turn.norm_squared()), turn.cross_matrix());
+        let (Stumpff { c2: half, c3: sixth, .. }, across) =
+            (Stumpff::at(turn.norm_squared()), turn.cross_matrix());
         for (index, (mode, [grown, rate])) in self.known.each.iter().zip(&self.grown).enumerate() {
             let state = first + index;
             // The derivative of the gyro mount's rotation relative to the hub enters the hub's attitude with a minus.

@@ -1,5 +1,6 @@
 //! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
 
+use flexsc_flight::attitude_estimator::{gyro_exposure, observation_exposure};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Instant;
@@ -47,44 +48,28 @@ impl AttitudeFilterRun {
             since: Instant::START,
             sampled: None,
             torque: Vector::zeros(),
-            last_correction: Correction::default(),
+            last_correction: Correction::NONE,
             used: false,
         }
     }
 
     /// Returns the filter's initial state for the true attitude at the start.
     fn prior(&mut self, attitude: &Quaternion<f64>) -> AttitudeFilterState {
-        let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
-        let mut off = [Vector::zeros(); 2];
-        if self.spec.prior == Prior::Drawn {
-            for (off, deviation) in off.iter_mut().zip(deviations) {
-                *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
-            }
-        }
-        let mut filter =
-            AttitudeFilterState::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
-        filter.elastic = self
-            .setting
-            .modes
-            .clone()
-            .map(|known| Box::new(ElasticFilterStates::new(known, &filter.covariance)));
-        filter
+        initial_state(&self.spec, &self.setting, &mut self.draws, attitude)
     }
 
     /// Propagates and corrects the filter with the readings of this sample.
     fn read(&mut self, now: Instant, readings: &[Option<Reading>]) {
         let Some(history) = &mut self.history else { return };
-        let mut corrections = Vec::new();
+        let mut last = None;
         // The gyro comes first: then the filter has reached the time of any other measurement of this sample.
         for (role, (_, reading)) in
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Gyro { .. }))
         {
             if let (Some(rate), SensorRole::Gyro { latency }) = (reading.rate, role) {
-                // Before the first latency has elapsed, the rate is that at the start.
-                let exposed =
-                    if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
+                let exposed = Instant::from_ticks(gyro_exposure(now.ticks(), latency.ticks()));
                 self.rate = rate.into();
-                corrections.extend(history.add_gyro(exposed, self.rate));
+                last = history.add_gyro(exposed, self.rate).or(last);
                 self.since = exposed;
             }
         }
@@ -92,8 +77,7 @@ impl AttitudeFilterRun {
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
-            // A measurement at the start has no latency.
-            let exposed = if now == Instant::START { now } else { now.before(*latency) };
+            let exposed = Instant::from_ticks(observation_exposure(now.ticks(), latency.ticks()));
             let measured = match (reading.sight, reading.at) {
                 (Some(measurement), _) => {
                     AttitudeMeasurement::Vector(self.setting.with_reference(measurement, exposed))
@@ -101,16 +85,12 @@ impl AttitudeFilterRun {
                 (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
                 (None, Orientation::Angle(_)) => continue,
             };
-            corrections.extend(history.add_measurement(DelayedMeasurement {
-                exposed,
-                measured,
-                noise: *noise,
-                gain: gain.as_deref().copied(),
-                sensor,
-            }));
+            let gain = gain.as_deref().copied();
+            let measurement = DelayedMeasurement { exposed, measured, noise: *noise, gain, sensor };
+            last = history.add_measurement(&measurement).or(last);
         }
-        self.used = !corrections.is_empty();
-        self.last_correction = corrections.pop().unwrap_or_default();
+        self.used = last.is_some();
+        self.last_correction = last.unwrap_or(Correction::NONE);
     }
 
     /// Returns the attitude at `now`, propagated with the last gyro reading.
@@ -118,17 +98,12 @@ impl AttitudeFilterRun {
         if let Some((_, attitude)) = self.sampled.filter(|(sampled, _)| *sampled == now) {
             return Some(attitude);
         }
-        let filter = self.history.as_ref()?.latest();
-        let mut turn = (self.rate - filter.bias) * now.since(self.since).seconds();
-        if let Some(elastic) = &filter.elastic {
-            turn -= elastic.rates()[1] * now.since(self.since).seconds();
-        }
-        Some(filter.attitude * rotation(&turn))
+        Some(self.history.as_ref()?.attitude_after(&self.rate, now.since(self.since).seconds()))
     }
 
     /// Returns the elastic part of the last gyro reading (rad/s) that is removed from the rate for the laws.
     fn elastic_rate(&self) -> Vector {
-        let elastic = self.history.as_ref().and_then(|history| history.latest().elastic.as_deref());
+        let elastic = self.history.as_ref().and_then(FilterHistory::modes);
         elastic.map_or_else(Vector::zeros, |elastic| {
             let [hub, mount] = elastic.rates();
             if elastic.known.rigid { hub + mount } else { mount }
@@ -138,12 +113,29 @@ impl AttitudeFilterRun {
     /// Returns the attitude that laws read, from that of the hub: without the rotation by known modes if laws read the
     /// rigid motion.
     fn attitude_for_laws(&self, hub: Quaternion<f64>) -> Quaternion<f64> {
-        let elastic = self.history.as_ref().and_then(|history| history.latest().elastic.as_deref());
+        let elastic = self.history.as_ref().and_then(FilterHistory::modes);
         match elastic.filter(|elastic| elastic.known.rigid) {
             Some(elastic) => hub * rotation(&-elastic.hub_rotation()),
             None => hub,
         }
     }
+}
+
+/// Returns the initial state of a filter for the true attitude at the start; `draws` supplies a drawn prior.
+pub fn initial_state(
+    spec: &AttitudeFilter,
+    setting: &FilterSetup,
+    draws: &mut Stream,
+    attitude: &Quaternion<f64>,
+) -> AttitudeFilterState {
+    let deviations = [spec.initial.angle.get(), spec.initial.bias.get()];
+    let mut off = [Vector::zeros(); 2];
+    if spec.prior == Prior::Drawn {
+        for (off, deviation) in off.iter_mut().zip(deviations) {
+            *off = Vector::from_fn(|_, _| deviation * draws.normal());
+        }
+    }
+    AttitudeFilterState::new(attitude * rotation(&off[0]), setting.bias + off[1], deviations)
 }
 
 impl FilterSetup {
@@ -183,7 +175,7 @@ impl AttitudeFilterRun {
             bias_rad_s: filter.bias[axis],
             bias_error_rad_s: -bias_error[axis],
             bias_sd_rad_s: bias_sd[axis],
-            innovation_rad: self.last_correction.innovation[axis],
+            innovation_rad: self.last_correction.innovation.component(axis),
         };
         Some(AttitudeEstimate {
             q_w: estimate.w,
@@ -193,14 +185,14 @@ impl AttitudeFilterRun {
             axes: [0, 1, 2].map(axis).into(),
             nees: filter.normalised(&error) / AttitudeEstimate::STATES,
             nis: self.last_correction.nis / AttitudeEstimate::MEASUREMENTS,
-            numbers: self.last_correction.numbers,
+            numbers: self.last_correction.components.into(),
             measured: self.used.into(),
         })
     }
 
     /// Returns the log row of the elastic modes; `None` if the filter does not estimate any.
     fn elastic_row(&self) -> Option<ElasticEstimates> {
-        let elastic = self.history.as_ref()?.latest().elastic.as_deref()?;
+        let elastic = self.history.as_ref()?.modes()?;
         let each = elastic.known.each.iter().zip(&elastic.state).zip(&elastic.frequencies);
         let modes = each.zip(elastic.deviations()).map(|(((mode, state), frequency), deviation)| {
             let [displacement, rate_over_frequency] = *state;
@@ -243,8 +235,10 @@ impl Estimator for AttitudeFilterRun {
         if self.history.is_none() {
             let Orientation::Attitude(origin) = context.origin else { return };
             let beyond = Vector::from_fn(|axis, _| (context.truth)(axis).rigid_angle);
-            let filter = self.prior(&(origin * rotation(&beyond)));
-            let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
+            let state = self.prior(&(origin * rotation(&beyond)));
+            let known = self.setting.modes.clone();
+            let modes = known.map(|known| ElasticFilterStates::new(known, &state.covariance));
+            let mut history = FilterHistory::new(now, state, modes, self.setting.noise, self.setting.reach);
             history.set_torque(now, self.torque);
             self.history = Some(history);
         }
@@ -253,6 +247,7 @@ impl Estimator for AttitudeFilterRun {
         self.sampled = self.attitude(now).map(|attitude| (now, attitude));
         let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
         let (attitude, elastic) = (self.attitude_for_laws(attitude), self.elastic_rate());
+        let bias = history.bias();
         let angles = Orientation::Attitude(attitude).error_from(context.origin);
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             if self.spec.watch_only {
@@ -261,7 +256,7 @@ impl Estimator for AttitudeFilterRun {
                 }
             } else {
                 (state_estimate.angle, state_estimate.rate) =
-                    (angles[axis], self.rate[axis] - history.latest().bias[axis] - elastic[axis]);
+                    (angles[axis], self.rate[axis] - bias[axis] - elastic[axis]);
             }
         }
     }

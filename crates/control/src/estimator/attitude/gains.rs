@@ -97,21 +97,24 @@ impl GainMethod {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimator::attitude::AttitudeFilterState;
+    use flexsc_flight::attitude_filter::AttitudeBiasFilter;
+    use flexsc_flight::quaternion::Quaternion;
+    use flexsc_flight::vector3::Vector3;
     use flexsc_numerics::attitude::Vector;
+    use flexsc_numerics::flight_types::{from_matrix6, to_matrix3};
 
     #[test]
     fn steady_gains_are_those_that_the_covariance_has_in_the_end() {
         let noise = GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 };
         let (period, tracker) = (0.5, Vector::new(2.4e-5, 5e-5, 1.5e-4));
         let covariance = Matrix3::from_diagonal(&tracker.component_mul(&tracker));
-        let still = nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0);
-        let mut filter = AttitudeFilterState::new(still, Vector::zeros(), [1e-3, 1e-5]);
+        let still = Quaternion::IDENTITY;
+        let mut filter = AttitudeBiasFilter::new(still, Vector3::ZERO, 1e-3, 1e-5);
         for _ in 0..40_000 {
-            filter.correct(&still, &covariance);
-            filter.predict(&Vector::zeros(), period, &noise);
+            filter.correct(&still, &to_matrix3(&covariance));
+            filter.predict(&Vector3::ZERO, period, &noise);
         }
-        let before = filter.covariance.fixed_columns::<3>(0).into_owned();
+        let before = from_matrix6(&filter.covariance).fixed_columns::<3>(0).into_owned();
         let sum = before.fixed_rows::<3>(0) + covariance;
         let found = GainMethod::Steady.gain(&noise, period, &covariance).unwrap();
         for axis in 0..3 {

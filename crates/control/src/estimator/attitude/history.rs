@@ -1,198 +1,148 @@
-//! Recent past of an attitude filter: a delayed measurement corrects the state at its exposure.
-//!
-//! Each entry holds the filter after the events at its instant, with the gyro reading of the interval that ends there
-//! and the measurements exposed there. A delayed measurement is inserted at its exposure, and all later steps are
-//! repeated: the result is that of a filter without delays.
+//! Attitude filter and its recent past: that of flight code, or one with elastic modes.
 
-use std::collections::VecDeque;
-
-use flexsc_numerics::attitude::Vector;
+use flexsc_flight::attitude_filter::GyroNoise;
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_observation::Correction;
+use flexsc_numerics::attitude::{Vector, rotation};
+use flexsc_numerics::flight_types::{from_quaternion, from_vector3, to_vector3};
 use flexsc_numerics::time::{Instant, Span};
-use nalgebra::{Matrix3, Matrix6x3};
+use nalgebra::Quaternion;
 
-use super::filter::{AttitudeFilterState, Correction};
-use super::measurement::{AttitudeMeasurement, GyroNoise};
-
-/// Measurement that corrects the filter.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct DelayedMeasurement {
-    /// Time of the exposure.
-    pub exposed: Instant,
-    /// Measured attitude or vector.
-    pub measured: AttitudeMeasurement,
-    /// Covariance of the measurement error in the body's axes (rad², or that of the vector's unit).
-    pub noise: Matrix3<f64>,
-    /// Constant gain, of a filter that has one.
-    pub gain: Option<Matrix6x3<f64>>,
-    /// Index of the sensor.
-    pub sensor: usize,
-}
-
-impl DelayedMeasurement {
-    fn correct(&self, filter: &mut AttitudeFilterState) -> Option<Correction> {
-        if filter.elastic.is_some() {
-            return filter.correct_at_mount(self.sensor, &self.measured, &self.noise);
-        }
-        match (&self.measured, &self.gain) {
-            (AttitudeMeasurement::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
-            (AttitudeMeasurement::Vector(measurement), None) => {
-                filter.correct_vector(measurement, &self.noise)
-            }
-            (measured, Some(gain)) => filter.correct_with_gain(measured, &self.noise, gain),
-        }
-    }
-}
+use super::AttitudeFilterState;
+use super::elastic_filter::ElasticFilter;
+use super::elastic_history::ElasticHistory;
+use super::elastic_states::ElasticFilterStates;
+use super::measurement::DelayedMeasurement;
 
 /// Filter and its recent past.
 #[derive(Clone, Debug)]
-pub struct FilterHistory {
-    between: Propagation,
-    /// Largest delay of a measurement.
-    reach: Span,
-    entries: VecDeque<HistoryEntry>,
-    /// Measurements whose exposure no gyro reading covers yet.
-    early: Vec<DelayedMeasurement>,
+pub enum FilterHistory {
+    /// Filter of attitude and gyro bias.
+    Rigid(RigidHistory),
+    /// Filter of elastic modes too.
+    Elastic(ElasticHistory),
 }
 
-/// Inputs of the propagation between entries.
+/// Recent past in flight code, with its storage.
 #[derive(Clone, Debug)]
-struct Propagation {
-    noise: GyroNoise,
-    /// Torques on the modes (N m), each with the time from which on it acts.
-    torques: VecDeque<(Instant, Vector)>,
+pub struct RigidHistory {
+    counts: AttitudeHistory,
+    entries: Vec<AttitudeHistoryEntry>,
+    observations: Vec<DelayedObservation>,
 }
 
-impl Propagation {
-    /// Returns the torques (N m) between two instants, each with its duration (s).
-    fn pushed(&self, from: Instant, to: Instant) -> Vec<(f64, Vector)> {
-        let mut pieces = Vec::new();
-        let mut now = from;
-        let mut torque = Vector::zeros();
-        for (begins, next) in &self.torques {
-            if *begins >= to {
-                break;
-            }
-            if *begins > now {
-                pieces.push((begins.since(now).seconds(), torque));
-                now = *begins;
-            }
-            torque = *next;
-        }
-        pieces.push((to.since(now).seconds(), torque));
-        pieces
+impl RigidHistory {
+    fn latest(&self) -> &AttitudeHistoryEntry {
+        &self.entries[self.counts.latest()]
     }
 
-    /// Propagates a filter between two instants with the gyro reading of an interval that contains both.
-    fn carry(&self, filter: &mut AttitudeFilterState, reading: &Vector, [from, to]: [Instant; 2]) {
-        let seconds = to.since(from).seconds();
-        if filter.elastic.is_some() {
-            filter.predict_with_torques(reading, seconds, &self.noise, &self.pushed(from, to));
-        } else {
-            filter.predict(reading, seconds, &self.noise);
+    /// Lets the storage grow before a call, which then never finds it full, and rarely moves entries within it.
+    fn grow(&mut self) {
+        let Self { counts, entries, observations } = self;
+        let least = 2 * (counts.entries + counts.waiting + 2);
+        if entries.len() < least {
+            entries.resize(2 * least, AttitudeHistoryEntry::NONE);
+        }
+        if counts.applied + counts.waiting == observations.len() {
+            counts.discard_old(entries, observations);
+            let least = 2 * (counts.applied + counts.waiting + 1);
+            if observations.len() < least {
+                observations.resize(2 * least, DelayedObservation::NONE);
+            }
         }
     }
 }
 
-#[derive(Clone, Debug)]
-struct HistoryEntry {
-    time: Instant,
-    /// Gyro reading of the interval that ends at this entry (rad/s).
-    reading: Vector,
-    fixes: Vec<DelayedMeasurement>,
-    filter: AttitudeFilterState,
+fn valid(correction: Correction) -> Option<Correction> {
+    correction.is_valid.then_some(correction)
 }
 
 impl FilterHistory {
-    /// Creates the history of a filter at its first instant; `reach` is the largest delay of a measurement.
-    pub fn new(time: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
-        let entry = HistoryEntry { time, reading: Vector::zeros(), fixes: Vec::new(), filter };
-        let between = Propagation { noise, torques: VecDeque::new() };
-        Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
+    /// Creates the history of a filter at its first instant, with its modes if it estimates any; `reach` is the largest
+    /// delay of a measurement.
+    pub fn new(
+        time: Instant,
+        state: AttitudeFilterState,
+        modes: Option<ElasticFilterStates>,
+        noise: GyroNoise,
+        reach: Span,
+    ) -> Self {
+        if let Some(modes) = modes {
+            return Self::Elastic(ElasticHistory::new(time, ElasticFilter { state, modes }, noise, reach));
+        }
+        let mut entries = vec![AttitudeHistoryEntry::NONE; 4];
+        let reach = (Instant::START + reach).ticks();
+        let counts = AttitudeHistory::start(time.ticks(), state.to_flight(), noise, reach, &mut entries);
+        Self::Rigid(RigidHistory { counts, entries, observations: Vec::new() })
     }
 
-    /// Returns the filter after everything it has received.
-    pub fn latest(&self) -> &AttitudeFilterState {
-        // The history always has an entry.
-        &self.entries[self.entries.len() - 1].filter
+    /// Returns the state of the filter after everything it has received.
+    pub fn latest(&self) -> AttitudeFilterState {
+        match self {
+            Self::Rigid(history) => AttitudeFilterState::from_flight(&history.latest().filter),
+            Self::Elastic(history) => history.latest().state,
+        }
     }
 
-    /// Returns the last gyro reading (rad/s).
-    pub fn reading(&self) -> Vector {
-        self.entries[self.entries.len() - 1].reading
+    /// Returns the estimated gyro bias (rad/s).
+    pub fn bias(&self) -> Vector {
+        match self {
+            Self::Rigid(history) => from_vector3(&history.latest().filter.bias),
+            Self::Elastic(history) => history.latest().state.bias,
+        }
+    }
+
+    /// Returns the modes, if the filter estimates any.
+    pub fn modes(&self) -> Option<&ElasticFilterStates> {
+        match self {
+            Self::Rigid(_) => None,
+            Self::Elastic(history) => Some(&history.latest().modes),
+        }
+    }
+
+    /// Returns the attitude `seconds` after the last gyro reading, with the gyro's rate `reading` (rad/s).
+    pub fn attitude_after(&self, reading: &Vector, seconds: f64) -> Quaternion<f64> {
+        match self {
+            Self::Rigid(history) => {
+                from_quaternion(&history.latest().filter.attitude_after(&to_vector3(reading), seconds))
+            }
+            Self::Elastic(history) => {
+                let ElasticFilter { state, modes } = history.latest();
+                let turn = (reading - state.bias) * seconds - modes.rates()[1] * seconds;
+                state.attitude * rotation(&turn)
+            }
+        }
     }
 
     /// Sets the torque on the modes (N m) from `now` on.
     pub fn set_torque(&mut self, now: Instant, torque: Vector) {
-        let torques = &mut self.between.torques;
-        if torques.back().is_some_and(|(from, _)| *from == now) {
-            torques.pop_back();
-        }
-        torques.push_back((now, torque));
-        let oldest = self.entries[0].time;
-        while torques.get(1).is_some_and(|(from, _)| *from <= oldest) {
-            torques.pop_front();
+        if let Self::Elastic(history) = self {
+            history.set_torque(now, torque);
         }
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the corrections by measurements that
-    /// waited for it.
-    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
-        let last = &self.entries[self.entries.len() - 1];
-        if now <= last.time {
-            return Vec::new();
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements
+    /// that waited for it.
+    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Option<Correction> {
+        match self {
+            Self::Rigid(history) => {
+                history.grow();
+                let RigidHistory { counts, entries, observations } = history;
+                valid(counts.add_gyro(now.ticks(), to_vector3(&reading), entries, observations))
+            }
+            Self::Elastic(history) => history.add_gyro(now, reading),
         }
-        // The entry's own filter is propagated in place: filters are large.
-        let (from, filter) = (last.time, last.filter.clone());
-        self.entries.push_back(HistoryEntry { time: now, reading, fixes: Vec::new(), filter });
-        if let Some(entry) = self.entries.back_mut() {
-            self.between.carry(&mut entry.filter, &reading, [from, now]);
-        }
-        let mut reported = Vec::new();
-        if !self.early.is_empty() {
-            let waiting = std::mem::take(&mut self.early);
-            reported.extend(waiting.into_iter().filter_map(|fix| self.add_measurement(fix)));
-        }
-        // The last older entry stays: the interval with the oldest exposure still accepted begins there.
-        while self.entries.get(1).is_some_and(|second| second.time + self.reach <= now) {
-            self.entries.pop_front();
-        }
-        reported
     }
 
     /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.
-    pub fn add_measurement(&mut self, fix: DelayedMeasurement) -> Option<Correction> {
-        let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.time) else {
-            self.early.push(fix);
-            return None;
-        };
-        if self.entries[index].time > fix.exposed {
-            // Exposures before the oldest entry are rejected.
-            let before = index.checked_sub(1)?;
-            let (reading, from) = (self.entries[index].reading, &self.entries[before]);
-            let mut filter = from.filter.clone();
-            self.between.carry(&mut filter, &reading, [from.time, fix.exposed]);
-            self.entries
-                .insert(index, HistoryEntry { time: fix.exposed, reading, fixes: Vec::new(), filter });
-        }
-        let entry = &mut self.entries[index];
-        let correction = fix.correct(&mut entry.filter)?;
-        entry.fixes.push(fix);
-        self.again(index + 1);
-        Some(correction)
-    }
-
-    /// Repeats the propagation and the corrections of all entries from index `from` on.
-    fn again(&mut self, from: usize) {
-        let entries = self.entries.make_contiguous();
-        for index in from..entries.len() {
-            let (before, after) = entries.split_at_mut(index);
-            let ([.., last], [entry, ..]) = (before, after) else { return };
-            let HistoryEntry { time, reading, fixes, filter } = entry;
-            filter.clone_from(&last.filter);
-            self.between.carry(filter, reading, [last.time, *time]);
-            for fix in &*fixes {
-                fix.correct(filter);
+    pub fn add_measurement(&mut self, measurement: &DelayedMeasurement) -> Option<Correction> {
+        match self {
+            Self::Rigid(history) => {
+                history.grow();
+                let RigidHistory { counts, entries, observations } = history;
+                valid(counts.add_observation(measurement.to_flight(), entries, observations))
             }
+            Self::Elastic(history) => history.add_measurement(measurement),
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Attitude and gyro bias, by a multiplicative extended Kalman filter that accepts delayed measurements.
 
-mod covariance_propagation;
 mod elastic;
+mod elastic_filter;
+mod elastic_history;
 mod elastic_states;
 mod filter;
 mod filter_state;
@@ -14,9 +15,11 @@ mod tests;
 
 pub use elastic::{ElasticStates, FilterMode, FilterModes, FrequencyIdentification};
 pub use elastic_states::ElasticFilterStates;
-pub use filter::{AttitudeFilterState, Correction};
+pub use filter::AttitudeFilterState;
 pub use filter_state::AttitudeFilterRun;
+pub use flexsc_flight::attitude_filter::GyroNoise;
+pub use flexsc_flight::attitude_observation::Correction;
 pub use gains::{Complementary, GainMethod};
-pub use history::{DelayedMeasurement, FilterHistory};
-pub use measurement::{AttitudeMeasurement, GyroNoise};
+pub use history::FilterHistory;
+pub use measurement::{AttitudeMeasurement, DelayedMeasurement};
 pub use spec::{AttitudeFilter, AttitudeInitialDeviations, FilterSetup, SensorRole};

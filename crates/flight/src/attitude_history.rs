@@ -1,0 +1,308 @@
+//! Recent past of an attitude filter: a delayed measurement corrects the state at its exposure.
+//!
+//! Each entry holds the filter after the events at its instant, with the gyro reading of the interval that ends there.
+//! A delayed measurement is inserted at its exposure, and all later steps are repeated: the result is that of a filter
+//! without delays. The caller gives the storage of entries and measurements, the same at every call.
+
+use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use crate::attitude_observation::{AttitudeObservation, Correction};
+use crate::ticks::Ticks;
+use crate::vector3::Vector3;
+
+/// Attitude filter at one instant of its recent past.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct AttitudeHistoryEntry {
+    /// Time of the entry.
+    pub time: Ticks,
+    /// Gyro reading (rad/s) of the interval that ends at this entry.
+    pub reading: Vector3,
+    /// Filter after the events at this time.
+    pub filter: AttitudeBiasFilter,
+}
+
+impl AttitudeHistoryEntry {
+    /// Empty entry, which fills storage.
+    pub const NONE: Self =
+        Self { time: Ticks { whole: 0, part: 0 }, reading: Vector3::ZERO, filter: AttitudeBiasFilter::NONE };
+}
+
+/// Measurement of the attitude or a vector with the time of its exposure.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct DelayedObservation {
+    /// Time of the exposure.
+    pub exposed: Ticks,
+    /// Measured attitude or vector.
+    pub observation: AttitudeObservation,
+}
+
+impl DelayedObservation {
+    /// Empty measurement, which fills storage.
+    pub const NONE: Self =
+        Self { exposed: Ticks { whole: 0, part: 0 }, observation: AttitudeObservation::NONE };
+}
+
+/// Counts of the entries and measurements of an attitude filter's recent past.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct AttitudeHistory {
+    /// Gyro noise in the filter's model.
+    pub noise: GyroNoise,
+    /// Largest delay of a measurement.
+    pub reach: Ticks,
+    /// Index of the oldest entry.
+    pub first: usize,
+    /// Number of entries, by time.
+    pub entries: usize,
+    /// Number of measurements that have corrected an entry, by exposure and then by arrival: the first ones of the storage.
+    pub applied: usize,
+    /// Number of measurements whose exposure no gyro reading covers yet, by arrival: the next ones of the storage.
+    pub waiting: usize,
+}
+
+impl AttitudeHistory {
+    /// Starts the history of a filter at its first time, in `entries`, two or more.
+    pub fn start(
+        time: Ticks,
+        filter: AttitudeBiasFilter,
+        noise: GyroNoise,
+        reach: Ticks,
+        entries: &mut [AttitudeHistoryEntry],
+    ) -> Self {
+        let mut count: usize = 0;
+        if entries.len() > 1 {
+            entries[0] = AttitudeHistoryEntry { time, reading: Vector3::ZERO, filter };
+            count = 1;
+        }
+        Self { noise, reach, first: 0, entries: count, applied: 0, waiting: 0 }
+    }
+
+    /// Returns true if the storage holds the history.
+    #[inline]
+    fn is_held(&self, entries: &[AttitudeHistoryEntry], observations: &[DelayedObservation]) -> bool {
+        self.entries > 0
+            && self.first + self.entries <= entries.len()
+            && self.applied + self.waiting <= observations.len()
+    }
+
+    /// Returns the index of the latest entry.
+    #[inline]
+    pub fn latest(&self) -> usize {
+        self.first + self.entries - 1
+    }
+
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements that
+    /// waited for it. If the storage is full, the oldest entry is dropped.
+    pub fn add_gyro(
+        &mut self,
+        now: Ticks,
+        reading: Vector3,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &mut [DelayedObservation],
+    ) -> Correction {
+        if !self.is_held(entries, observations) || entries.len() < 2 {
+            return Correction::NONE;
+        }
+        let from: Ticks = entries[self.latest()].time;
+        if !from.is_before(now) {
+            return Correction::NONE;
+        }
+        self.make_room(entries);
+        let last: usize = self.latest();
+        entries[last + 1] = entries[last];
+        entries[last + 1].time = now;
+        entries[last + 1].reading = reading;
+        entries[last + 1].filter.predict(&reading, now.since(from).seconds(), &self.noise);
+        self.entries += 1;
+        let correction: Correction = self.apply_waiting(now, entries, observations);
+        // The last older entry stays: the interval with the oldest exposure still accepted begins there.
+        while self.entries > 1 && !now.is_before(entries[self.first + 1].time.plus(self.reach)) {
+            self.first += 1;
+            self.entries -= 1;
+        }
+        correction
+    }
+
+    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the last
+    /// correction.
+    fn apply_waiting(
+        &mut self,
+        now: Ticks,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &mut [DelayedObservation],
+    ) -> Correction {
+        let mut correction: Correction = Correction::NONE;
+        let mut early: usize = 0;
+        while early < self.waiting {
+            let index: usize = self.applied + early;
+            if now.is_before(observations[index].exposed) {
+                early += 1;
+            } else {
+                let result: Correction = self.apply(index, entries, observations);
+                if result.is_valid {
+                    correction = result;
+                }
+            }
+        }
+        correction
+    }
+
+    /// Adds a measurement, delayed or not. Returns its correction, which is not valid if the measurement is older than the
+    /// history, waits for a gyro reading, or finds the storage of measurements full.
+    pub fn add_observation(
+        &mut self,
+        observation: DelayedObservation,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &mut [DelayedObservation],
+    ) -> Correction {
+        if !self.is_held(entries, observations) {
+            return Correction::NONE;
+        }
+        if self.applied + self.waiting == observations.len() {
+            self.discard_old(entries, observations);
+        }
+        let index: usize = self.applied + self.waiting;
+        if index == observations.len() {
+            return Correction::NONE;
+        }
+        observations[index] = observation;
+        self.waiting += 1;
+        if entries[self.latest()].time.is_before(observation.exposed) {
+            return Correction::NONE;
+        }
+        self.apply(index, entries, observations)
+    }
+
+    /// Corrects by the waiting measurement at `index`, which is not later than the latest entry, and repeats the later
+    /// steps.
+    fn apply(
+        &mut self,
+        index: usize,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &mut [DelayedObservation],
+    ) -> Correction {
+        let observation: DelayedObservation = observations[index];
+        let correction: Correction = self.correct_at_exposure(&observation, entries);
+        if correction.is_valid {
+            let mut place: usize = index;
+            while place > self.applied
+                || place > 0 && observation.exposed.is_before(observations[place - 1].exposed)
+            {
+                observations[place] = observations[place - 1];
+                place -= 1;
+            }
+            observations[place] = observation;
+            self.applied += 1;
+            self.waiting -= 1;
+            self.repeat(observation.exposed, place + 1, entries, observations);
+        } else {
+            for place in (index + 1)..(self.applied + self.waiting) {
+                observations[place - 1] = observations[place];
+            }
+            self.waiting -= 1;
+        }
+        correction
+    }
+
+    /// Corrects the filter at the exposure of a measurement, for which it inserts an entry if there is none.
+    fn correct_at_exposure(
+        &mut self,
+        observation: &DelayedObservation,
+        entries: &mut [AttitudeHistoryEntry],
+    ) -> Correction {
+        let exposed: Ticks = observation.exposed;
+        if exposed.is_before(entries[self.first].time) {
+            return Correction::NONE;
+        }
+        let mut later: usize = 0;
+        while later + 1 < self.entries && !entries[self.latest() - later - 1].time.is_before(exposed) {
+            later += 1;
+        }
+        if exposed.is_before(entries[self.latest() - later].time) {
+            if self.entries == entries.len() && later + 2 == self.entries {
+                // The entry from which the filter is propagated would have to be dropped.
+                return Correction::NONE;
+            }
+            self.insert_entry(later, exposed, entries);
+            later += 1;
+        }
+        entries[self.latest() - later].filter.observe(&observation.observation)
+    }
+
+    /// Inserts an entry at `time`, between the oldest and the one before which there are `later` later entries.
+    fn insert_entry(&mut self, later: usize, time: Ticks, entries: &mut [AttitudeHistoryEntry]) {
+        self.make_room(entries);
+        let place: usize = self.latest() - later;
+        let mut moved: usize = self.latest() + 1;
+        while moved > place {
+            entries[moved] = entries[moved - 1];
+            moved -= 1;
+        }
+        self.entries += 1;
+        // The reading of the later entry is that of the inserted one too.
+        let reading: Vector3 = entries[place].reading;
+        let from: Ticks = entries[place - 1].time;
+        entries[place].time = time;
+        entries[place].filter = entries[place - 1].filter;
+        entries[place].filter.predict(&reading, time.since(from).seconds(), &self.noise);
+    }
+
+    /// Repeats the propagation and the corrections of all entries after a time, with the measurements from index
+    /// `observation` on.
+    fn repeat(
+        &self,
+        after: Ticks,
+        observation: usize,
+        entries: &mut [AttitudeHistoryEntry],
+        observations: &[DelayedObservation],
+    ) {
+        let mut start: usize = self.latest() + 1;
+        while start > self.first && after.is_before(entries[start - 1].time) {
+            start -= 1;
+        }
+        let mut next: usize = observation;
+        let end: usize = self.latest() + 1;
+        for index in start..end {
+            let before: Ticks = entries[index - 1].time;
+            let time: Ticks = entries[index].time;
+            let reading: Vector3 = entries[index].reading;
+            entries[index].filter = entries[index - 1].filter;
+            entries[index].filter.predict(&reading, time.since(before).seconds(), &self.noise);
+            while next < self.applied && !time.is_before(observations[next].exposed) {
+                entries[index].filter.observe(&observations[next].observation);
+                next += 1;
+            }
+        }
+    }
+
+    /// Moves the entries to the front of the storage if there is no room behind them, without the oldest if there is
+    /// none in front of them either.
+    fn make_room(&mut self, entries: &mut [AttitudeHistoryEntry]) {
+        if self.first + self.entries < entries.len() {
+            return;
+        }
+        if self.first == 0 {
+            self.first = 1;
+            self.entries -= 1;
+        }
+        for index in 0..self.entries {
+            entries[index] = entries[self.first + index];
+        }
+        self.first = 0;
+    }
+
+    /// Removes measurements that no step repeats any more: those of the oldest entry and before.
+    pub fn discard_old(&mut self, entries: &[AttitudeHistoryEntry], observations: &mut [DelayedObservation]) {
+        if !self.is_held(entries, observations) {
+            return;
+        }
+        let oldest: Ticks = entries[self.first].time;
+        let mut old: usize = 0;
+        while old < self.applied && !oldest.is_before(observations[old].exposed) {
+            old += 1;
+        }
+        let kept: usize = self.applied + self.waiting - old;
+        for index in 0..kept {
+            observations[index] = observations[old + index];
+        }
+        self.applied -= old;
+    }
+}

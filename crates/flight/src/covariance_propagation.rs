@@ -1,0 +1,109 @@
+//! Propagation of the covariance of attitude and gyro bias through an interval in which the body rotates, in blocks of
+//! three rows and columns.
+
+use crate::matrix3::Matrix3;
+use crate::matrix6::Matrix6;
+use crate::stumpff::Stumpff;
+use crate::vector3::Vector3;
+
+/// Blocks of the transition of an interval, and of the covariance that the noise of the gyro adds.
+struct IntervalBlocks {
+    /// Transition of the attitude error.
+    turned: Matrix3,
+    /// Transition from the bias error to the attitude error, with a minus.
+    drifted: Matrix3,
+    /// Covariance added to the attitude error (rad²).
+    angle: Matrix3,
+    /// Covariance subtracted from that of attitude and bias errors (rad²/s).
+    both: Matrix3,
+}
+
+/// Random walks of a gyro over an interval.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct IntervalNoise {
+    /// Length of the interval (s).
+    pub seconds: f64,
+    /// Square of the angle random walk (rad²/s).
+    pub white: f64,
+    /// Square of the rate random walk (rad²/s³).
+    pub walk: f64,
+}
+
+impl IntervalBlocks {
+    /// Returns the blocks, exact for a constant rate that rotates the body by `turn` (rad).
+    #[inline]
+    fn new(turn: &Vector3, noise: &IntervalNoise) -> Self {
+        let c: Stumpff = Stumpff::at(turn.norm_squared());
+        let seconds: f64 = noise.seconds;
+        let cross: Matrix3 = Matrix3::cross(turn);
+        let along: [f64; 3] = [turn.x, turn.y, turn.z];
+        let both_scale: f64 = seconds * seconds * noise.walk;
+        let angle_scale: f64 = 2.0 * seconds * seconds * seconds * noise.walk;
+        let white: f64 = noise.white * seconds;
+        let mut blocks: Self =
+            Self { turned: Matrix3::ZERO, drifted: Matrix3::ZERO, angle: Matrix3::ZERO, both: Matrix3::ZERO };
+        for row in 0..3 {
+            for column in 0..3 {
+                let one: f64 = if row == column { 1.0 } else { 0.0 };
+                let once: f64 = cross.rows[row][column];
+                let twice: f64 = cross.rows[row][0] * cross.rows[0][column]
+                    + cross.rows[row][1] * cross.rows[1][column]
+                    + cross.rows[row][2] * cross.rows[2][column];
+                blocks.both.rows[row][column] = (one * 0.5 - once * c.c3 + twice * c.c4) * both_scale;
+                blocks.angle.rows[row][column] =
+                    (one * c.c3 + along[row] * along[column] * c.c5) * angle_scale + one * white;
+                blocks.turned.rows[row][column] = one - once * c.c1 + twice * c.c2;
+                blocks.drifted.rows[row][column] = (one - once * c.c2 + twice * c.c3) * seconds;
+            }
+        }
+        blocks
+    }
+}
+
+impl Matrix6 {
+    /// Propagates the covariance through an interval in which the body rotates by `turn` (rad) at a constant rate: the
+    /// attitude error theta becomes `turned` theta - `drifted` beta, and noise adds its exact covariance.
+    pub fn propagate(&mut self, turn: &Vector3, noise: &IntervalNoise) {
+        let blocks: IntervalBlocks = IntervalBlocks::new(turn, noise);
+        let mut carried: Matrix3 = Matrix3::ZERO;
+        let mut moved: Matrix3 = Matrix3::ZERO;
+        for row in 0..3 {
+            for column in 0..3 {
+                carried.rows[row][column] = (blocks.turned.rows[row][0] * self.rows[0][3 + column]
+                    + blocks.turned.rows[row][1] * self.rows[1][3 + column]
+                    + blocks.turned.rows[row][2] * self.rows[2][3 + column])
+                    - (blocks.drifted.rows[row][0] * self.rows[3][3 + column]
+                        + blocks.drifted.rows[row][1] * self.rows[4][3 + column]
+                        + blocks.drifted.rows[row][2] * self.rows[5][3 + column]);
+                moved.rows[row][column] = (blocks.turned.rows[row][0] * self.rows[0][column]
+                    + blocks.turned.rows[row][1] * self.rows[1][column]
+                    + blocks.turned.rows[row][2] * self.rows[2][column])
+                    - (blocks.drifted.rows[row][0] * self.rows[column][3]
+                        + blocks.drifted.rows[row][1] * self.rows[column][4]
+                        + blocks.drifted.rows[row][2] * self.rows[column][5]);
+            }
+        }
+        let mut angle: Matrix3 = Matrix3::ZERO;
+        for row in 0..3 {
+            for column in 0..3 {
+                angle.rows[row][column] = (moved.rows[row][0] * blocks.turned.rows[column][0]
+                    + moved.rows[row][1] * blocks.turned.rows[column][1]
+                    + moved.rows[row][2] * blocks.turned.rows[column][2])
+                    - (carried.rows[row][0] * blocks.drifted.rows[column][0]
+                        + carried.rows[row][1] * blocks.drifted.rows[column][1]
+                        + carried.rows[row][2] * blocks.drifted.rows[column][2])
+                    + blocks.angle.rows[row][column];
+            }
+        }
+        for row in 0..3 {
+            for column in 0..3 {
+                let across: f64 = carried.rows[row][column] - blocks.both.rows[row][column];
+                let one: f64 = if row == column { 1.0 } else { 0.0 };
+                self.rows[row][column] = (angle.rows[row][column] + angle.rows[column][row]) * 0.5;
+                self.rows[row][3 + column] = across;
+                self.rows[3 + column][row] = across;
+                self.rows[3 + row][3 + column] += one * (noise.walk * noise.seconds);
+            }
+        }
+    }
+}
