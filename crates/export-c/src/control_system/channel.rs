@@ -15,9 +15,9 @@ pub enum NumberKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// Name of the member.
-    pub name: &'static str,
+    pub name: String,
     /// Meaning with its unit.
-    pub about: &'static str,
+    pub about: String,
     /// Number of elements; a member with one element is no array.
     pub count: usize,
     /// Type of the elements.
@@ -28,18 +28,19 @@ pub struct Channel {
 
 impl Channel {
     /// Creates a channel of doubles of this typical size.
-    pub fn real(name: &'static str, about: &'static str, count: usize, scale: f64) -> Self {
+    pub fn real(name: &str, about: &str, count: usize, scale: f64) -> Self {
+        let (name, about) = (name.to_owned(), about.to_owned());
         Self { name, about, count, kind: NumberKind::Real, scale }
     }
 
     /// Creates a channel of truth values.
-    pub fn flag(name: &'static str, about: &'static str, count: usize) -> Self {
-        Self { name, about, count, kind: NumberKind::Flag, scale: 1.0 }
+    pub fn flag(name: &str, about: &str, count: usize) -> Self {
+        Self { kind: NumberKind::Flag, ..Self::real(name, about, count, 1.0) }
     }
 
     /// Creates a channel of integers below a limit.
-    pub fn integer(name: &'static str, about: &'static str, count: usize, below: u64) -> Self {
-        Self { name, about, count, kind: NumberKind::Integer(below), scale: 1.0 }
+    pub fn integer(name: &str, about: &str, count: usize, below: u64) -> Self {
+        Self { kind: NumberKind::Integer(below), ..Self::real(name, about, count, 1.0) }
     }
 }
 
@@ -50,6 +51,8 @@ pub struct CallLayout {
     pub name: &'static str,
     /// Meaning of the call.
     pub about: &'static str,
+    /// True if the function is called once, before the others.
+    pub is_start: bool,
     /// Inputs.
     pub inputs: Vec<Channel>,
     /// Outputs.

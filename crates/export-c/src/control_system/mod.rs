@@ -1,5 +1,6 @@
 //! Control system of a scenario: its plain laws about each axis, and what distributes their commands.
 
+mod attitude_unit;
 mod channel;
 mod relays;
 mod sampled_laws;
@@ -10,6 +11,7 @@ use flexsc_core::Scenario;
 use flexsc_core::control::law::LawKind;
 use flexsc_flight::ticks::Ticks;
 
+pub use attitude_unit::{AttitudeUnit, Corrector};
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use relays::Relays;
 pub use sampled_laws::{Distribution, LawsOfAxes, SampledLaws};
@@ -72,7 +74,7 @@ impl ControlSystem {
     pub fn calls(&self) -> Vec<CallLayout> {
         match self {
             Self::Relays(relays) => relays.calls(),
-            Self::Sampled(laws) => vec![laws.layout()],
+            Self::Sampled(laws) => laws.calls(),
         }
     }
 
@@ -80,7 +82,7 @@ impl ControlSystem {
     pub fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         match self {
             Self::Relays(relays) => relays.call(call, now, inputs),
-            Self::Sampled(laws) => laws.step(inputs),
+            Self::Sampled(laws) => laws.call(call, now, inputs),
         }
     }
 

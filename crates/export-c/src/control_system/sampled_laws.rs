@@ -13,10 +13,12 @@ use flexsc_flight::gain_schedule::SchedulePoint;
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::pd::PdLaw;
 use flexsc_flight::phase_plane::PhasePlaneLaw;
+use flexsc_flight::ticks::Ticks;
 use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
 use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 
+use super::attitude_unit::{AttitudeUnit, quaternion};
 use super::{CallLayout, Channel, NotExportable, WordReader, all_of_kind};
 
 /// Laws about the axes, all of one kind.
@@ -52,6 +54,8 @@ pub struct SampledLaws {
     pub inertia: Matrix3,
     /// Wheels that give the torque about three axes, if the actuator consists of them.
     pub wheels: Option<Distribution>,
+    /// Attitude filter that the laws read; without one the estimates are inputs.
+    pub estimator: Option<AttitudeUnit>,
 }
 
 impl SampledLaws {
@@ -69,7 +73,8 @@ impl SampledLaws {
             return Err(NotExportable::new("law.per_axis", reason));
         }
         let inertia = to_matrix3(scenario.study.distribution(scenario).inertia());
-        Ok(Self { period, laws: of_axes, inertia, wheels: wheels(scenario) })
+        let estimator = AttitudeUnit::new(scenario).filter(|_| laws.len() == 3);
+        Ok(Self { period, laws: of_axes, inertia, wheels: wheels(scenario), estimator })
     }
 
     /// Returns the number of axes.
@@ -91,13 +96,37 @@ impl SampledLaws {
         if let LawsOfAxes::PhasePlane(_, modes) = &self.laws { *modes } else { 0 }
     }
 
+    /// Returns the functions.
+    pub(super) fn calls(&self) -> Vec<CallLayout> {
+        let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
+        estimator.chain([self.layout()]).collect()
+    }
+
+    /// Returns the index of the step among the functions.
+    pub fn step_index(&self) -> usize {
+        if self.estimator.is_some() { 2 } else { 0 }
+    }
+
+    /// Calls the function with this index, and returns the words of its outputs.
+    pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        match (&mut self.estimator, call) {
+            (Some(estimator), 0) => estimator.start(now, inputs),
+            (Some(estimator), 1) => estimator.sample(now, inputs),
+            _ => self.step(now, inputs),
+        }
+    }
+
     /// Returns the inputs and outputs of a step.
     pub fn layout(&self) -> CallLayout {
         let axes = self.axis_count();
-        let mut inputs = vec![
-            Channel::real("angle", "Estimated angle from the target about each axis (rad)", axes, 1e-2),
-            Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1e-3),
-        ];
+        let mut inputs = if self.estimator.is_some() {
+            vec![Channel::real("target_attitude", "Target attitude: quaternion w, x, y, z", 4, 1.0)]
+        } else {
+            vec![
+                Channel::real("angle", "Estimated angle from the target about each axis (rad)", axes, 1e-2),
+                Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1e-3),
+            ]
+        };
         if self.reads_mode() {
             inputs.push(Channel::real("displacement", "Displacement of the dominant mode (rad)", axes, 1e-3));
             inputs.push(Channel::real("displacement_rate", "Rate of the displacement (rad/s)", axes, 1e-3));
@@ -154,11 +183,12 @@ impl SampledLaws {
             let about = "Torque of the motor of each wheel on its rotor (N m)";
             outputs.push(Channel::real("wheel_torque", about, wheels.wheels.len(), 1.0));
         }
-        CallLayout { name: "step", about: "Decides on the commands of a period.", inputs, outputs }
+        let about = "Decides on the commands of a period.";
+        CallLayout { name: "step", about, is_start: false, inputs, outputs }
     }
 
     /// Decides on the commands of a period, and returns the words of the outputs.
-    pub(super) fn step(&mut self, inputs: &[u64]) -> Vec<u64> {
+    fn step(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         let axes = self.axis_count();
         let mut words = WordReader::new(inputs);
         let (reads_mode, modes) = (self.reads_mode(), self.mode_count());
@@ -166,8 +196,16 @@ impl SampledLaws {
         let set = |values: Vec<f64>, motions: &mut [AxisMotion], member: fn(&mut AxisMotion) -> &mut f64| {
             motions.iter_mut().zip(values).for_each(|(motion, value)| *member(motion) = value);
         };
-        set(words.list(axes), &mut motions, |motion| &mut motion.angle);
-        set(words.list(axes), &mut motions, |motion| &mut motion.rate);
+        if let Some(unit) = &self.estimator {
+            let target = quaternion(&mut words);
+            let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
+            let rate = unit.estimator.rate(&unit.entries);
+            set(vec![angle.x, angle.y, angle.z], &mut motions, |motion| &mut motion.angle);
+            set(vec![rate.x, rate.y, rate.z], &mut motions, |motion| &mut motion.rate);
+        } else {
+            set(words.list(axes), &mut motions, |motion| &mut motion.angle);
+            set(words.list(axes), &mut motions, |motion| &mut motion.rate);
+        }
         if let [roll, pitch, yaw] = &motions[..] {
             let total = total_angle(roll.angle, pitch.angle, yaw.angle);
             motions.iter_mut().for_each(|motion| motion.total_angle = total);

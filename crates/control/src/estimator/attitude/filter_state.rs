@@ -152,7 +152,7 @@ impl FilterSetup {
 
     /// Returns a measured vector with the reference of the filter's model at its exposure: a measured magnetic field has
     /// that of the model, other vectors keep theirs.
-    fn with_reference(&self, measurement: VectorMeasurement, exposed: Instant) -> VectorMeasurement {
+    pub fn with_reference(&self, measurement: VectorMeasurement, exposed: Instant) -> VectorMeasurement {
         let model = self.field_model.as_ref().filter(|_| !measurement.is_direction);
         let field = model.and_then(|sky| sky.field_at(exposed.seconds()));
         VectorMeasurement { inertial: field.unwrap_or(measurement.inertial), ..measurement }

@@ -1,14 +1,17 @@
 //! Test vectors: the calls of the control system in a run of the engine, with the outputs of the plain laws, compared with the
 //! engine's own.
 
+mod samples;
+
 use std::fmt;
 
 use flexsc_core::control::law::{Command, DecisionCause};
+use flexsc_core::control::sensor::Orientation;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{ControlCall, ControlDecision, Scenario, Simulation, SimulationError};
 use flexsc_flight::ticks::Ticks;
 
-use crate::control_system::{ControlSystem, NotExportable};
+use crate::control_system::{ControlSystem, NotExportable, SampledLaws};
 
 /// First word of a file of vectors: `flexscV1` as bytes.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"flexscV1");
@@ -96,8 +99,11 @@ pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<Vector>, VectorErr
             if vectors.len() == most {
                 break;
             }
-            if let ControlCall::Decision(decision) = call {
-                replay(&mut system, &decision, &mut vectors)?;
+            match call {
+                ControlCall::Decision(decision) => replay(&mut system, &decision, &mut vectors)?,
+                ControlCall::Sample(sample) => {
+                    samples::replay(&mut system, scenario, &sample, &mut vectors);
+                }
             }
         }
     }
@@ -140,8 +146,9 @@ fn replay(
     if decision.axes.iter().any(|axis| decision.now < axis.goal.from) {
         return Ok(());
     }
-    let inputs = step_inputs(system, decision);
-    let outputs = system.call(0, now, &inputs);
+    let ControlSystem::Sampled(laws) = &*system else { return Ok(()) };
+    let (inputs, call) = (step_inputs(laws, decision), laws.step_index());
+    let outputs = system.call(call, now, &inputs);
     let number = vectors.len();
     for axis in &decision.axes {
         let found = f64::from_bits(outputs[axis.axis]);
@@ -157,18 +164,22 @@ fn replay(
             Command::Moment(_) => {}
         }
     }
-    vectors.push(Vector { call: 0, now, inputs, outputs });
+    vectors.push(Vector { call, now, inputs, outputs });
     Ok(())
 }
 
 /// Returns the words of the inputs of a step.
-fn step_inputs(system: &ControlSystem, decision: &ControlDecision) -> Vec<u64> {
-    let ControlSystem::Sampled(laws) = system else { return Vec::new() };
+fn step_inputs(laws: &SampledLaws, decision: &ControlDecision) -> Vec<u64> {
     let axes = &decision.axes;
     let references: Vec<_> = axes.iter().map(|axis| axis.goal.flight_reference(decision.now)).collect();
     let mut words = Vec::new();
     for channel in laws.layout().inputs {
-        match channel.name {
+        match channel.name.as_str() {
+            "target_attitude" => {
+                if let Orientation::Attitude(q) = decision.origin {
+                    words.extend([q.w, q.i, q.j, q.k]);
+                }
+            }
             "angle" => words.extend(axes.iter().map(|axis| axis.estimate.angle)),
             "rate" => words.extend(axes.iter().map(|axis| axis.estimate.rate)),
             "displacement" => words.extend(axes.iter().map(|axis| axis.estimate.dominant.displacement)),
@@ -186,7 +197,7 @@ fn step_inputs(system: &ControlSystem, decision: &ControlDecision) -> Vec<u64> {
                 for axis in axes {
                     words.extend((0..modes).map(|mode| {
                         let mode = axis.estimate.elastic.get(mode).copied().unwrap_or_default();
-                        match channel.name {
+                        match channel.name.as_str() {
                             "mode_rate" => mode.rate,
                             "mode_frequency" => mode.frequency,
                             _ => mode.influence,
