@@ -14,17 +14,22 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 29;
+const COUNT: usize = 36;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
     sources![
         "active_damping",
         "argument_reduction",
+        "attitude_estimator",
+        "attitude_filter",
+        "attitude_history",
         "attitude_law",
+        "attitude_observation",
         "axis_motion",
         "binary64",
         "biquad",
+        "covariance_propagation",
         "error_measure",
         "exponentials",
         "gain_schedule",
@@ -34,6 +39,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "inverse_trigonometry",
         "maths",
         "matrix3",
+        "matrix6",
         "payne_hanek",
         "pd",
         "phase_plane",
@@ -42,6 +48,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "quaternion",
         "relay",
         "square_root",
+        "stumpff",
         "switching_lines",
         "ticks",
         "torque_distribution",

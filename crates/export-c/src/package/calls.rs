@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use flexsc_flight::gain_schedule::SchedulePoint;
 
-use super::Plan;
 use super::initialiser::initialiser;
+use super::{Plan, estimator_calls};
 use crate::control_system::{CallLayout, ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
 /// Names of the axes of a body with three.
@@ -23,7 +23,10 @@ pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
 
 /// Returns true if the functions read the time.
 pub fn has_time(plan: &Plan<'_>) -> bool {
-    matches!(plan.system, ControlSystem::Relays(_))
+    match plan.system {
+        ControlSystem::Relays(_) => true,
+        ControlSystem::Sampled(laws) => laws.estimator.is_some(),
+    }
 }
 
 /// Returns the constants and the functions.
@@ -52,7 +55,11 @@ fn of_relays(plan: &Plan<'_>, relays: &Relays, text: &mut String) {
         let _ = writeln!(text, "    state->{member} = ({prefix}_polled_relay){value};");
     }
     let _ = writeln!(text, "}}\n");
-    let pointer = if axes == 1 { "&state->relay".to_owned() } else { format!("&state->relay[input->axis < {axes} && input->axis >= 0 ? input->axis : 0]") };
+    let pointer = if axes == 1 {
+        "&state->relay".to_owned()
+    } else {
+        format!("&state->relay[input->axis < {axes} && input->axis >= 0 ? input->axis : 0]")
+    };
     let _ = writeln!(
         text,
         "{}\n{{\n    {prefix}_polled_relay *relay = {pointer};\n    {prefix}_relay_event event = {upper}_RELAY_EVENT_TIMEOUT;\n    \
@@ -70,7 +77,8 @@ fn of_relays(plan: &Plan<'_>, relays: &Relays, text: &mut String) {
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[1]));
     for axis in 0..axes {
         let [torque, relay, angle] = ["torque", "relay", "angle"].map(|name| about(name, axis, axes));
-        let _ = writeln!(text, "    output->{torque} = polled_relay_step(&state->{relay}, now, input->{angle});");
+        let _ =
+            writeln!(text, "    output->{torque} = polled_relay_step(&state->{relay}, now, input->{angle});");
     }
     text.push_str("}\n");
 }
@@ -79,7 +87,18 @@ fn of_relays(plan: &Plan<'_>, relays: &Relays, text: &mut String) {
 fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     let (prefix, axes) = (plan.prefix, laws.axis_count());
     constants(plan, laws, text);
+    if let Some(unit) = &laws.estimator {
+        estimator_calls::start(plan, unit, text);
+    }
     let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
+    if laws.estimator.is_some() {
+        let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
+        let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
+        let _ = writeln!(
+            text,
+            "    memset(state, 0, sizeof *state);\n    start_filter(state, {identity}, {zero});"
+        );
+    }
     let mut set = |member: String, type_name: &str, value: String| {
         let _ = writeln!(text, "    state->{member} = ({prefix}_{type_name}){value};");
     };
@@ -99,9 +118,25 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     for (index, wheel) in laws.wheels.iter().flat_map(|wheels| &wheels.wheels).enumerate() {
         set(format!("wheels[{index}]"), "allocated_wheel", initialiser(wheel, prefix));
     }
-    let _ = writeln!(text, "}}\n\n{}\n{{", signature(plan, &plan.calls[0]));
+    text.push_str("}\n\n");
+    if let Some(unit) = &laws.estimator {
+        estimator_calls::functions(plan, unit, text);
+    }
+    let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
+    if let Some(unit) = &laws.estimator {
+        let _ = writeln!(
+            text,
+            "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
+             const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
+             const {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n    \
+             const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});",
+            entries = unit.entries.len()
+        );
+    }
     if axes == 3 {
-        text.push_str("    const double total_angle = axis_motion_total_angle(input->angle[0], input->angle[1], input->angle[2]);\n");
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis| estimate(laws, "angle", axis));
+        let _ =
+            writeln!(text, "    const double total_angle = axis_motion_total_angle({roll}, {pitch}, {yaw});");
     }
     let _ = writeln!(text, "    {prefix}_axis_motion motion;\n    {prefix}_axis_reference reference;");
     if laws.mode_count() > 0 {
@@ -117,13 +152,24 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     text.push_str("}\n");
 }
 
+/// Returns the estimated angle or rate about an axis: a component of the filter's estimate, or an input.
+fn estimate(laws: &SampledLaws, name: &str, axis: usize) -> String {
+    if laws.estimator.is_some() {
+        format!("{name}.{}", ["x", "y", "z"][axis])
+    } else {
+        format!("input->{}", about(name, axis, laws.axis_count()))
+    }
+}
+
 /// Writes the constants: gain schedules, inertia.
 fn constants(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     let prefix = plan.prefix;
     if let LawsOfAxes::Pd(own) = &laws.laws {
         for (axis, (_, points)) in own.iter().enumerate().filter(|(_, (_, points))| !points.is_empty()) {
-            let values: Vec<String> =
-                points.iter().map(|point: &SchedulePoint| format!("    {}", initialiser(point, prefix))).collect();
+            let values: Vec<String> = points
+                .iter()
+                .map(|point: &SchedulePoint| format!("    {}", initialiser(point, prefix)))
+                .collect();
             let _ = writeln!(
                 text,
                 "/* Gain of the extra loop over the frequency of the mode. */\nstatic const {prefix}_schedule_point schedule_{axis}[{}] = {{\n{}\n}};\n",
@@ -155,8 +201,8 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
         text,
         "    motion = ({prefix}_axis_motion){{ .angle = {}, .total_angle = {total}, .rate = {}, .queued_rate = {},\n        \
          .displacement = {}, .displacement_rate = {}, .frequency = {} }};",
-        input("angle"),
-        input("rate"),
+        estimate(laws, "angle", axis),
+        estimate(laws, "rate", axis),
         given(is_phase_plane, "queued_rate"),
         given(mode, "displacement"),
         given(mode, "displacement_rate"),
@@ -176,12 +222,16 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
             let points = own[axis].1.len();
             let schedule = if points == 0 { "NULL".to_owned() } else { format!("schedule_{axis}") };
             let torque = about("torque", axis, axes);
-            let _ = writeln!(text, "    output->{torque} = pd_law_step({law}, &motion, &reference, {schedule}, {points});");
+            let _ = writeln!(
+                text,
+                "    output->{torque} = pd_law_step({law}, &motion, &reference, {schedule}, {points});"
+            );
         }
         LawsOfAxes::PhasePlane(_, modes) => {
             for mode in 0..*modes {
                 let index = axis * modes + mode;
-                let member = |name: &str| if axes * modes == 1 { name.to_owned() } else { format!("{name}[{index}]") };
+                let member =
+                    |name: &str| if axes * modes == 1 { name.to_owned() } else { format!("{name}[{index}]") };
                 let _ = writeln!(
                     text,
                     "    modes[{mode}] = ({prefix}_elastic_rate_estimate){{ .rate = input->{}, .frequency = input->{}, .influence = input->{} }};",
@@ -190,13 +240,21 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
                     member("mode_influence"),
                 );
             }
-            let list = if *modes == 0 { "NULL, 0, false".to_owned() } else { format!("modes, {modes}, {}", input("modes_are_trusted")) };
+            let list = if *modes == 0 {
+                "NULL, 0, false".to_owned()
+            } else {
+                format!("modes, {modes}, {}", input("modes_are_trusted"))
+            };
             let change = about("rate_change", axis, axes);
-            let _ = writeln!(text, "    output->{change} = phase_plane_law_step({law}, &motion, &reference, {list});");
+            let _ = writeln!(
+                text,
+                "    output->{change} = phase_plane_law_step({law}, &motion, &reference, {list});"
+            );
         }
         LawsOfAxes::Attitude(own) => {
             let count = own[axis].1.len();
-            let filters = if count == 0 { "NULL, 0".to_owned() } else { format!("state->filters[{axis}], {count}") };
+            let filters =
+                if count == 0 { "NULL, 0".to_owned() } else { format!("state->filters[{axis}], {count}") };
             let acceleration = about("acceleration", axis, axes);
             let _ = writeln!(
                 text,
@@ -209,19 +267,21 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
 /// Writes the conversion of accelerations to a torque.
 fn torque(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     let (prefix, axes) = (plan.prefix, laws.axis_count());
-    let vector = |name: &str| {
-        let member = |axis: usize| {
-            if axis < axes { format!("{name}{}", if axes == 1 { String::new() } else { format!("[{axis}]") }) } else { "0.0".to_owned() }
-        };
-        format!("({prefix}_vector3){{ .x = {}, .y = {}, .z = {} }}", member(0), member(1), member(2))
+    let vector = |member: &dyn Fn(usize) -> String| {
+        let [x, y, z] = [0, 1, 2].map(|axis| if axis < axes { member(axis) } else { "0.0".to_owned() });
+        format!("({prefix}_vector3){{ .x = {x}, .y = {y}, .z = {z} }}")
+    };
+    let rate = if laws.estimator.is_some() {
+        String::new()
+    } else {
+        let rate = vector(&|axis| estimate(laws, "rate", axis));
+        format!("    const {prefix}_vector3 rate = {rate};\n")
     };
     let _ = writeln!(
         text,
-        "\n    /* torque of these accelerations */\n    const {prefix}_vector3 acceleration = {};\n    const {prefix}_vector3 rate = {};\n    \
-         const {prefix}_vector3 stored = ({prefix}_vector3){{ .x = input->stored_momentum[0], .y = input->stored_momentum[1], .z = input->stored_momentum[2] }};\n    \
+        "\n    /* torque of these accelerations */\n    const {prefix}_vector3 acceleration = {};\n{rate}    const {prefix}_vector3 stored = ({prefix}_vector3){{ .x = input->stored_momentum[0], .y = input->stored_momentum[1], .z = input->stored_momentum[2] }};\n    \
          const {prefix}_vector3 torque = torque_distribution_torque(&inertia, &acceleration, &rate, &stored);",
-        vector("output->acceleration"),
-        vector("input->rate"),
+        vector(&|axis| format!("output->{}", about("acceleration", axis, axes))),
     );
     for (axis, component) in ["x", "y", "z"].into_iter().enumerate().take(axes) {
         let _ = writeln!(text, "    output->{} = torque.{component};", about("torque", axis, axes));

@@ -18,10 +18,11 @@ pub fn driver(plan: &Plan<'_>) -> String {
     let most = |words: fn(&CallLayout) -> usize| plan.calls.iter().map(words).max().unwrap_or(0).max(1);
     let _ = writeln!(
         text,
-        "enum {{ CALLS = {}, MOST_INPUTS = {}, MOST_OUTPUTS = {} }};\n",
+        "enum {{ CALLS = {}, MOST_INPUTS = {}, MOST_OUTPUTS = {} }};\n\n/* True of a function that is called once, before the others. */\nstatic const bool is_start[CALLS] = {{ {} }};\n",
         plan.calls.len(),
         most(CallLayout::input_words),
-        most(CallLayout::output_words)
+        most(CallLayout::output_words),
+        plan.calls.iter().map(|call| call.is_start.to_string()).collect::<Vec<_>>().join(", ")
     );
     table(plan, "input", |call| &call.inputs, &mut text);
     table(plan, "output", |call| &call.outputs, &mut text);
@@ -64,7 +65,8 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
             rows.join(",\n")
         );
     }
-    let list = |each: &dyn Fn(&CallLayout) -> String| plan.calls.iter().map(each).collect::<Vec<_>>().join(", ");
+    let list =
+        |each: &dyn Fn(&CallLayout) -> String| plan.calls.iter().map(each).collect::<Vec<_>>().join(", ");
     let _ = writeln!(
         text,
         "static const word_kind *const {name}s[CALLS] = {{ {} }};\nstatic const size_t {name}_counts[CALLS] = {{ {} }};\n",
@@ -83,13 +85,19 @@ fn call(plan: &Plan<'_>, text: &mut String) {
          static void call(size_t index, {prefix}_state *state, const uint64_t *time, const uint64_t *in, uint64_t *out)\n{{"
     );
     if calls::has_time(plan) {
-        let _ = writeln!(text, "    const {prefix}_ticks now = {{ .whole = (int64_t)time[0], .part = (int64_t)time[1] }};\n");
+        let _ = writeln!(
+            text,
+            "    const {prefix}_ticks now = {{ .whole = (int64_t)time[0], .part = (int64_t)time[1] }};\n"
+        );
     } else {
         text.push_str("    (void)time;\n");
     }
     for (index, layout) in plan.calls.iter().enumerate() {
         let name = layout.name;
-        let _ = writeln!(text, "    if (index == {index}) {{\n        {prefix}_{name}_input input;\n        {prefix}_{name}_output output;");
+        let _ = writeln!(
+            text,
+            "    if (index == {index}) {{\n        {prefix}_{name}_input input;\n        {prefix}_{name}_output output;"
+        );
         let mut word = 0;
         for channel in &layout.inputs {
             for element in 0..channel.count {
@@ -198,6 +206,9 @@ static uint64_t self_test(uint64_t cycles)
         const uint64_t time = cycle * MILLISECONDS;
         const uint64_t now[2] = { time / 1000, time % 1000 * UINT64_C(1000000000000) };
         for (size_t index = 0; index < CALLS; ++index) {
+            if (is_start[index] && cycle % BLOCK != 0) {
+                continue;
+            }
             for (size_t word = 0; word < input_counts[index]; ++word) {
                 in[word] = random_word(&inputs[index][word], is_extreme);
             }

@@ -2,21 +2,24 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
+use super::{Plan, estimator_calls};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
+use crate::translate::Translation;
 
-/// Returns the header; `declarations` are the types of the flight code.
-pub fn header(plan: &Plan<'_>, declarations: &str) -> String {
+/// Returns the header, with the types of the flight code.
+pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
     let prefix = plan.prefix;
     let guard = format!("{}_H", prefix.to_uppercase());
-    let version = env!("CARGO_PKG_VERSION");
     let mut text = format!(
-        "/* Control system of {}, exported by flexsc {version}.\n *\n * The code is translated from the Rust code that flexsc calls in a \
-         run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 doubles, no contraction, no fast-math. Units \
-         are SI.\n */\n#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stddef.h>\n#include <stdint.h>\n\n",
-        plan.origin
+        "/* Control system of {}, exported by flexsc {}.\n *\n * The code is translated from the Rust code that flexsc calls in a \
+         run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 doubles, no contraction, no fast-math. \
+         Units are SI.\n */\n#ifndef {guard}\n#define {guard}\n\n",
+        plan.origin,
+        env!("CARGO_PKG_VERSION")
     );
-    text.push_str(declarations.trim());
+    text.push_str(translation.includes.trim());
+    text.push_str("\n\n");
+    text.push_str(translation.declarations.trim());
     text.push_str("\n\n");
     state(plan, &mut text);
     for call in plan.calls {
@@ -25,7 +28,10 @@ pub fn header(plan: &Plan<'_>, declarations: &str) -> String {
         let _ = writeln!(text, "/* Outputs of `{prefix}_{}`. */", call.name);
         members(&call.outputs, &format!("{prefix}_{}_output", call.name), &mut text);
     }
-    let _ = writeln!(text, "/* Sets the state before the first call. */\nvoid {prefix}_init({prefix}_state *state);\n");
+    let _ = writeln!(
+        text,
+        "/* Sets the state before the first call. */\nvoid {prefix}_init({prefix}_state *state);\n"
+    );
     for call in plan.calls {
         let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::calls::signature(plan, call));
     }
@@ -55,7 +61,16 @@ fn state(plan: &Plan<'_>, text: &mut String) {
             };
             member("Law about each axis.", name, &format!("law{axes}"));
             if filters > 0 {
-                member("Filters of each law.", "BiquadFilter", &format!("filters[{}][{filters}]", laws.axis_count()));
+                member(
+                    "Filters of each law.",
+                    "BiquadFilter",
+                    &format!("filters[{}][{filters}]", laws.axis_count()),
+                );
+            }
+            if let Some(unit) = &laws.estimator {
+                for (about, name, declared) in estimator_calls::members(unit) {
+                    member(about, name, &declared);
+                }
             }
             if let Some(own) = &laws.wheels {
                 member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));

@@ -36,7 +36,9 @@ impl<'a> DebugReader<'a> {
             "true" | "false" => word.to_owned(),
             "inf" => "binary64_infinity()".to_owned(),
             "-inf" => "-binary64_infinity()".to_owned(),
-            _ if word.contains(['.', 'e']) && word.starts_with(['-', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']) => {
+            _ if word.contains(['.', 'e'])
+                && word.starts_with(['-', '0', '1', '2', '3', '4', '5', '6', '7', '8', '9']) =>
+            {
                 float_literal(word.parse().unwrap_or(f64::NAN))
             }
             _ if word.starts_with(|first: char| first.is_ascii_uppercase()) && word != "NaN" => {

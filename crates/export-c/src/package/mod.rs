@@ -2,6 +2,7 @@
 
 mod calls;
 mod driver;
+mod estimator_calls;
 mod header;
 mod initialiser;
 mod source;
@@ -88,14 +89,15 @@ pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> R
         translate(&flight_sources(), &source::roots(&system), prefix).map_err(ExportError::Translation)?;
     let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
     let mut files = vec![
-        text(format!("{prefix}.h"), header::header(&plan, &translation.declarations)),
+        text(format!("{prefix}.h"), header::header(&plan, &translation)),
         text(format!("{prefix}.c"), source::source(&plan, &translation)),
         text("driver.c".to_owned(), driver::driver(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
     ];
-    files.extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
+    files
+        .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let vectors = vectors.len();
     Ok(Package { files, calls, vectors })

@@ -22,8 +22,19 @@ pub fn roots(system: &ControlSystem) -> Vec<&'static str> {
                     roots.extend(["attitude_law::AttitudeFeedback::step", "torque_distribution::torque"]);
                 }
             }
+            if laws.estimator.is_some() {
+                roots.extend([
+                    "attitude_estimator::AttitudeEstimator::start",
+                    "attitude_estimator::AttitudeEstimator::take_gyro",
+                    "attitude_estimator::AttitudeEstimator::take_observation",
+                    "attitude_estimator::AttitudeEstimator::attitude",
+                    "attitude_estimator::AttitudeEstimator::rate",
+                    "attitude_filter::AttitudeBiasFilter::new",
+                    "quaternion::Quaternion::rotation_to",
+                ]);
+            }
             if laws.wheels.is_some() {
-                roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques", "vector3::Vector3::dot"]);
+                roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques"]);
             }
         }
     }
@@ -33,7 +44,13 @@ pub fn roots(system: &ControlSystem) -> Vec<&'static str> {
 /// Returns the source.
 pub fn source(plan: &Plan<'_>, translation: &Translation) -> String {
     let mut text = String::new();
-    let _ = writeln!(text, "/* Control system of {}: see {}.h. */\n\n#include \"{}.h\"\n", plan.origin, plan.prefix, plan.prefix);
+    let _ = writeln!(
+        text,
+        "/* Control system of {}: see {}.h. */\n\n#include \"{}.h\"\n",
+        plan.origin, plan.prefix, plan.prefix
+    );
+    text.push_str(translation.guards.trim());
+    text.push_str("\n\n");
     text.push_str(translation.definitions.trim());
     text.push_str("\n\n");
     text.push_str(&calls::functions(plan));
