@@ -52,23 +52,30 @@ impl AttitudeBiasFilter {
 
     /// Propagates the filter over `seconds` with `reading`, the gyro's mean rate over the interval (rad/s).
     pub fn predict(&mut self, reading: &Vector3, seconds: f64, noise: &GyroNoise) {
-        let turn: Vector3 = reading.minus(&self.bias).scaled(seconds);
+        let rate: Vector3 = reading.minus(&self.bias);
+        let turn: Vector3 = rate.scaled(seconds);
         let white: f64 = noise.angle_random_walk * noise.angle_random_walk;
         let walk: f64 = noise.rate_random_walk * noise.rate_random_walk;
         self.rotate(&turn);
-        self.covariance.propagate(&turn, &IntervalNoise { seconds, white, walk });
+        let interval: IntervalNoise = IntervalNoise { seconds, white, walk };
+        self.covariance.propagate(&turn, &interval);
     }
 
     /// Returns the attitude after `seconds` with the gyro reading `reading` (rad/s).
     #[inline]
     pub fn attitude_after(&self, reading: &Vector3, seconds: f64) -> Quaternion {
-        self.attitude.times(&Quaternion::rotation(&reading.minus(&self.bias).scaled(seconds)))
+        let rate: Vector3 = reading.minus(&self.bias);
+        let turn: Vector3 = rate.scaled(seconds);
+        let rotation: Quaternion = Quaternion::rotation(&turn);
+        self.attitude.times(&rotation)
     }
 
     /// Rotates the attitude by a rotation vector in body axes (rad).
     #[inline]
     pub fn rotate(&mut self, by: &Vector3) {
-        self.attitude = self.attitude.times(&Quaternion::rotation(by)).normalized();
+        let rotation: Quaternion = Quaternion::rotation(by);
+        let turned: Quaternion = self.attitude.times(&rotation);
+        self.attitude = turned.normalized();
     }
 
     /// Corrects the filter by a measurement of any kind, with its constant gain if it has one.
@@ -93,12 +100,16 @@ impl AttitudeBiasFilter {
                 inverse.rows[row][column] = to_attitude.rows[row][column] + noise.rows[row][column];
             }
         }
-        if !inverse.invert_definite(3) {
+        let is_definite: bool = inverse.invert_definite(3);
+        if !is_definite {
             return Correction::NONE;
         }
         let gain: Matrix6x3 = to_attitude.times(3, &inverse);
-        self.apply(&gain.times_vector(3, &innovation), &gain, &gain.spread(3, noise));
-        let nis: f64 = innovation.dot(&inverse.times(&innovation));
+        let error: AttitudeBiasError = gain.times_vector(3, &innovation);
+        let added: Matrix6 = gain.spread(3, noise);
+        self.apply(&error, &gain, &added);
+        let scaled: Vector3 = inverse.times(&innovation);
+        let nis: f64 = innovation.dot(&scaled);
         Correction { innovation, nis, components: 3, is_valid: true }
     }
 
@@ -119,22 +130,28 @@ impl AttitudeBiasFilter {
             }
         };
         let count: usize = measured.components;
-        let to_measured: Matrix6x3 = self.covariance.first_columns().times_transposed(&measured.jacobian);
+        let to_attitude: Matrix6x3 = self.covariance.first_columns();
+        let to_measured: Matrix6x3 = to_attitude.times_transposed(&measured.jacobian);
         let mut inverse: Matrix3 = to_measured.innovation_covariance(&measured.jacobian, &measured.noise);
-        if !inverse.invert_definite(count) {
+        let is_definite: bool = inverse.invert_definite(count);
+        if !is_definite {
             return Correction::NONE;
         }
         let gain: Matrix6x3 = to_measured.times(count, &inverse);
         let error: AttitudeBiasError = gain.times_vector(count, &measured.off);
-        self.apply(&error, &gain.times(count, &measured.jacobian), &gain.spread(count, &measured.noise));
-        let innovation: Vector3 = off.cross(&expected).divided(expected.norm_squared());
+        let action: Matrix6x3 = gain.times(count, &measured.jacobian);
+        let added: Matrix6 = gain.spread(count, &measured.noise);
+        self.apply(&error, &action, &added);
+        let across: Vector3 = off.cross(&expected);
+        let innovation: Vector3 = across.divided(expected.norm_squared());
         if is_direction {
             let x: f64 = inverse.rows[0][0] * measured.off.x + inverse.rows[0][1] * measured.off.y;
             let y: f64 = inverse.rows[1][0] * measured.off.x + inverse.rows[1][1] * measured.off.y;
             let nis: f64 = (measured.off.x * x + measured.off.y * y) * 1.5;
             return Correction { innovation, nis, components: 2, is_valid: true };
         }
-        Correction { innovation, nis: off.dot(&inverse.times(&off)), components: 3, is_valid: true }
+        let scaled: Vector3 = inverse.times(&off);
+        Correction { innovation, nis: off.dot(&scaled), components: 3, is_valid: true }
     }
 
     /// Corrects the filter with the observation's constant gain on the measured angle relative to the attitude. The
@@ -155,18 +172,25 @@ impl AttitudeBiasFilter {
             let expected: Vector3 = self.attitude.to_body(&observation.inertial);
             let square: f64 = expected.norm_squared();
             off = observation.vector.minus(&expected);
-            innovation = off.cross(&expected).divided(square);
+            let across: Vector3 = off.cross(&expected);
+            innovation = across.divided(square);
             jacobian = Matrix3::cross(&expected);
-            gain = observation.gain.times(3, &jacobian.divided(-square));
+            let to_angle: Matrix3 = jacobian.divided(-square);
+            gain = observation.gain.times(3, &to_angle);
         }
-        let to_measured: Matrix6x3 = self.covariance.first_columns().times_transposed(&jacobian);
+        let to_attitude: Matrix6x3 = self.covariance.first_columns();
+        let to_measured: Matrix6x3 = to_attitude.times_transposed(&jacobian);
         let mut factor: Matrix3 = to_measured.innovation_covariance(&jacobian, &observation.noise);
-        if !factor.factorise(3) {
+        let is_definite: bool = factor.factorise(3);
+        if !is_definite {
             return Correction::NONE;
         }
-        let nis: f64 = 3.0 / f64::from(components) * off.dot(&factor.solve(&off));
+        let solution: Vector3 = factor.solve(&off);
+        let nis: f64 = 3.0 / f64::from(components) * off.dot(&solution);
         let error: AttitudeBiasError = gain.times_vector(3, &off);
-        self.apply(&error, &gain.times(3, &jacobian), &gain.spread(3, &observation.noise));
+        let action: Matrix6x3 = gain.times(3, &jacobian);
+        let added: Matrix6 = gain.spread(3, &observation.noise);
+        self.apply(&error, &action, &added);
         Correction { innovation, nis, components, is_valid: true }
     }
 

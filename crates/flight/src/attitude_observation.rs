@@ -86,11 +86,11 @@ impl VectorInnovation {
     pub fn for_direction(expected: &Vector3, off: &Vector3, noise: &Matrix3) -> Self {
         let across: Matrix3 = perpendicular_pair(expected);
         let scaled: Matrix3 = across.times_matrix(noise);
-        let components: Vector3 = across.times(off);
+        let cross: Matrix3 = Matrix3::cross(expected);
         Self {
             components: 2,
-            off: components,
-            jacobian: across.times_matrix(&Matrix3::cross(expected)),
+            off: across.times(off),
+            jacobian: across.times_matrix(&cross),
             noise: scaled.times_transposed(&across),
         }
     }
@@ -107,8 +107,10 @@ pub fn perpendicular_pair(v: &Vector3) -> Matrix3 {
     if v.z.abs() < least {
         axis = Vector3 { x: 0.0, y: 0.0, z: 1.0 };
     }
-    let first: Vector3 = v.cross(&axis).normalized();
-    let second: Vector3 = v.cross(&first).normalized();
+    let across: Vector3 = v.cross(&axis);
+    let first: Vector3 = across.normalized();
+    let third: Vector3 = v.cross(&first);
+    let second: Vector3 = third.normalized();
     Matrix3 { rows: [[first.x, first.y, first.z], [second.x, second.y, second.z], [0.0, 0.0, 0.0]] }
 }
 

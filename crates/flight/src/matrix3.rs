@@ -136,7 +136,8 @@ impl Matrix3 {
     /// positive definite; the matrix then is not valid.
     pub fn invert_definite(&mut self, count: usize) -> bool {
         let order: usize = if count < 3 { count } else { 3 };
-        if !self.factorise(order) {
+        let is_definite: bool = self.factorise(order);
+        if !is_definite {
             return false;
         }
         let mut inverse: Self = Self::ZERO;

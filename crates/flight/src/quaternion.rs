@@ -73,7 +73,8 @@ impl Quaternion {
     /// Returns the rotation vector (rad) from this attitude to another, in the body's axes and on the shorter way.
     #[inline]
     pub fn rotation_to(&self, to: &Self) -> Vector3 {
-        let difference: Self = self.conjugate().times(to);
+        let inverse: Self = self.conjugate();
+        let difference: Self = inverse.times(to);
         let vector: Vector3 = difference.vector();
         let sine: f64 = vector.norm();
         let twice: f64 = 2.0_f64.copysign(difference.w);
@@ -85,7 +86,10 @@ impl Quaternion {
     #[inline]
     pub fn to_body(&self, inertial: &Vector3) -> Vector3 {
         let pure: Self = Self { w: 0.0, x: inertial.x, y: inertial.y, z: inertial.z };
-        let rotated: Self = self.conjugate().times(&pure).times(self);
-        rotated.vector().divided(self.norm_squared())
+        let inverse: Self = self.conjugate();
+        let half: Self = inverse.times(&pure);
+        let rotated: Self = half.times(self);
+        let vector: Vector3 = rotated.vector();
+        vector.divided(self.norm_squared())
     }
 }
