@@ -219,7 +219,7 @@ fn braced(entries: &[String], may_break: bool) -> String {
     if !may_break || line.len() <= WIDTH {
         return line;
     }
-    let entries: String = entries.iter().map(|entry| format!("    {entry},\n")).collect();
+    let entries: String = entries.iter().flat_map(|entry| ["    ", entry, ",\n"]).collect();
     format!("{{\n{entries}}}")
 }
 

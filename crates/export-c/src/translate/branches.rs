@@ -86,7 +86,9 @@ impl FunctionBody<'_> {
         for (i, (pattern, body)) in arms.into_iter().enumerate() {
             match pattern {
                 MatchPattern::Labels(labels) => {
-                    labels.iter().for_each(|label| self.code.line(&format!("case {label}:")));
+                    for label in &labels {
+                        self.code.line(&format!("case {label}:"));
+                    }
                     // All variants are listed: no value is left for a compiler to warn of.
                     if i == last {
                         self.code.line("default:");

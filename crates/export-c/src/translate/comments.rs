@@ -4,6 +4,7 @@ use syn::spanned::Spanned;
 use syn::{Attribute, Expr, Lit, Meta};
 
 use super::error::{Outcome, refuse};
+use super::writer::push;
 
 /// Greatest length of a line of a comment.
 const WIDTH: usize = 110;
@@ -70,7 +71,7 @@ pub(super) fn comment(lines: &[String], indent: usize) -> String {
             text.truncate(text.len() - 1);
             let last = rest.last().unwrap_or(first);
             if last.chars().count() + indent + 6 > WIDTH {
-                text += &format!("\n{space}");
+                push(&mut text, format_args!("\n{space}"));
             }
             text += " */\n";
             text

@@ -7,6 +7,7 @@ use super::items::{ItemContent, Program};
 use super::literals::{float_literal, integer_literal};
 use super::names::{Names, free_name};
 use super::types::ValueKind;
+use super::writer::push;
 
 /// Greatest length of a line.
 const WIDTH: usize = 110;
@@ -18,7 +19,7 @@ pub(super) fn define_constant(program: &Program<'_>, names: &Names, index: usize
     let name = names.item(index);
     let mut text = comment(&item.docs, 0);
     if program.is_size(index)? {
-        text += &format!("enum {{ {name} = {} }};\n", value.integer().unwrap_or_default());
+        push(&mut text, format_args!("enum {{ {name} = {} }};\n", value.integer().unwrap_or_default()));
         return Ok(text);
     }
     let Some(kind) = program.constant_kind(index)? else { return Ok(text) };
@@ -26,12 +27,12 @@ pub(super) fn define_constant(program: &Program<'_>, names: &Names, index: usize
     let Some(value) = initialiser(program, names, &kind, &value, 0) else {
         return refuse(
             item.span,
-            format!("`{name}` with an infinity or NaN"),
+            format!("`{}` with an infinity or NaN", item.name),
             "finite numbers; functions may return others",
         )
         .map_err(|error| program.placed(error, item.file));
     };
-    text += &format!("{start}{value};\n");
+    push(&mut text, format_args!("{start}{value};\n"));
     Ok(text)
 }
 
@@ -70,7 +71,7 @@ fn initialiser(
     for entry in entries {
         let is_short = entry.len() < 24 && !entry.contains(['\n', '=']);
         if !row.is_empty() && (!is_short || row.len() + entry.len() + 6 + indent > WIDTH) {
-            text += &format!("{space}{row}\n");
+            push(&mut text, format_args!("{space}{row}\n"));
             row.clear();
         }
         if !row.is_empty() {
@@ -79,12 +80,12 @@ fn initialiser(
         row += &entry;
         row.push(',');
         if !is_short {
-            text += &format!("{space}{row}\n");
+            push(&mut text, format_args!("{space}{row}\n"));
             row.clear();
         }
     }
     if !row.is_empty() {
-        text += &format!("{space}{row}\n");
+        push(&mut text, format_args!("{space}{row}\n"));
     }
     Some(format!("{text}{}}}", " ".repeat(indent)))
 }

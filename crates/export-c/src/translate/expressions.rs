@@ -126,8 +126,8 @@ impl FunctionBody<'_> {
     ) -> Outcome<()> {
         let Some(expected) = expected else { return Ok(()) };
         let is_equal = match (kind, expected) {
-            (ValueKind::Reference { target: a, .. }, ValueKind::Reference { target: b, .. }) => a == b,
-            (ValueKind::Slice { element: a, .. }, ValueKind::Slice { element: b, .. }) => a == b,
+            (ValueKind::Reference { target: from, .. }, ValueKind::Reference { target: to, .. })
+            | (ValueKind::Slice { element: from, .. }, ValueKind::Slice { element: to, .. }) => from == to,
             _ => kind == expected,
         };
         if is_equal {

@@ -1,6 +1,6 @@
 //! Types of expressions, from the inside: none for literals of integers without a type.
 
-use syn::{BinOp, Block, Expr, Lit, Member, Pat, Stmt, UnOp};
+use syn::{BinOp, Block, Expr, ExprMethodCall, Lit, Member, Pat, Path, Stmt, UnOp};
 
 use super::evaluation::{ConstantValue, outside_constant};
 use super::functions::FunctionBody;
@@ -20,23 +20,7 @@ impl FunctionBody<'_> {
                 Lit::Int(digits) => IntegerKind::from_name(digits.suffix()).map(ValueKind::Integer),
                 _ => None,
             },
-            Expr::Path(path) => {
-                if let Some(local) =
-                    path.path.get_ident().and_then(|name| self.scopes.look(&name.to_string()))
-                {
-                    return Some(local.kind.clone());
-                }
-                if let Some((index, _)) = self.program.find_variant(self.file, self.owner, &path.path) {
-                    return Some(ValueKind::Enum(index));
-                }
-                if let Some(index) = self.program.find(self.file, self.owner, &path.path) {
-                    return self.program.constant_kind(index).ok()?;
-                }
-                match outside_constant(&words(&path.path))? {
-                    ConstantValue::Integer(_, kind) => Some(ValueKind::Integer(kind)),
-                    _ => Some(ValueKind::F64),
-                }
-            }
+            Expr::Path(path) => self.infer_path(&path.path),
             Expr::Field(field) => {
                 let (ValueKind::Struct(index), Member::Named(name)) =
                     (self.infer(&field.base)?.target().clone(), &field.member)
@@ -76,21 +60,7 @@ impl FunctionBody<'_> {
                     name => IntegerKind::from_name(name).map(ValueKind::Integer),
                 }
             }
-            Expr::MethodCall(call) => {
-                let receiver = self.infer(&call.receiver)?.target().clone();
-                let method = call.method.to_string();
-                match (&receiver, method.as_str()) {
-                    (_, "is_nan" | "is_finite") => Some(ValueKind::Bool),
-                    (_, "to_bits") => Some(ValueKind::Integer(IntegerKind::U64)),
-                    (_, "leading_zeros") => Some(ValueKind::Integer(IntegerKind::U32)),
-                    (ValueKind::Array(..) | ValueKind::Slice { .. }, "len") => Some(ValueKind::USIZE),
-                    (ValueKind::Struct(index) | ValueKind::Enum(index), _) => {
-                        let index = self.program.method(*index, &method)?;
-                        self.program.function_kind(index).ok()?.map(|kind| kind.result)
-                    }
-                    _ => Some(receiver),
-                }
-            }
+            Expr::MethodCall(call) => self.infer_method(call),
             Expr::Struct(value) => {
                 let index = self.program.find(self.file, self.owner, &value.path)?;
                 self.program.type_kind(index)
@@ -117,6 +87,38 @@ impl FunctionBody<'_> {
             Expr::Match(branch) => branch.arms.iter().find_map(|arm| self.infer(&arm.body)),
             Expr::Block(block) => self.infer_block(&block.block),
             _ => None,
+        }
+    }
+
+    fn infer_path(&self, path: &Path) -> Option<ValueKind> {
+        if let Some(local) = path.get_ident().and_then(|name| self.scopes.look(&name.to_string())) {
+            return Some(local.kind.clone());
+        }
+        if let Some((index, _)) = self.program.find_variant(self.file, self.owner, path) {
+            return Some(ValueKind::Enum(index));
+        }
+        if let Some(index) = self.program.find(self.file, self.owner, path) {
+            return self.program.constant_kind(index).ok()?;
+        }
+        match outside_constant(&words(path))? {
+            ConstantValue::Integer(_, kind) => Some(ValueKind::Integer(kind)),
+            _ => Some(ValueKind::F64),
+        }
+    }
+
+    fn infer_method(&mut self, call: &ExprMethodCall) -> Option<ValueKind> {
+        let receiver = self.infer(&call.receiver)?.target().clone();
+        let method = call.method.to_string();
+        match (&receiver, method.as_str()) {
+            (ValueKind::Struct(index) | ValueKind::Enum(index), _) => {
+                let index = self.program.method(*index, &method)?;
+                self.program.function_kind(index).ok()?.map(|kind| kind.result)
+            }
+            (_, "is_nan" | "is_finite") => Some(ValueKind::Bool),
+            (_, "to_bits") => Some(ValueKind::Integer(IntegerKind::U64)),
+            (_, "leading_zeros") => Some(ValueKind::Integer(IntegerKind::U32)),
+            (ValueKind::Array(..) | ValueKind::Slice { .. }, "len") => Some(ValueKind::USIZE),
+            _ => Some(receiver),
         }
     }
 

@@ -19,7 +19,7 @@ pub(super) struct StructField {
 
 /// Content of an item.
 pub(super) enum ItemContent {
-    Constant { kind: Type, value: Expr },
+    Constant { kind: Box<Type>, value: Box<Expr> },
     Struct { fields: Vec<StructField> },
     Enum { variants: Vec<(String, Vec<String>)> },
     Function { signature: Box<Signature>, block: Block },
@@ -97,15 +97,15 @@ impl<'a> Program<'a> {
                 Ok(())
             }
             syn::Item::Const(item) => {
-                let content = ItemContent::Constant { kind: *item.ty, value: *item.expr };
-                self.add(file, None, item.ident, &item.attrs, Some(&item.generics), content)
+                let content = ItemContent::Constant { kind: item.ty, value: item.expr };
+                self.add(file, None, &item.ident, &item.attrs, Some(&item.generics), content)
             }
             syn::Item::Struct(item) => {
                 if !is_kept(&item.attrs)? {
                     return Ok(());
                 }
                 let content = ItemContent::Struct { fields: struct_fields(item.fields, span)? };
-                self.add(file, None, item.ident, &item.attrs, Some(&item.generics), content)
+                self.add(file, None, &item.ident, &item.attrs, Some(&item.generics), content)
             }
             syn::Item::Enum(item) => {
                 if !is_kept(&item.attrs)? {
@@ -125,7 +125,7 @@ impl<'a> Program<'a> {
                 self.add(
                     file,
                     None,
-                    item.ident,
+                    &item.ident,
                     &item.attrs,
                     Some(&item.generics),
                     ItemContent::Enum { variants },
@@ -192,8 +192,9 @@ impl<'a> Program<'a> {
             let span = item.span();
             match item {
                 ImplItem::Const(item) => {
-                    let content = ItemContent::Constant { kind: item.ty, value: item.expr };
-                    self.add(file, Some(owner), item.ident, &item.attrs, Some(&item.generics), content)?;
+                    let content =
+                        ItemContent::Constant { kind: Box::new(item.ty), value: Box::new(item.expr) };
+                    self.add(file, Some(owner), &item.ident, &item.attrs, Some(&item.generics), content)?;
                 }
                 ImplItem::Fn(item) => {
                     let content = ItemContent::Function { signature: Box::new(item.sig), block: item.block };
@@ -225,14 +226,14 @@ impl<'a> Program<'a> {
         }
         refuse_generics(&signature.generics)?;
         let ident = signature.ident.clone();
-        self.add(file, owner, ident, attributes, None, content)
+        self.add(file, owner, &ident, attributes, None, content)
     }
 
     fn add(
         &mut self,
         file: usize,
         owner: Option<usize>,
-        ident: syn::Ident,
+        ident: &syn::Ident,
         attributes: &[syn::Attribute],
         generics: Option<&Generics>,
         content: ItemContent,

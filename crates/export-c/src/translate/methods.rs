@@ -7,7 +7,7 @@ use super::error::{Outcome, refuse};
 use super::expressions::CExpression;
 use super::functions::FunctionBody;
 use super::helpers::CHelper;
-use super::operators::{POSTFIX, UNARY};
+use super::operators::UNARY;
 use super::types::{IntegerKind, ValueKind};
 
 impl FunctionBody<'_> {
@@ -100,7 +100,6 @@ impl FunctionBody<'_> {
                 return Ok(CExpression::value(text, level, ValueKind::Integer(kind)));
             }
         };
-        debug_assert!(POSTFIX > UNARY, "calls bind most");
         Ok(self.helper(helper, &[&a.text, &b.text], ValueKind::Integer(kind)))
     }
 }

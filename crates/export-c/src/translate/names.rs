@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::error::{Outcome, refuse};
+use super::error::{Outcome, TranslationError};
 use super::items::{ItemContent, Program};
 
 /// Names in C of all items.
@@ -32,18 +32,21 @@ impl Names {
                 ItemContent::Constant { .. } => format!("{parent}_{}", item.name).to_uppercase(),
             };
             let path = program.path(index);
-            if is_of_helper(&name) {
-                let error = refuse(
-                    item.span,
-                    format!("`{path}`, which is `{name}` in C"),
-                    "names without those of helpers",
-                );
-                return error.map_err(|error| program.placed(error, item.file));
+            let mut all = vec![name.clone()];
+            if let ItemContent::Enum { variants } = &item.content {
+                all.extend(variants.iter().map(|(variant, _)| variant_name(&name, variant)));
             }
-            if let Some(other) = used.insert(name.clone(), path.clone()) {
-                let found = format!("`{path}` and `{other}`, which both are `{name}` in C");
-                let error = refuse(item.span, found, "names that differ in C");
-                return error.map_err(|error| program.placed(error, item.file));
+            for c_name in all {
+                let other = used.insert(c_name.clone(), path.clone());
+                let found = match other {
+                    Some(other) => format!("`{path}` and `{other}`, which both are `{c_name}` in C"),
+                    None if is_of_helper(&c_name) => {
+                        format!("`{path}`, which is `{c_name}` in C, as helpers are")
+                    }
+                    None => continue,
+                };
+                let error = TranslationError::at(item.span, found, "names that differ in C");
+                return Err(program.placed(error, item.file));
             }
             names.items.push(name);
         }
@@ -57,7 +60,7 @@ impl Names {
 
     /// Returns the name of a variant of an enum.
     pub(super) fn variant(&self, index: usize, variant: &str) -> String {
-        format!("{}_{}", self.items[index], snake_case(variant)).to_uppercase()
+        variant_name(&self.items[index], variant)
     }
 
     /// Returns the prefix of public names.
@@ -69,6 +72,10 @@ impl Names {
     pub(super) fn is_taken(&self, name: &str) -> bool {
         self.items.iter().any(|item| item == name)
     }
+}
+
+fn variant_name(name: &str, variant: &str) -> String {
+    format!("{name}_{}", snake_case(variant)).to_uppercase()
 }
 
 /// True for names like those of helpers.

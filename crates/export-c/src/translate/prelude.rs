@@ -10,7 +10,7 @@ pub(super) const INCLUDES: &str = "\
 ";
 
 /// Guards; `PREFIX` stands for the prefix of names.
-pub(super) const GUARDS: &str = r##"/* The results have the same bits everywhere if doubles follow IEEE 754, each operation is rounded once and to a
+pub(super) const GUARDS: &str = r#"/* The results have the same bits everywhere if doubles follow IEEE 754, each operation is rounded once and to a
  * double, and none is moved, joined or left out. */
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "PREFIX: -ffast-math, -Ofast and -ffinite-math-only change results: build without them"
@@ -32,4 +32,4 @@ pub(super) const GUARDS: &str = r##"/* The results have the same bits everywhere
 #endif
 typedef char PREFIX_double_has_8_bytes[sizeof(double) == 8 ? 1 : -1];
 typedef char PREFIX_int_has_4_bytes[sizeof(int) >= 4 ? 1 : -1];
-"##;
+"#;

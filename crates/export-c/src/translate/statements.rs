@@ -6,6 +6,7 @@ use syn::{Block, Expr, ExprAssign, Local, Pat, Stmt};
 
 use super::comments::{comment, comment_above, is_kept};
 use super::error::{Outcome, refuse};
+use super::evaluation::is_open;
 use super::expressions::bare;
 use super::functions::FunctionBody;
 use super::operators::is_assigning;
@@ -44,7 +45,7 @@ impl FunctionBody<'_> {
             match statement {
                 Stmt::Local(local) => self.local(local)?,
                 Stmt::Expr(written, None) if i + 1 == block.stmts.len() => {
-                    self.value_into(written, target)?
+                    self.value_into(written, target)?;
                 }
                 Stmt::Expr(written, _) => self.value_into(written, &ValueTarget::Discard)?,
                 Stmt::Item(item) => {
@@ -141,12 +142,8 @@ impl FunctionBody<'_> {
     /// Translates an expression to find what in it is refused.
     fn refuse_deeply(&mut self, written: &Expr) -> Outcome<()> {
         match bare(written) {
-            Expr::Lit(_)
-            | Expr::If(_)
-            | Expr::Match(_)
-            | Expr::Block(_)
-            | Expr::Array(_)
-            | Expr::Repeat(_) => Ok(()),
+            literal if is_open(literal) => Ok(()),
+            Expr::If(_) | Expr::Match(_) | Expr::Block(_) | Expr::Array(_) | Expr::Repeat(_) => Ok(()),
             other => self.whole(other, None).map(|_| ()),
         }
     }
@@ -235,10 +232,10 @@ impl FunctionBody<'_> {
         }
         match target {
             ValueTarget::Discard if value.kind == ValueKind::Unit => {
-                self.code.line(&format!("{};", value.text))
+                self.code.line(&format!("{};", value.text));
             }
             ValueTarget::Discard => {
-                self.code.line(&format!("(void){};", value.at_least(super::operators::UNARY)))
+                self.code.line(&format!("(void){};", value.at_least(super::operators::UNARY)));
             }
             ValueTarget::Declare { name, kind } => {
                 self.has_declared = true;

@@ -11,6 +11,7 @@ use super::names::{Names, free_name};
 use super::order::by_module;
 use super::prelude::{GUARDS, INCLUDES};
 use super::reach::{reach, refuse_recursion};
+use super::writer::push;
 
 /// File of Rust.
 #[derive(Debug, Clone, Copy)]
@@ -139,9 +140,8 @@ fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Opti
                 program.field_kind(index, &field.name)?;
             }
         }
-        program.constant_kind(index)?;
         if matches!(item.content, ItemContent::Constant { .. }) {
-            program.constant_value(index)?;
+            define_constant(program, names, index)?;
         }
         let function = translate_function(program, names, &lines[item.file], index);
         functions.push(function.map_err(|error| program.placed(error, item.file))?);
@@ -194,19 +194,22 @@ fn declare_type(program: &Program<'_>, names: &Names, index: usize) -> Outcome<S
     let mut text = comment(&item.docs, 0);
     match &item.content {
         ItemContent::Struct { fields } => {
-            text += &format!("typedef struct {name} {{\n");
+            push(&mut text, format_args!("typedef struct {name} {{\n"));
             for field in fields {
                 text += &comment(&field.docs, 4);
                 if let Some(kind) = program.field_kind(index, &field.name)? {
-                    text += &format!("    {};\n", names.declaration(&kind, &free_name(&field.name)));
+                    push(
+                        &mut text,
+                        format_args!("    {};\n", names.declaration(&kind, &free_name(&field.name))),
+                    );
                 }
             }
         }
         ItemContent::Enum { variants } => {
-            text += &format!("typedef enum {name} {{\n");
+            push(&mut text, format_args!("typedef enum {name} {{\n"));
             for (variant, docs) in variants {
                 text += &comment(docs, 4);
-                text += &format!("    {},\n", names.variant(index, variant));
+                push(&mut text, format_args!("    {},\n", names.variant(index, variant)));
             }
             // C99 allows the last comma.
         }

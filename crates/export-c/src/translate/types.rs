@@ -330,9 +330,9 @@ impl Names {
             ValueKind::Bool => "bool".to_owned(),
             ValueKind::Integer(integer) => integer.c_name().to_owned(),
             ValueKind::Struct(index) | ValueKind::Enum(index) => self.item(*index).to_owned(),
-            ValueKind::Array(element, _) => self.plain_type(element),
-            ValueKind::Reference { target, .. } => self.plain_type(target),
-            ValueKind::Slice { element, .. } => self.plain_type(element),
+            ValueKind::Array(inner, _)
+            | ValueKind::Reference { target: inner, .. }
+            | ValueKind::Slice { element: inner, .. } => self.plain_type(inner),
             ValueKind::Unit => "void".to_owned(),
         }
     }

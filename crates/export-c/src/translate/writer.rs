@@ -1,5 +1,7 @@
 //! Lines of C: indentation, and breaks of long lines.
 
+use std::fmt::{Arguments, Write as _};
+
 /// Greatest length of a line.
 const WIDTH: usize = 110;
 
@@ -89,7 +91,7 @@ impl CodeWriter {
 
     /// Returns the lines as a text.
     pub(super) fn text(&self) -> String {
-        self.lines.iter().map(|line| format!("{line}\n")).collect()
+        self.lines.iter().flat_map(|line| [line.as_str(), "\n"]).collect()
     }
 }
 
@@ -139,4 +141,9 @@ fn break_of(line: &str, start: usize) -> Option<usize> {
         }
     }
     best.map(|(_, at)| at)
+}
+
+/// Appends formatted words to a text, which cannot fail.
+pub(super) fn push(text: &mut String, words: Arguments<'_>) {
+    text.write_fmt(words).unwrap_or_default();
 }

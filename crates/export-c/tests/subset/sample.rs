@@ -193,6 +193,14 @@ pub fn branches(a: f64, b: f64, n: u64) -> f64 {
         };
         factor * scale
     };
+    let turn = match (n >> 5) as i32 {
+        -1 | 0x7fff_ffff => 0.125,
+        0 => -0.5,
+        _ => 0.25,
+    };
+    if n > 3 {
+        return bounded * turn;
+    }
     if bounded.is_nan() { b } else { min(bounded, halved(b)) }
 }
 
