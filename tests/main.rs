@@ -149,6 +149,7 @@ mod plot;
 mod report;
 mod reproduce;
 mod requirements;
+mod serve;
 mod sheets;
 mod stops;
 #[cfg(unix)]
@@ -168,6 +169,7 @@ mod words;
 mod worst;
 
 // Helpers of the tests.
+mod control_client;
 mod drawing;
 mod study;
 mod traces;
