@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
+import warnings
+from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import flexsc
@@ -20,24 +23,25 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def basilisk() -> Any:
-    import warnings
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        import flexsc.basilisk
-        from Basilisk.architecture import messaging
-        from Basilisk.simulation import extForceTorque, spacecraft
-        from Basilisk.utilities import SimulationBaseClass, macros
+        guest: Any = import_module("flexsc.basilisk")
+        messaging: Any = import_module("Basilisk.architecture.messaging")
+        force: Any = import_module("Basilisk.simulation.extForceTorque")
+        craft: Any = import_module("Basilisk.simulation.spacecraft")
+        navigation: Any = import_module("Basilisk.simulation.simpleNav")
+        simulations: Any = import_module("Basilisk.utilities.SimulationBaseClass")
+        macros: Any = import_module("Basilisk.utilities.macros")
 
-    class Names:
-        guest = flexsc.basilisk
-        messages = messaging
-        base = SimulationBaseClass
-        nano = staticmethod(macros.sec2nano)
-        Spacecraft = spacecraft.Spacecraft
-        Torque = extForceTorque.ExtForceTorque
-
-    return Names
+    return SimpleNamespace(
+        guest=guest,
+        messages=messaging,
+        base=simulations,
+        nano=macros.sec2nano,
+        Spacecraft=craft.Spacecraft,
+        Torque=force.ExtForceTorque,
+        Navigation=navigation.SimpleNav,
+    )
 
 
 def task(basilisk: Any, step: float, *models: Any) -> Any:
@@ -115,9 +119,7 @@ def test_a_law_of_flexsc_holds_a_spacecraft_of_basilisk(basilisk: Any) -> None:
     craft.hub.sigma_BNInit = [[0.1], [-0.05], [0.08]]
     craft.addDynamicEffector(effector)
     effector.cmdTorqueInMsg.subscribeTo(law.cmdTorqueOutMsg)
-    from Basilisk.simulation import simpleNav
-
-    navigation = simpleNav.SimpleNav()
+    navigation = basilisk.Navigation()
     navigation.scStateInMsg.subscribeTo(craft.scStateOutMsg)
     law.attNavInMsg.subscribeTo(navigation.attOutMsg)
     simulation = task(basilisk, 0.25, navigation, law, effector, craft)

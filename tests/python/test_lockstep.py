@@ -280,6 +280,24 @@ def test_another_parser_reads_every_field_to_the_bit(tmp_path: Path, description
     assert (last["end"], int(last["time_s"])) == ("complete", 5)
 
 
+def test_the_description_is_valid(tmp_path: Path, description: Callable[..., Any]) -> None:
+    etree = pytest.importorskip("lxml.etree", reason="lxml checks schemas: pip install lxml")
+    description()
+    package: Any = pytest.importorskip("space_packet_parser")
+    schema = Path(package.__file__).parent / "xtce" / "schemas" / "SpaceSystem.xsd"
+    # The schema refers to one of the web, of which it uses three attributes.
+    names = {"base": "anyURI", "lang": "language", "space": "string"}
+    attributes = "".join(f'<xs:attribute name="{name}" type="xs:{kind}"/>' for name, kind in names.items())
+    head = (
+        'xmlns:xs="http://www.w3.org/2001/XMLSchema" targetNamespace="http://www.w3.org/XML/1998/namespace"'
+    )
+    (tmp_path / "xml.xsd").write_text(f"<xs:schema {head}>{attributes}</xs:schema>", "utf-8")
+    text = re.sub(r'schemaLocation="[^"]*xml\.xsd"', 'schemaLocation="xml.xsd"', schema.read_text("utf-8"))
+    (tmp_path / "xtce.xsd").write_text(text, "utf-8")
+    checker = etree.XMLSchema(etree.parse(str(tmp_path / "xtce.xsd")))
+    assert checker.validate(etree.parse(str(tmp_path / "packets.xml"))), checker.error_log
+
+
 def parse(definition: Any, packet: bytes) -> dict[str, Any]:
     """The fields of a packet."""
     with warnings.catch_warnings():

@@ -17,17 +17,24 @@ the body frame; translation is not part of the scenario's motion, and is 0 in th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator
 from flexsc.parts import Actuator, Demanded, Reading, Sensor, Truth
 
 if TYPE_CHECKING:
-    from Basilisk.architecture import messaging, sysModel
+    # As far as this module uses them; Basilisk has no types of its own.
+    messaging: Any
+
+    class _SysModel:
+        ModelTag: str
+        moduleID: int
+
 else:
     try:
-        from Basilisk.architecture import messaging, sysModel
+        from Basilisk.architecture import messaging
+        from Basilisk.architecture.sysModel import SysModel as _SysModel
     except ModuleNotFoundError as error:
         text = f"flexsc.basilisk needs Basilisk: pip install bsk ({error})"
         raise ModuleNotFoundError(text, name="Basilisk") from error
@@ -60,7 +67,7 @@ def attitude_of(sigma: Sequence[float]) -> list[float]:
     return [(1.0 - square) / (1.0 + square), *(2.0 * float(part) / (1.0 + square) for part in sigma)]
 
 
-class Spacecraft(sysModel.SysModel):
+class Spacecraft(_SysModel):
     """The spacecraft of a scenario: a torque in, its state out.
 
     At each call of its task it moves to the present time under the torque that it had at its last call, and
@@ -144,7 +151,7 @@ class Spacecraft(sysModel.SysModel):
             self.rwSpeedOutMsg.write(speeds, nanos, self.moduleID)
 
 
-class Controller(sysModel.SysModel):
+class Controller(_SysModel):
     """The law of a scenario: attitude and rate in, a torque out.
 
     At each call of its task, the law's sensor reads the message, and a law whose sample it is commands a

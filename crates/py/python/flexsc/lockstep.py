@@ -1,7 +1,7 @@
 """A control program in lockstep with `flexsc serve`: the sensors of each cycle in, its commands out.
 
-The module needs nothing but the standard library, neither the engine nor numpy, so that flight software in
-Python runs with it anywhere. Start the server in a terminal,
+The module uses the standard library alone: flight software in Python may take a copy of this one file to
+where flexsc is not installed. Start the server in a terminal,
 
     flexsc serve scenarios/earth-observer.toml
 
