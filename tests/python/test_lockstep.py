@@ -9,7 +9,7 @@ import struct
 import subprocess
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ from typing import Any
 import flexsc
 import pytest
 from conftest import SCENARIOS, command_path
-from flexsc.lockstep import Client, Cycle, LockstepError
+from flexsc.lockstep import Client, Cycle, LockstepError, Quantity
 
 ROOT = Path(__file__).parents[2]
 WN, ZETA = 0.1, 0.8
@@ -26,7 +26,7 @@ Server = tuple["subprocess.Popen[str]", int]
 
 
 @contextmanager
-def serving(where: Path, *options: str, name: str = "earth-observer") -> Iterator[Server]:
+def serving(where: Path, *options: str, name: str = "earth-observer") -> Generator[Server, None, None]:
     """A server on a free port, which ends with the block."""
     arguments = ["serve", SCENARIOS / f"{name}.toml", "--bind", "127.0.0.1:0", *options]
     server = subprocess.Popen(
@@ -164,8 +164,9 @@ def test_one_program_serves_every_transport_and_pace(tmp_path: Path, transport: 
 
 
 def client_cycles(client: Client) -> Iterator[Cycle]:
+    quantities: list[Quantity] = ["acceleration", "acceleration", "acceleration"]
     for cycle in client:
-        client.command(attitude_law(cycle), ["acceleration"] * 3)
+        client.command(attitude_law(cycle), quantities)
         yield cycle
 
 

@@ -16,7 +16,7 @@ the body frame; translation is not part of the scenario's motion, and is 0 in th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexsc._scenario import Scenario
@@ -44,7 +44,7 @@ __all__ = ["Controller", "Spacecraft", "attitude_of", "mrp_of"]
 _NANO = 1e-9
 
 
-def mrp_of(attitude: Sequence[float]) -> list[float]:
+def mrp_of(attitude: Iterable[float]) -> list[float]:
     """Return the modified Rodrigues parameters of an attitude (w, x, y, z), at most a turn of 180 degrees.
 
     >>> from flexsc.basilisk import mrp_of
@@ -56,15 +56,16 @@ def mrp_of(attitude: Sequence[float]) -> list[float]:
     return [sign * part / (1.0 + sign * w) for part in vector]
 
 
-def attitude_of(sigma: Sequence[float]) -> list[float]:
+def attitude_of(sigma: Iterable[float]) -> list[float]:
     """Return the attitude (w, x, y, z) of modified Rodrigues parameters.
 
     >>> from flexsc.basilisk import attitude_of
     >>> attitude_of([0.0, 0.0, 1.0])
     [0.0, 0.0, 0.0, 1.0]
     """
-    square = sum(float(part) * float(part) for part in sigma)
-    return [(1.0 - square) / (1.0 + square), *(2.0 * float(part) / (1.0 + square) for part in sigma)]
+    vector = [float(part) for part in sigma]
+    square = sum(part * part for part in vector)
+    return [(1.0 - square) / (1.0 + square), *(2.0 * part / (1.0 + square) for part in vector)]
 
 
 class Spacecraft(_SysModel):
