@@ -150,6 +150,7 @@ mod report;
 mod reproduce;
 mod requirements;
 mod serve;
+mod serve_clients;
 mod sheets;
 mod stops;
 #[cfg(unix)]

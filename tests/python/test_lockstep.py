@@ -190,9 +190,9 @@ def test_a_client_is_told_why_it_cannot_begin(tmp_path: Path) -> None:
             with pytest.raises(ValueError, match="3 axes"):
                 client.command([0.0] * 2)
             client.command([float("nan")] * 3)
-            with pytest.raises(LockstepError, match="the command about axis 3 is NaN"):
+            with pytest.raises(LockstepError, match="the command about axis 1 is NaN"):
                 client.receive()
-        assert "the command about axis 3 is NaN" in ended(server, exits=1)
+        assert "the command about axis 1 is NaN" in ended(server, exits=1)
 
 
 def test_the_program_of_the_page_runs(tmp_path: Path) -> None:

@@ -198,15 +198,16 @@ impl PacketLayout {
         for quantity in &mut quantities[..self.axes] {
             *quantity = content.u8()?;
         }
-        let mut fault = None;
+        let mut faults = Vec::new();
         for (axis, code) in quantities.into_iter().enumerate().take(self.axes) {
             let value = content.f64()?;
             match CommandQuantity::ALL.get(usize::from(code)) {
                 Some(quantity) if value.is_finite() => commands[axis] = quantity.command(value),
-                Some(_) => fault = Some(format!("the command about axis {} is {value}", axis + 1)),
-                None => fault = Some(format!("the command about axis {} has the quantity {code}", axis + 1)),
+                Some(_) => faults.push(format!("the command about axis {} is {value}", axis + 1)),
+                None => faults.push(format!("the command about axis {} has the quantity {code}", axis + 1)),
             }
         }
+        let fault = faults.into_iter().next();
         content.0.is_empty().then_some(fault.map_or(Ok(commands), Err))
     }
 }
