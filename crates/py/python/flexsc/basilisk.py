@@ -180,7 +180,11 @@ class Controller(_SysModel):
         self._port = _MessageSensor(period)
         self._demand = _TorqueDemand()
         self._period = period
-        self.scenario = scenario.with_parts(sensor=self._port, actuator=self._demand)
+        single: dict[str, object] = {
+            "sensor": {"sampled": {"period": period, "rate_noise": 1e-9}},
+            "actuator": {"ideal": {}},
+        }
+        self.scenario = scenario.with_(single).with_parts(sensor=self._port, actuator=self._demand)
         self._simulator: Simulator | None = None
         self._began = 0
 
@@ -198,12 +202,13 @@ class Controller(_SysModel):
         if self._simulator is None:
             self._simulator = Simulator(self.scenario)
             self._began = CurrentSimNanos
+        now, last = (CurrentSimNanos - self._began) * _NANO, self.scenario.duration
+        if now > last * (1.0 + 1e-12):
+            raise ValueError(f'the law lasts {last:g} s: set a longer `duration`, with_("duration", ...)')
         # Half a period later, everything that is due now has been done.
-        time = (CurrentSimNanos - self._began) * _NANO + 0.5 * self._period
-        if time < self._simulator.time or time > self.scenario.duration:
-            raise ValueError(
-                f"the law lasts {self.scenario.duration:g} s, and its task has the period {self._period:g} s"
-            )
+        time = min(now + 0.5 * self._period, last)
+        if time < self._simulator.time:
+            raise ValueError(f"the period of the task is not the {self._period:g} s of the law's sensor")
         self._simulator.run_until(time)
         payload = messaging.CmdTorqueBodyMsgPayload()
         payload.torqueRequestBody = self._demand.torque
