@@ -63,9 +63,12 @@ class LossyLink:
         self.lost = 0
         self._client: Any = None
         self._open = True
+        self._threads: list[threading.Thread] = []
         for source, up in [(self.near, True), (self.far, False)]:
             source.settimeout(0.05)
-            threading.Thread(target=self._carry, args=(source, up, share, seed + up), daemon=True).start()
+            carry = threading.Thread(target=self._carry, args=(source, up, share, seed + up), daemon=True)
+            carry.start()
+            self._threads.append(carry)
 
     def _carry(self, source: socket.socket, up: bool, share: float, seed: int) -> None:
         draws = random.Random(seed)
@@ -85,6 +88,10 @@ class LossyLink:
 
     def close(self) -> None:
         self._open = False
+        for carry in self._threads:
+            carry.join()
+        self.near.close()
+        self.far.close()
 
 
 def attitude_law(cycle: Cycle) -> list[float]:
@@ -135,7 +142,7 @@ def test_the_bytes_are_those_of_a_simulator_with_the_same_torques(tmp_path: Path
     def torques(error: Any, rate: Any) -> list[float]:
         return [-3.0 * float(a) - 40.0 * float(w) for a, w in zip(error, rate, strict=True)]
 
-    keys = {"duration": 20.0, "sensor": {"continuous": {}}}
+    keys = {"duration": 20.0, "sensor": "continuous"}
     scenario = flexsc.Scenario.load(SCENARIOS / "earth-observer.toml").without("estimator").with_(keys)
     (tmp_path / "exact.toml").write_text(scenario.to_toml(), "utf-8")
     sim = flexsc.Simulator(scenario)
