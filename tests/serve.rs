@@ -6,6 +6,7 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
 use flexsc_core::control::law::Command;
+use flexsc_core::metrics::Metrics;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
 use flexsc_core::{Document, Scenario, Simulation, Telemetry, TelemetryField, TelemetryLayout};
@@ -83,9 +84,11 @@ pub fn in_process(run: &CampaignRun, detail: Detail, until: Instant) -> Vec<u8> 
 fn logged(run: &CampaignRun, commands: &CommandLog, detail: Detail, until: Instant) -> Vec<u8> {
     let provenance = with_layout(commands.provenance(run), &run.scenario, detail);
     let mut log = LogBytes::new(&provenance, detail).expect("a log");
-    let scene = Scene::for_detail(&run.scenario, detail);
+    let (scene, none) = (Scene::for_detail(&run.scenario, detail), Metrics::default());
     let metrics = commands.simulate(run, until, (&mut log, scene)).expect("a run");
-    log.finish(&metrics, RunEnd::at(until, run.scenario.duration)).expect("a log")
+    // A run that is interrupted has no metrics.
+    let end = RunEnd::at(until, run.scenario.duration);
+    log.finish(if end == RunEnd::Complete { &metrics } else { &none }, end).expect("a log")
 }
 
 #[test]

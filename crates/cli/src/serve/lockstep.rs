@@ -2,7 +2,7 @@
 
 use flexsc_core::campaign::{CampaignRun, CommandLog};
 use flexsc_core::metrics::{Metrics, MetricsCollector};
-use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::numerics::time::Span;
 use flexsc_core::record::{LogFile, Record, RecordError, RunEnd};
 use flexsc_core::{Simulation, SimulationError};
 use flexsc_view::scene::Scene;
@@ -12,7 +12,7 @@ use crate::stop::StopRecord;
 
 /// Outcome of a run in lockstep.
 pub struct Served {
-    /// Metrics up to the instant that the run has reached.
+    /// Metrics of a complete run; none otherwise.
     pub metrics: Metrics,
     /// Number of cycles that the client answered.
     pub cycles: u64,
@@ -87,10 +87,8 @@ pub fn serve(
         Some(reason) if reason.is_interruption() => RunEnd::Interrupted,
         Some(StopReason::Simulation(_)) => RunEnd::Failed,
     };
-    let metrics = match &stopped {
-        Some(StopReason::Simulation(_)) => Metrics::default(),
-        _ => lockstep.metrics(run, record.0),
-    };
+    // As with `simulate`, a run that has not reached its end has no metrics.
+    let metrics = if stopped.is_none() { record.0.finish(&run.scenario) } else { Metrics::default() };
     lockstep.report_end(end);
     let Lockstep { commands, cycles, .. } = lockstep;
     let written = log.map(|mut log| {
@@ -124,16 +122,6 @@ impl Lockstep<'_> {
     fn leave(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.simulation.run_until(self.simulation.time(), record)?;
         self.simulation.record_interruption(record)
-    }
-
-    /// Returns the metrics of the run; one that has ended early has those of a run with this duration.
-    fn metrics(&self, run: &CampaignRun, collector: MetricsCollector) -> Metrics {
-        if self.simulation.is_finished() {
-            return collector.finish(&run.scenario);
-        }
-        let mut part = run.scenario.clone();
-        part.written.duration = self.simulation.time().since(Instant::START);
-        collector.finish(&part)
     }
 
     /// Reports the end of the run to the client.

@@ -57,7 +57,7 @@ pub struct ServeArgs {
     /// Address of the server; port 0 selects any free port
     #[arg(long, value_name = "HOST:PORT", default_value = "127.0.0.1:5010", value_parser = address)]
     bind: SocketAddr,
-    /// What lets a cycle begin
+    /// Event that begins each cycle
     #[arg(long, value_name = "PACE", default_value = "free")]
     pace: PaceKind,
     /// Period of the cycles in s [default: that of the law]
