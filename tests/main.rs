@@ -150,6 +150,8 @@ mod plot;
 mod report;
 mod reproduce;
 mod requirements;
+mod serve;
+mod serve_clients;
 mod sheets;
 mod stops;
 #[cfg(unix)]
@@ -169,6 +171,7 @@ mod words;
 mod worst;
 
 // Helpers of the tests.
+mod control_client;
 mod drawing;
 mod study;
 mod traces;

@@ -28,6 +28,8 @@ BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MU
 CODE = re.compile(r"(<!-- not run: .*? -->\n+)?^```python\n((?:.*\n)*?)```", re.MULTILINE)
 # Libraries that a page shows and that the tests do without: a block that needs one is left out.
 OPTIONAL = {"brahe", "cma", "control", "dask", "duckdb", "numba", "pandas", "polars", "ray", "xarray"}
+# The module of the package `bsk`.
+OPTIONAL |= {"Basilisk"}
 RUN = """
 names = {"__name__": "__main__"}
 for block in BLOCKS:

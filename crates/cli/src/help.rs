@@ -24,6 +24,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "serve",
+                [
+                    (
+                        "flexsc serve earth-observer.toml -o served",
+                        "waits for a control program, and runs with it",
+                    ),
+                    (
+                        "flexsc serve earth-observer.toml --describe > packets.xml",
+                        "its packets in XTCE, for ground systems",
+                    ),
+                ],
+            ),
+            (
                 "sweep",
                 [
                     (

@@ -44,6 +44,7 @@ mod runs_table;
 mod sampled_loop;
 mod scenario;
 mod schema;
+mod serve;
 mod simulate;
 mod spectrum;
 mod stop;
@@ -80,6 +81,10 @@ struct Cli {
 enum Verb {
     /// Run scenarios, once each or as a Monte Carlo campaign
     Simulate(simulate::SimulateArgs),
+    /// Run a scenario in lockstep with a control program
+    ///
+    /// At each sample of the law, the program gets a packet with the sensors and answers with the commands, over UDP or TCP. The log is that of the same commands in one process, byte for byte.
+    Serve(serve::ServeArgs),
     /// Run a scenario over a grid or a sample of key values
     Sweep(sweep::SweepArgs),
     /// Merge parts of a campaign into one directory
@@ -196,6 +201,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
 fn execute(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
+        Verb::Serve(args) => serve::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
         Verb::Merge(args) => merge::run(&args),
         Verb::Top(args) => top::run(&args),

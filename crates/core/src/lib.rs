@@ -68,4 +68,6 @@ pub use scenario::Scenario;
 pub use sim::{
     ControlCall, ControlDecision, ObservationField, ObservationGroup, SensorSample, Simulation,
     SimulationError, StopAt,
+    ObservationField, ObservationGroup, SensorTelemetry, Simulation, SimulationError, StopAt, Telemetry,
+    TelemetryField, TelemetryLayout, TelemetrySensor,
 };

@@ -4,6 +4,7 @@ mod active_damping;
 mod attitude;
 mod attitude_profile;
 mod b_dot;
+mod command;
 mod controllers;
 mod direction_motion;
 mod direction_pair;
@@ -58,6 +59,7 @@ pub use active_damping::{ActiveDamping, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
 pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
+pub use command::{Command, CommandQuantity};
 pub use controllers::{AxisDecision, Controllers, Event};
 pub use direction_motion::{DirectionMotion, SkyDirection};
 pub use direction_pair::{DirectionPair, PointedAxis};
@@ -307,19 +309,6 @@ pub struct ControlOutput {
     pub until: Option<Instant>,
     /// Guards, of which any trip causes the next decision.
     pub guards: Guards,
-}
-
-/// Command about one axis.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Command {
-    /// Torque (N m), or reduced moment (rad/s²) on a body without inertia; for a wheel, units of its command.
-    Torque(f64),
-    /// Change of the rigid rate within the law's period (rad/s), which the actuator converts to a pulse.
-    Change(f64),
-    /// Angular acceleration (rad/s²); those about all axes are converted to a torque by the inertia.
-    Acceleration(f64),
-    /// Magnetic moment along the axis (A m²).
-    Moment(f64),
 }
 
 impl ControlOutput {

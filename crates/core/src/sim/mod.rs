@@ -26,6 +26,7 @@ mod sensor_schedule;
 mod sensors;
 mod start_finish;
 mod stepping;
+mod telemetry;
 
 use flexsc_control::estimator::AdaptationRun;
 use flexsc_control::law::Event;
@@ -42,6 +43,7 @@ pub use error::SimulationError;
 pub use observation::{ObservationField, ObservationGroup};
 pub(crate) use plant::AppliedTorque;
 pub use stepping::StopAt;
+pub use telemetry::{SensorTelemetry, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor};
 
 use clock::Clock;
 use controllers::ControlLaws;
