@@ -9,7 +9,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 10] = [
+pub const ENGINE: [&str; 11] = [
     "numerics",
     "dynamics",
     "formats",
@@ -20,6 +20,7 @@ pub const ENGINE: [&str; 10] = [
     "core",
     "view",
     "handover",
+    "cosim",
 ];
 
 /// The Rust files under a directory: their paths below the repository, and their texts.

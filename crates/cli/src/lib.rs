@@ -10,6 +10,8 @@ mod damping;
 mod error;
 mod examples;
 mod export;
+#[cfg_attr(not(feature = "fmu"), path = "export_fmu/unavailable.rs")]
+mod export_fmu;
 mod figure_files;
 pub mod figures;
 mod files;
@@ -51,7 +53,7 @@ mod sweep;
 mod terminal;
 mod top;
 mod tune;
-#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
+#[cfg(not(all(feature = "fmu", feature = "live", feature = "papers", feature = "png")))]
 mod unavailable;
 mod worst;
 
@@ -141,6 +143,10 @@ enum Verb {
     Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
     Export(export::ExportArgs),
+    /// Export a scenario as an FMU for other simulators
+    ///
+    /// A Functional Mock-up Unit for co-simulation, FMI 3.0 with exact events or FMI 2.0: the closed loop, or the plant alone with torque commands as inputs.
+    ExportFmu(export_fmu::ExportFmuArgs),
     /// Inspect a log, or recover an incomplete one
     Log(log::LogArgs),
     /// Write a viewer layout for a log or a scenario
@@ -207,6 +213,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Plot(args) => plot::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
+        Verb::ExportFmu(args) => export_fmu::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),
