@@ -73,7 +73,9 @@ def main() -> None:
     binary.chmod(0o755)
     # The library of FMUs, which the build of the command makes: `flexsc export-fmu --library`.
     system = "windows" if suffix else "darwin" if "darwin" in target else "linux"
-    library = {"windows": "flexsc_fmi.dll", "darwin": "libflexsc_fmi.dylib", "linux": "libflexsc_fmi.so"}[system]
+    library = {"windows": "flexsc_fmi.dll", "darwin": "libflexsc_fmi.dylib", "linux": "libflexsc_fmi.so"}[
+        system
+    ]
     made = DIST / f"{name}-{library}"
     shutil.copyfile(built.parent / "deps" / library, made)
     (DIST / f"{name}.cdx.json").write_text(json.dumps(materials(target), indent=1), encoding="utf-8")

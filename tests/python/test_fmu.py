@@ -83,7 +83,8 @@ def test_both_versions_and_the_event_mode_have_equal_points(tmp_path: Path, name
 
     second, third = run(2), run(3)
     events = run(3, use_event_mode=True, early_return_allowed=True)
-    assert second == third and len(third) == 81
+    assert second == third
+    assert len(third) == 81
     assert all(events[time] == values for time, values in third.items())
 
 
@@ -94,7 +95,8 @@ def test_a_plant_takes_commands(tmp_path: Path) -> None:
     result = fmpy.simulate_fmu(path, stop_time=20.0, input=pushed, output=["state.rate"], output_interval=1.0)
     free = fmpy.simulate_fmu(path, stop_time=20.0, output=["state.rate"], output_interval=1.0)
     same = result["state.rate"] == free["state.rate"]
-    assert same[:6].all() and not same[7:].any()
+    assert same[:6].all()
+    assert not same[7:].any()
 
 
 def test_two_exports_have_equal_bytes(tmp_path: Path) -> None:

@@ -11,4 +11,5 @@ mod fmi3_steps;
 mod fmi3_values;
 mod instance;
 mod logger;
+mod other_interfaces;
 mod resource_location;

@@ -39,16 +39,17 @@ impl Logger {
     /// Sends a message about the instance of this name.
     pub fn send(self, name: &str, status: c_int, message: &str) {
         let text = |text: &str| CString::new(text.replace('\0', " ")).unwrap_or_default();
-        let (name, message, category) = (text(name), text(message), c"logStatusError");
+        let (name, category) = (text(name), c"logStatusError");
+        // Some importers show the format of FMI 2.0 as it is: it has no arguments.
+        let (message, format) = (text(message), text(&message.replace('%', "%%")));
         match self {
             // SAFETY: the importer gave the callback for this use; the texts live until it returns.
             Self::Fmi3(log, environment) => unsafe {
                 log(environment, status, category.as_ptr(), message.as_ptr());
             },
-            // SAFETY: as above; the format takes one text.
+            // SAFETY: as above; the format takes no arguments.
             Self::Fmi2(log, environment) => unsafe {
-                let format = c"%s".as_ptr();
-                log(environment, name.as_ptr(), status, category.as_ptr(), format, message.as_ptr());
+                log(environment, name.as_ptr(), status, category.as_ptr(), format.as_ptr());
             },
             Self::Silent => {}
         }

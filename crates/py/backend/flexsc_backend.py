@@ -70,7 +70,8 @@ def _built_library(settings: Mapping[str, Any] | None) -> Path:
     command = ["cargo", "metadata", "--no-deps", "--format-version", "1"]
     told = subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout
     directory = Path(_option(arguments, "--target-dir") or json.loads(told)["target_directory"])
-    library = directory / target / (_option(arguments, "--profile") or "release") / "deps" / library_name(target)
+    profile = _option(arguments, "--profile") or "release"
+    library = directory / target / profile / "deps" / library_name(target)
     if not library.is_file():
         sys.exit(f"{library} is not there: the build of the module makes it")
     return library
@@ -94,7 +95,8 @@ def add_library(wheel: Path, library: Path) -> None:
         own = zipfile.ZipInfo(name, record.date_time)
         own.external_attr, own.compress_type = 0o755 << 16, zipfile.ZIP_DEFLATED
         after.writestr(own, data)
-        lines = [line for line in before.read(record).decode().splitlines() if not line.startswith(f"{name},")]
+        lines = before.read(record).decode().splitlines()
+        lines = [line for line in lines if not line.startswith(f"{name},")]
         lines.insert(-1, f"{name},sha256={digest},{len(data)}")
         after.writestr(record, "\n".join(lines) + "\n")
     changed.replace(wheel)

@@ -1,6 +1,7 @@
 //! FMUs through their C functions: equal to the native run in every bit, with and without events.
 
 #![cfg(unix)]
+#![expect(clippy::macro_metavars_in_unsafe, reason = "the macro names the types of a C function")]
 #![expect(unsafe_code, reason = "the tests call the C functions of the library")]
 
 mod fmi2;
