@@ -160,6 +160,8 @@ mod summaries;
 mod wheel_figures;
 
 // Rules of the house: sources, words, habits, and bytes that do not change.
+#[cfg(feature = "fmu")]
+mod export_fmu;
 mod extending;
 mod frozen;
 mod habits;

@@ -9,7 +9,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 12] = [
+pub const ENGINE: [&str; 13] = [
     "flight",
     "numerics",
     "dynamics",
@@ -22,6 +22,7 @@ pub const ENGINE: [&str; 12] = [
     "view",
     "handover",
     "export-c",
+    "cosim",
 ];
 
 /// The Rust files under a directory: their paths below the repository, and their texts.

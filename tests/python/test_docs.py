@@ -20,8 +20,8 @@ PACKAGE = ROOT / "crates/py/README.md"
 # `flexsc reproduce` runs the commands of papers.md.
 PAGES = [ROOT / "README.md", PACKAGE, *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
 VERBS = (
-    "check|completions|cycle|damping|examples|export|identify|layout|log|map|merge|modes|new|observer|plan|plot|"
-    "schema|simulate|sweep|top|tune"
+    "check|completions|cycle|damping|examples|export|export-fmu|identify|layout|log|map|merge|modes|new|observer|"
+    "plan|plot|schema|simulate|sweep|top|tune"
 )
 ELSEWHERE = re.compile(r"\b[A-Z]{3,}\b|--live|--scheduler|study\.toml|part-0|\.\.\.|/shared")
 BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MULTILINE)

@@ -106,6 +106,16 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "export-fmu",
+                [
+                    ("flexsc export-fmu relay-fixed.toml -o relay.fmu", "the closed loop as an FMU, FMI 3.0"),
+                    (
+                        "flexsc export-fmu earth-observer.toml --part plant --fmi 2 -o plant.fmu",
+                        "the spacecraft alone, for importers of FMI 2.0",
+                    ),
+                ],
+            ),
+            (
                 "layout",
                 [
                     (

@@ -11,6 +11,8 @@ mod error;
 mod examples;
 mod export;
 mod export_c;
+#[cfg_attr(not(feature = "fmu"), path = "export_fmu/unavailable.rs")]
+mod export_fmu;
 mod figure_files;
 pub mod figures;
 mod files;
@@ -53,7 +55,7 @@ mod sweep;
 mod terminal;
 mod top;
 mod tune;
-#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
+#[cfg(not(all(feature = "fmu", feature = "live", feature = "papers", feature = "png")))]
 mod unavailable;
 mod worst;
 
@@ -155,6 +157,10 @@ enum Verb {
     ///
     /// Inputs and outputs of each call, which the driver of `flexsc export-c` replays.
     Vectors(export_c::VectorsArgs),
+    /// Export a scenario as an FMU for other simulators
+    ///
+    /// A Functional Mock-up Unit for co-simulation, FMI 3.0 with exact events or FMI 2.0: the closed loop, or the plant alone with torque commands as inputs.
+    ExportFmu(export_fmu::ExportFmuArgs),
     /// Inspect a log, or recover an incomplete one
     Log(log::LogArgs),
     /// Write a viewer layout for a log or a scenario
@@ -224,6 +230,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Export(args) => export::run(&args),
         Verb::ExportC(args) => export_c::run(&args),
         Verb::Vectors(args) => export_c::run_vectors(&args),
+        Verb::ExportFmu(args) => export_fmu::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),

@@ -66,8 +66,6 @@ pub use flexsc_spacecraft as spacecraft;
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
 pub use sim::{
-    ControlCall, ControlDecision, ObservationField, ObservationGroup, SensorSample, Simulation,
-    SimulationError, StopAt,
-    ObservationField, ObservationGroup, SensorTelemetry, Simulation, SimulationError, StopAt, Telemetry,
-    TelemetryField, TelemetryLayout, TelemetrySensor,
+    ControlCall, ControlDecision, ObservationField, ObservationGroup, SensorSample, SensorTelemetry,
+    Simulation, SimulationError, StopAt, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor,
 };
