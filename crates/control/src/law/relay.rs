@@ -164,7 +164,7 @@ impl Relay {
             hysteresis: self.hysteresis.get(),
             strong: self.strong.get(),
             weak: self.weak.get(),
-            k_t: self.k_t.get(),
+            braking_gain: self.k_t.get(),
             is_two_sided: self.sides == RelaySides::Two,
             state: RelayState::Start,
             pushed_at: Instant::START.ticks(),
@@ -199,7 +199,7 @@ impl Law for RelayRun {
 
     fn state(&self) -> LawState<'_> {
         // Limit cycles are judged by k_t, whatever parameter is tuned.
-        LawState::with_tuned(phase(self.law.state), self.law.k_t)
+        LawState::with_tuned(phase(self.law.state), self.law.braking_gain)
     }
 
     fn copy(&self) -> Box<dyn Law> {
@@ -212,7 +212,7 @@ impl Law for RelayRun {
 
     fn tune(&mut self, key: &str, value: f64) {
         match key {
-            "k_t" => self.law.k_t = value,
+            "k_t" => self.law.braking_gain = value,
             "dead_zone" => self.law.dead_zone = value,
             "hysteresis" => self.law.hysteresis = value,
             "strong" => self.law.strong = value,

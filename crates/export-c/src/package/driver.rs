@@ -12,7 +12,7 @@ pub fn driver(plan: &Plan<'_>) -> String {
     let mut text = format!(
         "/* Driver of {prefix}.c.\n *\n *   driver vectors.bin    replays the calls of a run and compares their outputs by bits\n *   driver --hash N       \
          prints the hash over the outputs of N cycles with random and extreme inputs\n *\n * On a board without arguments, DRIVER_CYCLES \
-         is the number of cycles.\n */\n\n#include \"{prefix}.h\"\n\n#include <inttypes.h>\n#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\n"
+         is the number of cycles.\n */\n\n#include \"{prefix}.h\"\n\n#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\n"
     );
     text.push_str(WORDS);
     let most = |words: fn(&CallLayout) -> usize| plan.calls.iter().map(words).max().unwrap_or(0).max(1);
@@ -226,7 +226,24 @@ static uint64_t self_test(uint64_t cycles)
 
 ";
 
-const REPLAY: &str = "static bool read_word(FILE *file, uint64_t *word)
+const REPLAY: &str = "/* Not every library prints integers of 64 bits. */
+static unsigned long upper(uint64_t word)
+{
+    return (unsigned long)(word >> 32);
+}
+
+static unsigned long lower(uint64_t word)
+{
+    return (unsigned long)(word & UINT64_C(0xffffffff));
+}
+
+static void print_hash(uint64_t cycles)
+{
+    const uint64_t hash = self_test(cycles);
+    printf(\"%08lx%08lx\n\", upper(hash), lower(hash));
+}
+
+static bool read_word(FILE *file, uint64_t *word)
 {
     unsigned char bytes[8];
     if (fread(bytes, 1, 8, file) != 8) {

@@ -85,12 +85,13 @@ pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> R
     let vectors: Vec<Vector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
     let plan = Plan { prefix, origin, system: &system, calls: &calls };
-    let translation =
-        translate(&flight_sources(), &source::roots(&system), prefix).map_err(ExportError::Translation)?;
+    let functions = calls::functions(&plan);
+    let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
+        .map_err(ExportError::Translation)?;
     let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
     let mut files = vec![
         text(format!("{prefix}.h"), header::header(&plan, &translation)),
-        text(format!("{prefix}.c"), source::source(&plan, &translation)),
+        text(format!("{prefix}.c"), source::source(&plan, &translation, &functions)),
         text("driver.c".to_owned(), driver::driver(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),

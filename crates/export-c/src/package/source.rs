@@ -2,13 +2,16 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, calls};
+use super::Plan;
 use crate::control_system::{ControlSystem, LawsOfAxes};
 use crate::translate::Translation;
 
-/// Returns the paths of the functions of the flight code that the exported functions call.
-pub fn roots(system: &ControlSystem) -> Vec<&'static str> {
-    let mut roots = vec!["binary64::infinity"];
+/// Returns the paths of the functions of the flight code that the exported `functions` call.
+pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
+    let mut roots = Vec::new();
+    if functions.contains("binary64_infinity") {
+        roots.push("binary64::infinity");
+    }
     match system {
         ControlSystem::Relays(_) => roots.extend(["relay::RelayLaw::decide", "relay::PolledRelay::step"]),
         ControlSystem::Sampled(laws) => {
@@ -41,8 +44,8 @@ pub fn roots(system: &ControlSystem) -> Vec<&'static str> {
     roots
 }
 
-/// Returns the source.
-pub fn source(plan: &Plan<'_>, translation: &Translation) -> String {
+/// Returns the source: the translated flight code, and the exported functions that call it.
+pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
@@ -53,6 +56,6 @@ pub fn source(plan: &Plan<'_>, translation: &Translation) -> String {
     text.push_str("\n\n");
     text.push_str(translation.definitions.trim());
     text.push_str("\n\n");
-    text.push_str(&calls::functions(plan));
+    text.push_str(functions);
     text
 }
