@@ -45,7 +45,9 @@ impl SwitchingLines {
     /// Returns the target rate at an angle (rad/s).
     #[inline]
     pub fn target_rate(&self, angle: f64) -> f64 {
-        -self.returning(angle.abs() - self.edge).copysign(angle)
+        let returning: f64 = self.returning(angle.abs() - self.edge);
+        // The sign of an angle that is not a number depends on the processor.
+        if angle < 0.0 { returning } else { -returning }
     }
 
     /// Returns the target rate of return at an angle `beyond` the edge (rad/s).

@@ -5,8 +5,11 @@ use std::fmt::Write as _;
 use super::Plan;
 
 /// Files with which the driver runs on a Cortex-M board.
-pub fn board_files() -> [(&'static str, &'static str); 2] {
-    [("boards/mps2.ld", include_str!("files/mps2.ld")), ("boards/start.c", include_str!("files/start.c"))]
+pub fn board_files() -> [(&'static str, &'static str); 3] {
+    [
+        ("boards/double_sum.c", include_str!("files/double_sum.c")),
+        ("boards/mps2.ld", include_str!("files/mps2.ld")), ("boards/start.c", include_str!("files/start.c")),
+    ]
 }
 
 /// Returns the Makefile, with the hashes of the self-test for numbers of cycles.
