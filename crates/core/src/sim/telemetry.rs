@@ -3,7 +3,7 @@
 
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::{AttitudeErrorMeasure, ReferenceNeeds};
-use flexsc_control::sensor::{Reading, SensorKind};
+use flexsc_control::sensor::{MeasuredQuantity, Reading, SensorKind};
 use flexsc_control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_numerics::time::Instant;
 
@@ -31,6 +31,11 @@ pub struct TelemetryField {
 impl TelemetryField {
     fn new(group: &str, name: &str, unit: &'static str, meaning: &'static str) -> Self {
         Self { name: format!("{group}.{name}"), unit, components: Vec::new(), meaning }
+    }
+
+    fn measured(group: &str, quantity: MeasuredQuantity) -> Self {
+        let MeasuredQuantity { name, unit, components, meaning } = quantity;
+        Self { name: format!("{group}.{name}"), unit, components, meaning }
     }
 
     fn with(mut self, components: &[&str]) -> Self {
@@ -96,48 +101,12 @@ impl TelemetryLayout {
                 0 => kind.to_owned(),
                 earlier => format!("{kind}_{}", earlier + 1),
             };
-            let fields = sensor_fields(&group, sensor, scenario.sensor.provides_attitude(index), axes);
+            let quantities = sensor.measured_quantities(scenario.sensor.provides_attitude(index), axes);
+            let fields = quantities.into_iter().map(|measured| TelemetryField::measured(&group, measured));
+            let fields: Vec<_> = fields.collect();
             (!fields.is_empty()).then_some(TelemetrySensor { group, index, fields })
         });
         Self { sensors: sensors.collect(), law_inputs: law_inputs(run, scenario, axes) }
-    }
-}
-
-/// Returns the quantities that a sensor measures on a body with `axes` axes; none of a tachometer, whose readings are the
-/// speeds of the wheels.
-fn sensor_fields(group: &str, sensor: &SensorKind, has_attitude: bool, axes: usize) -> Vec<TelemetryField> {
-    let field = |name, unit, meaning| TelemetryField::new(group, name, unit, meaning);
-    match sensor {
-        SensorKind::Tachometer(_) => Vec::new(),
-        SensorKind::Accelerometer(accelerometer) => {
-            let meaning = "specific force along the axes of the sensor";
-            vec![field("specific_force", "m/s²", meaning).numbered(accelerometer.along.len())]
-        }
-        SensorKind::Magnetometer(_) => vec![field("field", "T", "magnetic field in body axes").with(VECTOR)],
-        SensorKind::SunSensor(_) | SensorKind::SunCells(_) => {
-            vec![field("direction", "", "direction to the Sun in body axes").with(VECTOR)]
-        }
-        SensorKind::EarthSensor(_) => {
-            vec![field("direction", "", "direction to the planet's centre in body axes").with(VECTOR)]
-        }
-        SensorKind::Continuous
-        | SensorKind::Sampled(_)
-        | SensorKind::Gyro(_)
-        | SensorKind::StarTracker(_)
-        | SensorKind::Own(_) => {
-            let mut fields = Vec::new();
-            if has_attitude && axes > 1 {
-                let meaning = "measured rotation from body axes to inertial axes";
-                fields.push(field("attitude", "", meaning).with(QUATERNION));
-            } else if has_attitude {
-                fields.push(field("angle", "rad", "measured angle"));
-            }
-            if sensor.is_continuous() || sensor.rate_noise(0).is_some() {
-                let rate = field("rate", "rad/s", "measured rate in body axes");
-                fields.push(if axes > 1 { rate.with(VECTOR) } else { rate });
-            }
-            fields
-        }
     }
 }
 
