@@ -73,7 +73,7 @@ def test_a_relay_has_the_switchings_of_the_native_run(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_both_versions_and_the_event_mode_have_equal_points(tmp_path: Path, name: str) -> None:
-    state = "state.angle" if shipped(name).get("body.planar") else "state.error[1]"
+    state = "state.angle" if "body" in shipped(name).to_dict() else "state.error[1]"
     outputs = [state, "events"]
 
     def run(fmi: Literal[2, 3], **options: Any) -> dict[float, tuple[float, ...]]:
