@@ -35,7 +35,6 @@ mod model;
 mod orbits;
 mod outside;
 mod rotation;
-mod sky_combinations;
 mod small_angles;
 mod spacecraft;
 mod spatial;
