@@ -133,7 +133,7 @@ fn scenarios_without_plain_laws_are_refused_at_their_key() {
             "export-c slew-wheel-lqg.toml -o out",
             ["slew-wheel-lqg.toml:", "`law.state_space`", "has no code for flight"],
         ),
-        ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "export the law of one mode"]),
+        ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "choose one with `--mode NAME`"]),
         (
             "vectors slew-wheel-lqg.toml -o out.bin",
             ["slew-wheel-lqg.toml:", "`law.state_space`", "`relay`, `pd`"],

@@ -64,6 +64,8 @@ mod lqg;
 mod magnetic;
 mod manoeuvres;
 mod margins;
+mod mode_conditions;
+mod mode_laws;
 mod objectives;
 mod open_loops;
 mod operation;
@@ -125,6 +127,7 @@ mod units;
 // Command: verbs, campaigns, figures, limits and live runs.
 mod campaign_figures;
 mod campaigns;
+mod check;
 mod cli;
 #[cfg(target_os = "linux")]
 mod costs;

@@ -18,6 +18,9 @@ pub struct CheckArgs {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
+    /// Set a key of each scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     /// Print one JSON object for each scenario on stdout, with the mistakes of one that is not accepted
     #[arg(long)]
     json: bool,
@@ -26,7 +29,7 @@ pub struct CheckArgs {
 pub fn run(args: &CheckArgs) -> Result<(), CliError> {
     let mut all = true;
     for path in &args.scenarios {
-        match scenario::load(path, &[], None) {
+        match scenario::load(path, &args.set, None) {
             Ok(scenario) => accepted(path, &scenario, args.json)?,
             Err(CliError::Scenario(error)) => {
                 if args.json {
@@ -65,12 +68,35 @@ fn refused_draws(path: &Path, scenario: &Scenario) -> Option<ConfigError> {
     Some(ConfigError::new("uncertain", why))
 }
 
+/// Share of the time of a run that is worth a remark.
+const COSTLY: f64 = 0.5;
+
+/// Returns the remark that the imbalance of wheels takes most of the time of a run.
+fn costly_imbalance(scenario: &Scenario) -> Option<ConfigError> {
+    let (wheels, key) = scenario.actuator.wheels()?;
+    wheels.imbalance.as_ref()?;
+    let balanced = scenario.clone().with(|written| written.actuator.balance_wheels());
+    let [whole, rest] = [scenario.cost(None, false).seconds, balanced.ok()?.cost(None, false).seconds];
+    (whole - rest > COSTLY * whole).then(|| {
+        let why = format!(
+            "takes most of the time of a run, about {} of {}: steps resolve each turn of the wheels",
+            seconds(whole - rest),
+            seconds(whole)
+        );
+        ConfigError::new(format!("{key}.imbalance"), why)
+    })
+}
+
 fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError> {
     let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
     let cost = scenario.cost(None, false);
     let costly = cost.limit_exceeded();
-    let remarks: Vec<ConfigError> =
-        scenario.remarks().into_iter().chain(refused_draws(path, scenario)).collect();
+    let remarks: Vec<ConfigError> = scenario
+        .remarks()
+        .into_iter()
+        .chain(costly_imbalance(scenario))
+        .chain(refused_draws(path, scenario))
+        .collect();
     if json {
         let object = json!({
             "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,

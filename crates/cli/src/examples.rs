@@ -67,6 +67,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "forty-two-leo",
     "s2e-sample",
     "shaped-slew",
+    "site-pass",
     "slew-wheel-lqg",
     "station-keeping",
     "sun-tracking",

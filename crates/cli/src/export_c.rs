@@ -21,6 +21,9 @@ pub struct ExportCArgs {
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Mode of operation whose law is exported, of a scenario with several
+    #[arg(long, value_name = "NAME")]
+    mode: Option<String>,
     /// Directory to write
     #[arg(short, long, value_name = "DIR")]
     out: PathBuf,
@@ -60,6 +63,10 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         return Err(CliError::Arguments(format!("-o {path}: must be a directory, and is a file")));
     }
     let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    let scenario = match &args.mode {
+        Some(name) => scenario.in_mode(name)?,
+        None => scenario,
+    };
     let origin = args
         .scenario
         .file_name()

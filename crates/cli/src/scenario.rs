@@ -28,6 +28,25 @@ pub struct ScenarioArgs {
     pub json: bool,
 }
 
+/// Seed and number of threads of runs.
+#[derive(Copy, Clone, Debug, clap::Args)]
+#[group(skip)]
+pub struct RunArgs {
+    /// Seed of all random numbers [default: the scenario's]
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=LARGEST_SEED))]
+    pub seed: Option<u64>,
+    /// Number of threads [default: one per core]
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+}
+
+impl RunArgs {
+    /// Returns the number of threads; 0 for one per core.
+    pub fn threads(self) -> u16 {
+        self.jobs.unwrap_or(0)
+    }
+}
+
 impl ScenarioArgs {
     /// Loads the scenario.
     pub fn load(&self) -> Result<Scenario, CliError> {

@@ -1,5 +1,7 @@
 //! Offers: what each part of a scenario provides to the others, on which their requirements depend.
 
+use std::borrow::Cow;
+
 use flexsc_numerics::time::Span;
 
 use crate::requirement::{Requirements, Rule};
@@ -12,7 +14,7 @@ pub struct Offers {
     pub body: BodyOffers,
     /// Offers of the environment.
     pub environment: EnvironmentOffers,
-    /// Law about each axis.
+    /// Law about each axis; of stages or modes, all that act about it.
     pub laws: Vec<AxisLaw>,
     /// Name of the law's kind.
     pub law_kind: &'static str,
@@ -81,10 +83,22 @@ pub struct EnvironmentOffers {
 /// Law about an axis.
 #[derive(Clone, Debug)]
 pub struct AxisLaw {
+    /// Axis about which the law acts: 0, or 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
     /// Key of the law.
     pub key: String,
     /// Offers of the law.
     pub offers: LawOffers,
+    /// Kinds of the actuators that execute the law's commands; `None` for all.
+    pub actuators: Option<Vec<String>>,
+}
+
+impl AxisLaw {
+    /// Returns true if actuators of a kind execute torques or accelerations that the law commands.
+    pub fn drives(&self, kind: &str) -> bool {
+        let is_selected = self.actuators.as_ref().is_none_or(|kinds| kinds.iter().any(|own| own == kind));
+        is_selected && !self.offers.is_open && !self.offers.commands_moments
+    }
 }
 
 /// Offers of a law about an axis.
@@ -138,6 +152,8 @@ impl LawOffers {
 pub struct SensorOffers {
     /// Number of sensors that measure the body's motion.
     pub motion_sensors: usize,
+    /// Number of those that measure the magnetic field or a direction.
+    pub vector_sensors: usize,
     /// True if a sensor gives the motion at every instant.
     pub is_continuous: bool,
     /// True if a sensor measures the magnetic field.
@@ -262,6 +278,31 @@ impl BodyOffers {
 }
 
 impl Offers {
+    /// Returns the offers to a law whose commands only actuators of the selected kinds execute.
+    pub fn serving_law(&self, selects: impl Fn(&str) -> bool) -> Cow<'_, Self> {
+        let is_idle = |member: &ActuatorMember| member.executes && !selects(member.kind);
+        if !self.actuators.iter().any(is_idle) {
+            return Cow::Borrowed(self);
+        }
+        let mut offers = self.clone();
+        offers
+            .actuators
+            .iter_mut()
+            .filter(|member| is_idle(member))
+            .for_each(|member| member.shares = [0.0; 3]);
+        Cow::Owned(offers)
+    }
+
+    /// Returns the offers to an actuator of a kind, with the laws whose commands it executes.
+    pub fn driving_actuator(&self, kind: &str) -> Cow<'_, Self> {
+        if self.laws.iter().all(|law| law.actuators.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let mut offers = self.clone();
+        offers.laws.retain(|law| law.drives(kind));
+        Cow::Owned(offers)
+    }
+
     /// Returns the first actuator that executes a share of the demand about an axis.
     pub fn serving(&self, axis: usize) -> Option<&ActuatorMember> {
         self.actuators.iter().find(|member| member.shares[axis] > 0.0)

@@ -9,6 +9,15 @@ impl AttitudeEstimate {
     pub const MEASUREMENTS: f64 = 3.0;
 }
 
+/// Start of a mode of operation with a target.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct ModeTargetStart {
+    /// Index of the mode.
+    pub mode: usize,
+    /// Angle of the rotation from the target to the attitude of the body (rad).
+    pub distance: f64,
+}
+
 /// Motion of a three-axis body at the start of a cycle, after its law has decided.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ThreeAxisCycle {

@@ -38,12 +38,8 @@ pub struct BudgetArgs {
     /// Number of runs of the campaign over the [uncertain] keys and the noise
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     runs: u64,
-    /// Seed [default: the scenario's]
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
-    seed: Option<u64>,
-    /// Number of threads [default: one per core]
-    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    runs_with: scenario::RunArgs,
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
@@ -64,7 +60,7 @@ pub struct Budgets {
 pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
     let path = &args.scenario.scenario;
     let target = args.output.target(&[path])?;
-    let scenario = scenario::load(path, &args.scenario.set, args.seed)?;
+    let scenario = scenario::load(path, &args.scenario.set, args.runs_with.seed)?;
     let budgets = results(scenario, args)?;
     if let Some(target) = &target {
         target.save(&budgets)?;
@@ -93,7 +89,7 @@ pub fn results(scenario: Scenario, args: &BudgetArgs) -> Result<Budgets, CliErro
     let setup = CampaignSetup {
         origin: args.scenario.scenario.display().to_string(),
         runs: args.runs,
-        jobs: args.jobs.unwrap_or(0),
+        jobs: args.runs_with.threads(),
         units: args.units.units,
         consent: Some(args.consent),
     };

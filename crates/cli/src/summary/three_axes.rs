@@ -62,6 +62,8 @@ impl Summary<'_> {
         let own = self.scenario.study.expected_bands.iter().map(|band| band.unwrap_or(f64::NAN));
         let bands: Vec<f64> = match self.scenario.reference.band {
             Some(band) => vec![band.get(); 3],
+            // The band of modes with targets is that of the mode that has the goal.
+            None if self.scenario.has_mode_targets() => vec![self.number("goal_band_rad"); 3],
             None => own.collect(),
         };
         self.goal(&bands);

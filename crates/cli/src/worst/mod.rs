@@ -51,12 +51,8 @@ pub struct WorstArgs {
     /// Largest number of points that are assessed, each by a run or a loop
     #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
-    /// Seed of the noise and of the points [default: the scenario's]
-    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
-    seed: Option<u64>,
-    /// Number of threads [default: one per core]
-    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    runs: scenario::RunArgs,
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
@@ -105,7 +101,7 @@ pub fn run(args: &WorstArgs) -> Result<(), CliError> {
     let inputs = [args.scenario.scenario.as_path()];
     let witness = args.output.scenario_file(&inputs)?;
     let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
-    let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.seed)?;
+    let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.runs.seed)?;
     if witness.is_some() && args.quantities(&scenario)?.len() > 1 {
         let why = "-o: a witness is of one quantity; give --requirement, --metric or --margin";
         return Err(CliError::Arguments(why.to_owned()));
@@ -161,7 +157,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
             quantity,
             is_least: args.least,
             most_runs: most,
-            threads: usize::from(args.jobs.unwrap_or(0)),
+            threads: usize::from(args.runs.threads()),
         };
         let work = |run: &flexsc_core::campaign::CampaignRun, selection: &flexsc_core::metrics::Selection| {
             Ok(Campaign::simulate_metrics(run, selection, StopRecord)?)
@@ -275,7 +271,10 @@ impl WorstCases {
         let mut rows = vec![texts(&["key", "nominal", "worst", "lowest", "highest"])];
         for (own, value) in case.ranges.keys.iter().zip(case.key_values(case.worst)) {
             let [low, high] = own.limits();
-            rows.push([vec![own.key.clone()], [own.own(), value, low, high].map(digits).to_vec()].concat());
+            rows.push(
+                [vec![own.key.clone()], [own.nominal_number(), value, low, high].map(digits).to_vec()]
+                    .concat(),
+            );
         }
         print_table(&rows);
         if case.failed > 0 {

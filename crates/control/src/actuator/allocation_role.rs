@@ -143,6 +143,15 @@ impl OneOrMany<AssignedActuator> {
         self.first(|kind| if let ActuatorKind::Thrusters(thrusters) = kind { Some(thrusters) } else { None })
     }
 
+    /// Removes the imbalance of all reaction wheels.
+    pub fn balance_wheels(&mut self) {
+        for assigned in self.iter_mut() {
+            if let ActuatorKind::Wheels(wheels) = &mut assigned.kind {
+                wheels.imbalance = None;
+            }
+        }
+    }
+
     /// Returns the reaction wheels, with their key.
     pub fn wheels(&self) -> Option<(&Wheels, String)> {
         self.first(|kind| if let ActuatorKind::Wheels(wheels) = kind { Some(wheels) } else { None })

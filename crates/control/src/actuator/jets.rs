@@ -189,15 +189,16 @@ impl Jets {
 
     /// Adds the requirements on the cycle of jets that execute commands.
     fn require_cycle(&self, offers: &Offers, needs: &mut Requirements) {
-        let mut laws = offers.laws.iter().map(|law| law.offers.period);
-        let first = laws.next().flatten();
+        let driving: Vec<_> = offers.laws.iter().filter(|law| law.drives("jets")).collect();
+        let mut periods = driving.iter().map(|law| law.offers.period);
+        let first = periods.next().or(offers.laws.first().map(|law| law.offers.period)).flatten();
         let Some(period) = self.period.or(first) else {
             let why = "must be given with a law that has none of its own";
             return needs.require(Rule::JetCycle, false, "period", why);
         };
         needs.require(
             Rule::JetCycle,
-            self.period.is_some() || laws.all(|other| other == first),
+            self.period.is_some() || periods.all(|other| other == first),
             "period",
             "must be given where the laws of the axes have periods that differ",
         );

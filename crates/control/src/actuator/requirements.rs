@@ -118,7 +118,8 @@ impl OneOrMany<AssignedActuator> {
                 executes: own.executes,
             };
             needs.set_part(own.key.clone());
-            member.kind.add_requirements(&place, offers, needs);
+            let own = if own.executes { &*offers.driving_actuator(own.kind) } else { offers };
+            member.kind.add_requirements(&place, own, needs);
         }
     }
 }

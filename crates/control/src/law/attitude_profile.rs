@@ -78,12 +78,12 @@ impl AttitudeProfile {
         for (index, target) in targets.iter().enumerate() {
             let (begins, frame) = (target.starts(), target.target_frame());
             let path = if target.is_shaped() {
-                let attitudes = [profile.seen_from(frame, begins), target.attitude()];
+                let attitudes = [profile.relative_to(frame, begins), target.attitude()];
                 let turn =
                     target.slew(attitudes, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
                 SegmentPath::Shaped(turn)
             } else if target.table.is_empty() {
-                SegmentPath::Turn(turn_to(target, || profile.seen_from(frame, begins)))
+                SegmentPath::Turn(turn_to(target, || profile.relative_to(frame, begins)))
             } else {
                 SegmentPath::Table(AttitudeTable::new(&target.table))
             };
@@ -95,14 +95,15 @@ impl AttitudeProfile {
     /// Adds a target from `now` on, later than all others; it has no planned command and no table.
     pub fn enter(&mut self, target: &AttitudeTarget, now: Instant) {
         let frame = target.target_frame();
-        let from = self.seen_from(frame, now);
+        let from = self.relative_to(frame, now);
         let path = SegmentPath::Turn(turn_to(target, || from));
         self.legs.push(ProfileSegment { begins: now, frame, path });
     }
 
-    /// Returns the part of the Sun's disc in view at an instant.
-    pub fn sunlight(&self, now: Instant) -> f64 {
-        self.sky.part_in_view(now.seconds())
+    /// Adds an attitude in inertial axes from `now` on, later than all others.
+    pub fn hold(&mut self, attitude: Quaternion<f64>, now: Instant) {
+        let path = SegmentPath::Turn(Slew::instantaneous(attitude));
+        self.legs.push(ProfileSegment { begins: now, frame: TargetFrame::INERTIAL, path });
     }
 
     /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
@@ -114,7 +115,7 @@ impl AttitudeProfile {
     }
 
     /// Returns the attitude of the profile at an instant relative to a frame.
-    fn seen_from(&self, frame: TargetFrame, now: Instant) -> Quaternion<f64> {
+    fn relative_to(&self, frame: TargetFrame, now: Instant) -> Quaternion<f64> {
         let current = self.at(now).attitude;
         if frame == TargetFrame::INERTIAL {
             return current;

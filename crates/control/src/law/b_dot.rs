@@ -28,22 +28,6 @@ pub struct BDot {
     pub gain: Positive,
 }
 
-/// Adds the requirements of a law that commands magnetic moments from the measured field, at `key` within the part.
-pub(super) fn require_field(key: &str, offers: &Offers, needs: &mut Requirements) {
-    needs.require(
-        Rule::Law,
-        offers.sensors.magnetic_field,
-        key,
-        "reads the field of a `[sensor.magnetometer]`, and there is none",
-    );
-    needs.require(
-        Rule::Law,
-        offers.has_actuator(|actuator| actuator.turns_with_field),
-        key,
-        "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them",
-    );
-}
-
 impl LawSpec for BDot {
     fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
         conditions.magnetorquers
@@ -59,7 +43,18 @@ impl LawSpec for BDot {
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         offers.require_three_axes(needs, Rule::MomentAxes, "", "");
-        require_field("", offers, needs);
+        needs.require(
+            Rule::Law,
+            offers.sensors.magnetic_field,
+            "",
+            "reads the field of a `[sensor.magnetometer]`, and there is none",
+        );
+        needs.require(
+            Rule::Law,
+            offers.has_actuator(|actuator| actuator.turns_with_field),
+            "",
+            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them",
+        );
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -4,9 +4,11 @@ use flexsc_dynamics::guard::{AxisGuards, Guard};
 use flexsc_numerics::time::Instant;
 use flexsc_record::Report;
 
+use super::axes_laws::AxesLaws;
+use super::mode_laws::ModeLaws;
 use super::{
-    Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, LawState, Phase,
-    ReferenceNeeds, Setpoint, ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput,
+    Authority, Command, ControlOutput, DampingStatus, DecisionCause, LawKind, LawState, Phase,
+    ReferenceNeeds, Setpoint, ThreeAxisInput, ThreeAxisOutput,
 };
 use crate::custom::PartError;
 use crate::part::{Part, ReportContext};
@@ -15,10 +17,10 @@ use crate::state_estimate::StateEstimate;
 /// Run-time state of the laws of all axes.
 #[derive(Clone, Debug, Default)]
 pub struct Controllers {
-    /// Law about each axis; empty if one law acts about three axes together.
-    axes: Vec<ControllerState>,
-    /// Law about three axes together, with its current output.
-    three_axis: Option<(Box<dyn ThreeAxisLaw>, ThreeAxisOutput)>,
+    /// Laws that act.
+    laws: AxesLaws,
+    /// Laws of all modes of operation; `None` without modes.
+    modes: Option<ModeLaws>,
     /// Earliest time of the laws' next decision.
     until: Option<Instant>,
     /// Commands set from outside, which replace the laws' outputs.
@@ -48,23 +50,14 @@ impl Part for Controllers {
     }
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
-        self.axes.iter().for_each(|held| held.law.report(at, report));
-        self.three_axis.iter().for_each(|(law, _)| law.report(at, report));
+        self.laws.axes.iter().for_each(|held| held.law.report(at, report));
+        self.laws.three_axis.iter().for_each(|(law, _)| law.report(at, report));
     }
 
     fn failure(&self) -> Option<PartError> {
-        let three_axis = self.three_axis.iter().find_map(|(law, _)| law.failure());
-        three_axis.or_else(|| self.axes.iter().find_map(|held| held.law.failure()))
+        let three_axis = self.laws.three_axis.iter().find_map(|(law, _)| law.failure());
+        three_axis.or_else(|| self.laws.axes.iter().find_map(|held| held.law.failure()))
     }
-}
-
-/// Law with its current output.
-#[derive(Clone, Debug)]
-struct ControllerState {
-    law: Box<dyn Law>,
-    hold: ControlOutput,
-    /// Key prefix of the law within a law `per_axis`; else empty.
-    place: String,
 }
 
 /// Event to which laws respond.
@@ -90,17 +83,12 @@ impl Controllers {
     /// Creates the laws before a run, about axes with these actuator authorities; `by_stage` has those of each stage
     /// about each axis, or is empty if all stages have the same.
     pub fn new(law: &LawKind, authorities: &[Authority], by_stage: &[Vec<Authority>]) -> Self {
-        let axis = |(axis, authority)| {
-            let place = if let LawKind::PerAxis(laws) = law { laws.key_prefix(axis) } else { String::new() };
-            let law = match (law.about(axis), by_stage.get(axis)) {
-                (LawKind::Stages(stages), Some(authorities)) => stages.start_with(authorities),
-                (law, _) => law.start(authority),
-            };
-            ControllerState { law, hold: ControlOutput::NONE, place }
-        };
-        match law.start_three_axis(authorities) {
-            Some(law) => Self { three_axis: Some((law, ThreeAxisOutput::NONE)), ..Self::default() },
-            None => Self { axes: authorities.iter().enumerate().map(axis).collect(), ..Self::default() },
+        match law {
+            LawKind::Stages(modes) if modes.are_modes() => {
+                let modes = ModeLaws::new(modes.as_slice(), authorities, by_stage);
+                Self { laws: modes.first(), modes: Some(modes), ..Self::default() }
+            }
+            law => Self { laws: AxesLaws::new(law, authorities, by_stage), ..Self::default() },
         }
     }
 
@@ -118,8 +106,8 @@ impl Controllers {
     pub fn set_external(&mut self, commands: [Command; 3]) {
         if self.steered.replace(commands).is_none() {
             self.until = None;
-            self.axes.iter_mut().for_each(|held| held.hold = ControlOutput::NONE);
-            self.three_axis.iter_mut().for_each(|(_, output)| *output = ThreeAxisOutput::NONE);
+            self.laws.axes.iter_mut().for_each(|held| held.hold = ControlOutput::NONE);
+            self.laws.three_axis.iter_mut().for_each(|(_, output)| *output = ThreeAxisOutput::NONE);
         }
     }
 
@@ -138,7 +126,17 @@ impl Controllers {
         state_estimates: &[StateEstimate],
         wheel_speeds: &dyn Fn() -> Vec<f64>,
     ) -> Option<DecisionCause> {
-        if let Some((law, output)) = &mut self.three_axis {
+        let entered = self.modes.as_mut().and_then(ModeLaws::enter_selected);
+        // A law of a mode that begins starts without a past. For the run it is a decision at a set time.
+        let (event, is_entry) = match entered {
+            Some(laws) => {
+                self.laws = laws;
+                (Event::Start, true)
+            }
+            None => (event, false),
+        };
+        let reported = |cause: DecisionCause| if is_entry { DecisionCause::Timeout } else { cause };
+        if let Some((law, output)) = &mut self.laws.three_axis {
             let cause = match event {
                 Event::Start => DecisionCause::Start,
                 _ if output.until == Some(now) => DecisionCause::Timeout,
@@ -149,10 +147,10 @@ impl Controllers {
             let input = ThreeAxisInput { setpoints, estimates: state_estimates, wheel_speeds };
             *output = law.decide(now, cause, &input);
             self.until = output.until;
-            return Some(cause);
+            return Some(reported(cause));
         }
         let mut first = None;
-        for (axis, (held, state_estimate)) in self.axes.iter_mut().zip(state_estimates).enumerate() {
+        for (axis, (held, state_estimate)) in self.laws.axes.iter_mut().zip(state_estimates).enumerate() {
             let timeout = held.hold.until.filter(|until| *until == now).map(|_| DecisionCause::Timeout);
             let cause = match event {
                 Event::Start => Some(DecisionCause::Start),
@@ -170,24 +168,21 @@ impl Controllers {
                     let (estimate, output) = (state_estimate.clone(), held.hold);
                     trace.push(AxisDecision { axis, cause, goal, estimate, output });
                 }
-                first = first.or(Some(cause));
+                first = first.or(Some(reported(cause)));
             }
         }
-        self.until = self.axes.iter().filter_map(|held| held.hold.until).min();
+        self.until = self.laws.axes.iter().filter_map(|held| held.hold.until).min();
         first
     }
 
-    /// Selects the laws of a mode, which decide at `now`.
-    pub fn enter_mode(&mut self, now: Instant, mode: usize) {
-        for held in &mut self.axes {
-            held.law.enter_mode(mode);
-            held.hold.until = Some(now);
-        }
+    /// Selects the laws of a mode, which start without a past at the next decision.
+    pub fn enter_mode(&mut self, mode: usize) {
+        self.modes.iter_mut().for_each(|modes| modes.select(mode));
     }
 
     /// Sets the state of the single relay law, which starts at `now`, after a push that started at `pushed`.
     pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) {
-        let [held] = &mut self.axes[..] else { return };
+        let [held] = &mut self.laws.axes[..] else { return };
         if let Some(relay) = held.law.as_relay() {
             held.hold = relay.set_state(phase, now, pushed);
             self.until = held.hold.until;
@@ -198,7 +193,7 @@ impl Controllers {
     pub fn must_decide(&self, now: Instant, sampled: bool, state_estimates: &[StateEstimate]) -> bool {
         self.until == Some(now)
             || sampled
-                && self.axes.iter().zip(state_estimates).any(|(held, state_estimate)| {
+                && self.laws.axes.iter().zip(state_estimates).any(|(held, state_estimate)| {
                     held.hold.guards.iter().any(|guard| guard.holds(state_estimate.angle))
                 })
     }
@@ -211,7 +206,7 @@ impl Controllers {
     /// Returns the guards of the law about each axis.
     pub fn guards(&self) -> AxisGuards<'_> {
         let mut guards: AxisGuards<'_> = [&[]; 3];
-        for (own, held) in guards.iter_mut().zip(&self.axes) {
+        for (own, held) in guards.iter_mut().zip(&self.laws.axes) {
             *own = &held.hold.guards;
         }
         guards
@@ -222,11 +217,11 @@ impl Controllers {
         if let Some(commands) = self.steered {
             return commands;
         }
-        if let Some((_, output)) = &self.three_axis {
+        if let Some((_, output)) = &self.laws.three_axis {
             return output.commands;
         }
         let mut commands = [Command::Torque(0.0); 3];
-        for (held, command) in self.axes.iter().zip(&mut commands) {
+        for (held, command) in self.laws.axes.iter().zip(&mut commands) {
             *command = held.hold.command;
         }
         commands
@@ -234,33 +229,35 @@ impl Controllers {
 
     /// Returns the state of the law about an axis.
     pub fn state(&self, axis: usize) -> LawState<'_> {
-        match &self.three_axis {
+        let state = match &self.laws.three_axis {
             Some((law, _)) => law.state(),
-            None => self.axes[axis].law.state(),
+            None => self.laws.axes[axis].law.state(),
+        };
+        match &self.modes {
+            Some(modes) => LawState { tuned: modes.tuned(axis), ..state },
+            None => state,
         }
     }
 
-    /// Sets a parameter of all laws, or of the law about one axis that the key selects.
+    /// Sets a parameter of all laws, or of the law about one axis or in one mode that the key selects.
     pub fn tune(&mut self, key: &str, value: f64) {
-        self.three_axis.iter_mut().for_each(|(law, _)| law.tune(key, value));
-        for held in &mut self.axes {
-            if let Some(key) = key.strip_prefix(held.place.as_str()) {
-                held.law.tune(key, value);
-            }
+        match &mut self.modes {
+            Some(modes) => modes.tune(key, value, &mut self.laws),
+            None => self.laws.tune(key, value),
         }
     }
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
     pub fn lead_time(&self) -> f64 {
-        let one_axis = self.axes.iter().map(|held| held.law.reference_needs());
-        let three_axis = self.three_axis.iter().map(|(law, _)| law.reference_needs());
+        let one_axis = self.laws.axes.iter().map(|held| held.law.reference_needs());
+        let three_axis = self.laws.three_axis.iter().map(|(law, _)| law.reference_needs());
         one_axis.chain(three_axis).map(|needs| needs.lead_time).fold(0.0, f64::max)
     }
 
     /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.
     pub fn damping_status(&self) -> [DampingStatus; 3] {
         let mut status = [DampingStatus::default(); 3];
-        for (held, status) in self.axes.iter().zip(&mut status) {
+        for (held, status) in self.laws.axes.iter().zip(&mut status) {
             *status = held.law.state().damping.copied().unwrap_or_default();
         }
         status

@@ -3,7 +3,7 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::Finite;
-use flexsc_spacecraft::environment::{GroundSite, OrbitEnvironment, OrbitPath, SunPath};
+use flexsc_spacecraft::environment::{DirectionMotion, GroundSite, OrbitEnvironment, OrbitPath, SunPath};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -25,35 +25,6 @@ pub enum SkyDirection {
     Site(GroundSite),
 }
 
-/// Unit vector in inertial axes with its derivatives.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct DirectionMotion {
-    /// Direction.
-    pub direction: Vector,
-    /// Rate of change (1/s).
-    pub rate: Vector,
-    /// Rate of change of the rate (1/s²).
-    pub acceleration: Vector,
-}
-
-impl DirectionMotion {
-    /// Returns the direction of a vector with its derivatives, from the vector, its rate and its acceleration.
-    pub fn along([vector, rate, acceleration]: [Vector; 3]) -> Self {
-        let length = vector.norm();
-        let direction = vector / length;
-        let length_rate = direction.dot(&rate);
-        let turning = (rate - direction * length_rate) / length;
-        let length_acceleration = turning.dot(&rate) + direction.dot(&acceleration);
-        let turned = acceleration - turning * (2.0 * length_rate) - direction * length_acceleration;
-        Self { direction, rate: turning, acceleration: turned / length }
-    }
-
-    /// Returns a direction that does not move.
-    fn fixed(direction: Vector) -> Self {
-        Self { direction: direction.normalize(), rate: Vector::zeros(), acceleration: Vector::zeros() }
-    }
-}
-
 impl SkyDirection {
     /// Returns the direction `t` (s) after the start, under a sky that defines it; z of the inertial axes otherwise.
     pub fn motion(&self, sky: &OrbitEnvironment, t: f64) -> DirectionMotion {
@@ -71,11 +42,8 @@ impl SkyDirection {
                 DirectionMotion::along([velocity, acceleration, jerk])
             }
             Self::OrbitNormal => DirectionMotion::along(sky.orbit_normal(t)?),
-            Self::Sun => {
-                let sun = sky.sun()?.motion(t);
-                DirectionMotion { direction: sun.direction, rate: sun.rate, acceleration: sun.acceleration }
-            }
-            Self::Inertial(direction) => DirectionMotion::fixed(vector(direction)),
+            Self::Sun => sky.sun()?.motion(t),
+            Self::Inertial(direction) => DirectionMotion::fixed(vector(direction).normalize()),
             Self::Site(site) => {
                 let [position, velocity, acceleration, _] = sky.orbit_motion(t)?;
                 let own = site.motion(sky.greenwich(), t);

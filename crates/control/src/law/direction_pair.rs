@@ -4,12 +4,12 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, from_axes, vector};
 use flexsc_numerics::quantity::Finite;
-use flexsc_spacecraft::environment::{OrbitEnvironment, to_body};
+use flexsc_spacecraft::environment::{DirectionMotion, OrbitEnvironment, to_body};
 use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::direction_motion::{DirectionMotion, SkyDirection};
+use super::direction_motion::SkyDirection;
 
 /// Least angle (rad) between the two directions, or their opposites: nearer to it the attitude turns too fast.
 const LEAST_ANGLE: f64 = 1e-3;

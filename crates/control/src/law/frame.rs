@@ -3,7 +3,7 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::attitude::from_axes;
-use flexsc_spacecraft::environment::{OrbitEnvironment, SunMotion, SunPath};
+use flexsc_spacecraft::environment::{DirectionMotion, OrbitEnvironment, SunPath};
 use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -70,7 +70,7 @@ impl Frame {
 
 /// Returns attitude, rate and acceleration of the axes with z to the Sun and x in the plane of the Sun and the planet's
 /// axis.
-fn sun_axes(sun: &SunMotion) -> AttitudeMotion {
+fn sun_axes(sun: &DirectionMotion) -> AttitudeMotion {
     let z = sun.direction;
     let across = Vector::z().cross(&z);
     // If the Sun is along the planet's axis, any direction will do.

@@ -3,6 +3,7 @@
 mod active_damping;
 mod attitude;
 mod attitude_profile;
+mod axes_laws;
 mod b_dot;
 mod command;
 mod controllers;
@@ -15,6 +16,7 @@ mod filter;
 mod frame;
 mod law_state;
 mod linear_law;
+mod mode_laws;
 mod one_axis_state_space;
 mod open_loop;
 mod output_quantity;
@@ -61,7 +63,7 @@ pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
 pub use command::{Command, CommandQuantity};
 pub use controllers::{AxisDecision, Controllers, Event};
-pub use direction_motion::{DirectionMotion, SkyDirection};
+pub use direction_motion::SkyDirection;
 pub use direction_pair::{DirectionPair, PointedAxis};
 pub use distribution::TorqueDistribution;
 pub use error_measure::AttitudeErrorMeasure;
@@ -75,6 +77,7 @@ pub use output_quantity::OutputQuantity;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis_laws::PerAxisLaws;
 pub use phase_plane::{AttitudeTarget, PhasePlane};
+pub use properties::PlacedLaw;
 pub use relay::{Relay, RelayRun, RelaySides};
 pub use setpoint::{ErrorBand, Setpoint};
 pub use stages::{Stage, Stages};
@@ -186,9 +189,6 @@ pub trait Law: Part {
     fn reference_needs(&self) -> ReferenceNeeds {
         ReferenceNeeds::default()
     }
-
-    /// Selects the law of a mode, which starts without a past at its next decision.
-    fn enter_mode(&mut self, _mode: usize) {}
 
     /// Returns the relay law, if the law is one.
     fn as_relay(&mut self) -> Option<&mut RelayRun> {

@@ -3,10 +3,31 @@
 use std::sync::Arc;
 
 use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::time::Span;
 use flexsc_record::CustomTopic;
 
-use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, LawSpec, Pd, Relay, error_band};
+use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, LawSpec, Pd, Relay, Stage, error_band};
 use crate::custom::Custom;
+
+/// Law about an axis, with its place in a scenario.
+#[derive(Clone, Debug)]
+pub struct PlacedLaw<'a> {
+    /// Key of the law.
+    pub key: String,
+    /// Law about the axis.
+    pub law: &'a LawKind,
+    /// True if the other axes have laws of their own.
+    pub is_per_axis: bool,
+    /// Stage or mode in which the law acts; `None` for a law that acts throughout.
+    pub stage: Option<&'a Stage>,
+}
+
+impl PlacedLaw<'_> {
+    /// Returns true if actuators of a kind execute the commands of the law.
+    pub fn selects(&self, kind: &str) -> bool {
+        self.stage.is_none_or(|stage| stage.selects(kind))
+    }
+}
 
 impl LawKind {
     /// Returns the parameter that an adaptation tunes by default; NaN if the law has none.
@@ -87,6 +108,41 @@ impl LawKind {
         }
     }
 
+    /// Returns the laws about an axis that act one after another or in modes of operation; one for any other law.
+    pub fn laws_about(&self, axis: usize) -> Vec<PlacedLaw<'_>> {
+        let Self::Stages(laws) = self else {
+            let is_per_axis = matches!(self, Self::PerAxis(_));
+            return vec![PlacedLaw {
+                key: self.key_about(axis),
+                law: self.about(axis),
+                is_per_axis,
+                stage: None,
+            }];
+        };
+        let stages = laws.as_slice().iter().enumerate();
+        let placed = stages.map(|(index, stage)| PlacedLaw {
+            key: format!("{}[{index}].{}", self.key(), stage.law.key_about(axis)),
+            law: stage.law.about(axis),
+            is_per_axis: matches!(stage.law, Self::PerAxis(_)),
+            stage: Some(stage),
+        });
+        placed.collect()
+    }
+
+    /// Returns the relay laws that act about an axis, in any stage or mode.
+    pub fn relays_about(&self, axis: usize) -> Vec<&Relay> {
+        self.laws_about(axis).into_iter().filter_map(|placed| placed.law.relay()).collect()
+    }
+
+    /// Returns the period in which an actuator of a kind executes the commands of the law about an axis; in stages or modes,
+    /// that of a law that plans pulses, else the shortest.
+    pub fn cycle(&self, axis: usize, kind: &str) -> Option<Span> {
+        let laws = self.laws_about(axis);
+        let driving = || laws.iter().filter(|placed| placed.selects(kind)).map(|placed| placed.law.offers());
+        let planned = driving().find(|offers| offers.plans_pulses).and_then(|offers| offers.period);
+        planned.or_else(|| driving().filter_map(|offers| offers.period).min())
+    }
+
     /// Returns the target attitudes within the law; empty if those of the scenario apply.
     pub fn own_targets(&self) -> &[AttitudeTarget] {
         if let Self::PhasePlane(law) = self { &law.targets } else { &[] }
@@ -96,6 +152,7 @@ impl LawKind {
     pub fn custom_topics(&self) -> Vec<Arc<CustomTopic>> {
         match self {
             Self::StateSpace(law) => law.topics(),
+            Self::Stages(laws) => laws.laws().flat_map(Self::custom_topics).collect(),
             Self::Own(own) => own.topics().to_vec(),
             _ => Vec::new(),
         }

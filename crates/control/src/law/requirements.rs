@@ -1,30 +1,36 @@
 //! Requirements and offers of the law of a scenario, about all axes.
 
-use super::{AttitudeErrorMeasure, EstimateNeeds, LawKind};
+use super::{AttitudeErrorMeasure, EstimateNeeds, LawKind, PlacedLaw};
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::requirement::{Requirements, Rule};
 
 impl LawKind {
-    /// Adds the requirements of the law about each axis.
+    /// Adds the requirements of the law about each axis, in each of its stages or modes.
     pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
-        let is_per_axis = matches!(self, Self::PerAxis(_));
-        if is_per_axis {
-            needs.set_part(self.key());
-            offers.require_three_axes(needs, Rule::AxisLaws, "", "");
+        needs.set_part(self.key());
+        if let Self::Stages(laws) = self {
+            needs.report(Rule::Law, laws.inconsistency());
         }
         let observes = offers.estimator.is_some_and(|of| of.dominant_mode || of.is_assessed_only);
         for axis in 0..offers.body.axes {
-            let law = self.about(axis);
-            needs.set_part(self.key_about(axis));
-            needs.report(Rule::Law, law.inconsistency());
-            law.requires(&LawPlace { axis, is_per_axis }, offers, needs);
-            needs.require(
-                Rule::DominantMode,
-                observes || law.needs() != EstimateNeeds::DominantMode,
-                "extra",
-                "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
-                 `extended_kalman`, `unscented_kalman`, `adaptive`) tells, and there is none",
-            );
+            for placed in self.laws_about(axis) {
+                let PlacedLaw { key, law, is_per_axis, .. } = &placed;
+                if *is_per_axis && axis == 0 {
+                    needs.set_part(key.split(".roll").next().unwrap_or_default().to_owned());
+                    offers.require_three_axes(needs, Rule::AxisLaws, "", "");
+                }
+                needs.set_part(key.clone());
+                needs.report(Rule::Law, law.inconsistency());
+                let place = LawPlace { axis, is_per_axis: *is_per_axis };
+                law.requires(&place, &offers.serving_law(|kind| placed.selects(kind)), needs);
+                needs.require(
+                    Rule::DominantMode,
+                    observes || law.needs() != EstimateNeeds::DominantMode,
+                    "extra",
+                    "feeds back the dominant mode, which an `[estimator]` that acts at samples (`truth`, `kalman`, \
+                     `extended_kalman`, `unscented_kalman`, `adaptive`) tells, and there is none",
+                );
+            }
         }
     }
 

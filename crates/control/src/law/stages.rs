@@ -1,22 +1,21 @@
 //! Sequence of laws, each from a given time on.
 
 use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::Time;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::b_dot::require_field;
 use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
-    ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
+    ReferenceNeeds, Setpoint, StateSpace, TorqueConditions, Tunable,
 };
 use crate::actuator::ActuatorName;
 use crate::custom::PartError;
-use crate::offers::{LawOffers, LawPlace, Offers};
+use crate::offers::LawOffers;
 use crate::part::{Part, ReportContext};
-use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// Laws that act one after another, or in modes of operation.
@@ -49,6 +48,17 @@ impl Stage {
         Instant::START + Span::from_seconds(self.from.get())
     }
 
+    /// Returns the key prefix of the law's numbers in a list, in which the stage has this index: `[0].law.pd.` and the like.
+    pub fn key_prefix(&self, index: usize) -> String {
+        format!("[{index}].law.{}.", self.law.kind())
+    }
+
+    /// Returns the kinds of the actuators that execute the commands of the law; `None` for all.
+    pub fn actuator_kinds(&self) -> Option<Vec<String>> {
+        let names = self.actuators.as_ref()?;
+        Some(names.iter().map(|name| name.as_str().to_owned()).collect())
+    }
+
     /// Returns true if actuators of a kind execute the commands of the law.
     pub fn selects(&self, kind: &str) -> bool {
         self.actuators.as_ref().is_none_or(|names| names.iter().any(|name| name.as_str() == kind))
@@ -57,7 +67,8 @@ impl Stage {
 
 impl Stages {
     /// Creates the laws of modes of operation, whose start times do not count.
-    pub fn for_modes(list: Vec<Stage>) -> Self {
+    pub fn for_modes(mut list: Vec<Stage>) -> Self {
+        StateSpace::share_topic(list.iter_mut().map(|mode| &mut mode.law));
         Self { list, of_modes: true }
     }
 
@@ -74,22 +85,14 @@ impl Stages {
     /// Creates the run-time state of the laws about an axis, each with the authority of the actuators of its stage.
     pub fn start_with(&self, authorities: &[Authority]) -> Box<dyn Law> {
         let laws = self.list.iter().zip(authorities);
-        let stages = laws.map(|(stage, authority)| (stage.begins(), stage.law.start(authority)));
-        let stages: Vec<_> = stages.collect();
-        let places = (0..self.list.len()).map(|index| self.place(index)).collect();
-        let unused = stages.iter().filter(|_| self.of_modes).map(|(_, law)| law.clone()).collect();
-        let mode = self.of_modes.then_some(0);
-        Box::new(StagesState { stages, active: 0, places, tuned: None, unused, mode, restarts: false })
+        let stages = laws.map(|(stage, authority)| (stage.begins(), stage.law.start(authority))).collect();
+        let places = self.list.iter().enumerate().map(|(index, stage)| stage.key_prefix(index)).collect();
+        Box::new(StagesState { stages, active: 0, places, tuned: None })
     }
 
     /// Iterates over the laws.
     pub fn laws(&self) -> impl Iterator<Item = &LawKind> {
         self.list.iter().map(|stage| &stage.law)
-    }
-
-    /// Returns the key prefix of the law of a stage: `[0].law.pd.` and the like.
-    fn place(&self, index: usize) -> String {
-        format!("[{index}].law.{}.", self.list[index].law.kind())
     }
 
     /// Returns the start time of the last stage.
@@ -114,31 +117,53 @@ impl Stages {
         let inertia = self.laws().find_map(LawKind::inertia);
         self.list.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
-            match &stage.law {
-                law if law.inertia().is_some_and(|own| Some(own) != inertia) => {
-                    Some(ConfigError::new(format!("{key}.inertia"), "must be that of the laws before"))
-                }
-                law if law.offers().is_three_axis => {
-                    let why = if self.of_modes {
-                        "acts about three axes together: a mode has a law about each axis"
-                    } else {
-                        "acts about three axes together: a stage has a law about each axis"
-                    };
-                    Some(ConfigError::new(key, why))
-                }
-                law @ (LawKind::BDot(_)
-                | LawKind::Pd(_)
-                | LawKind::Attitude(_)
-                | LawKind::StateSpace(_)
-                | LawKind::Open(_)
-                | LawKind::Own(_)) => law.inconsistency().map(|fault| fault.within(&key)),
-                LawKind::Relay(_) | LawKind::PhasePlane(_) | LawKind::PerAxis(_) | LawKind::Stages(_) => {
-                    let why =
-                        "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: other laws control a whole run";
-                    Some(ConfigError::new(key, why))
-                }
+            if stage.law.inertia().is_some_and(|own| Some(own) != inertia) {
+                let why = "must be that of the laws before";
+                return Some(ConfigError::new(format!("{key}.inertia"), why));
             }
+            let fault = if self.of_modes { stage.law.unfit_for_mode() } else { stage.law.unfit_for_stage() };
+            fault.map(|fault| fault.within(&key))
         })
+    }
+}
+
+impl LawKind {
+    /// Returns why the law cannot be that of a stage, with a key within it.
+    fn unfit_for_stage(&self) -> Option<ConfigError> {
+        match self {
+            law if law.offers().is_three_axis => Some(ConfigError::new(
+                "",
+                "acts about three axes together: a stage has a law about each axis",
+            )),
+            Self::BDot(_)
+            | Self::Pd(_)
+            | Self::Attitude(_)
+            | Self::StateSpace(_)
+            | Self::Open(_)
+            | Self::Own(_) => None,
+            Self::Relay(_) | Self::PhasePlane(_) | Self::PerAxis(_) | Self::Stages(_) => {
+                let why = "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: others act in a `[[mode]]`";
+                Some(ConfigError::new("", why))
+            }
+        }
+    }
+
+    /// Returns why the law cannot be that of a mode of operation, with a key within it.
+    fn unfit_for_mode(&self) -> Option<ConfigError> {
+        let in_sequence = |law: &Self| matches!(law, Self::Stages(_));
+        let why = "acts from given times of the run on, and a mode may come at any time: write each stage as a `[[mode]]`";
+        match self {
+            law if in_sequence(law) => Some(ConfigError::new("", why)),
+            Self::PerAxis(_) => {
+                let axis = (0..3).find(|axis| in_sequence(self.about(*axis)))?;
+                Some(ConfigError::new(format!("{}.stages", AXES[axis]), why))
+            }
+            law if !law.own_targets().is_empty() => {
+                let why = "are those of a whole run: write the `target` of the mode";
+                Some(ConfigError::new("targets", why))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -155,12 +180,12 @@ impl LawSpec for Stages {
     /// Returns the shortest period of the laws, and the most that one of them reads.
     fn offers(&self) -> LawOffers {
         let period = self.laws().filter_map(|law| law.period()).min();
-        LawOffers::new(period, EstimateNeeds::most(self.laws().map(|law| law.needs())))
-    }
-
-    fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
-        if let Some(index) = self.laws().position(|law| law.offers().commands_moments) {
-            require_field(&format!("[{index}].law.{}", self.list[index].law.kind()), offers, needs);
+        let needs = EstimateNeeds::most(self.laws().map(|law| law.needs()));
+        let has = |is: fn(&LawOffers) -> bool| self.laws().any(|law| is(&law.offers()));
+        LawOffers {
+            finds_crossings: has(|offers| offers.finds_crossings),
+            has_states: has(|offers| offers.has_states),
+            ..LawOffers::new(period, needs)
         }
     }
 
@@ -170,11 +195,11 @@ impl LawSpec for Stages {
     }
 
     fn tunable(&self) -> Vec<Tunable> {
-        let stage_name = |(index, law): (usize, &LawKind)| {
-            let place = self.place(index);
-            law.tunable().into_iter().map(move |number| number.nested(&place))
+        let stage_name = |(index, stage): (usize, &Stage)| {
+            let place = stage.key_prefix(index);
+            stage.law.tunable().into_iter().map(move |number| number.nested(&place))
         };
-        self.laws().enumerate().flat_map(stage_name).collect()
+        self.list.iter().enumerate().flat_map(stage_name).collect()
     }
 }
 
@@ -187,12 +212,6 @@ struct StagesState {
     /// Key prefix of each law among the stages, and index of the one tuned last.
     places: Vec<String>,
     tuned: Option<usize>,
-    /// Laws of modes as they start, without a past; empty for stages.
-    unused: Vec<Box<dyn Law>>,
-    /// Index of the mode, if the stages are those of modes.
-    mode: Option<usize>,
-    /// True from the start of a mode until its first decision.
-    restarts: bool,
 }
 
 impl Part for StagesState {
@@ -213,13 +232,11 @@ impl Law for StagesState {
         goal: &Setpoint,
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
-        let by_time = || self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
-        let due = self.mode.unwrap_or_else(by_time);
-        let is_new = due != self.active || std::mem::take(&mut self.restarts);
-        let cause = if is_new { DecisionCause::Start } else { cause };
+        let due = self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
+        let cause = if due == self.active { cause } else { DecisionCause::Start };
         self.active = due;
         let hold = self.stages[due].1.decide(now, cause, goal, state_estimate);
-        let next = self.stages.get(due + 1).filter(|_| self.mode.is_none()).map(|(begins, _)| *begins);
+        let next = self.stages.get(due + 1).map(|(begins, _)| *begins);
         ControlOutput { until: [hold.until, next].into_iter().flatten().min(), ..hold }
     }
 
@@ -233,13 +250,6 @@ impl Law for StagesState {
         ReferenceNeeds { tracks_manoeuvre, ..ReferenceNeeds::default() }
     }
 
-    fn enter_mode(&mut self, mode: usize) {
-        if let Some(unused) = self.unused.get(mode) {
-            self.stages[mode].1 = unused.clone();
-            (self.mode, self.restarts) = (Some(mode), true);
-        }
-    }
-
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
@@ -248,9 +258,6 @@ impl Law for StagesState {
         let own = |(index, place): (usize, &String)| Some((index, key.strip_prefix(place.as_str())?));
         if let Some((index, key)) = self.places.iter().enumerate().find_map(own) {
             self.stages[index].1.tune(key, value);
-            if let Some(unused) = self.unused.get_mut(index) {
-                unused.tune(key, value);
-            }
             self.tuned = Some(index);
         }
     }

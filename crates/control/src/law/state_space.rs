@@ -19,7 +19,9 @@ use super::discrete_matrices::{DiscreteMatrices, matrix};
 use super::one_axis_state_space::OneAxisStateSpace;
 use super::output_quantity::OutputQuantity;
 use super::three_axis_state_space::{CompensatorInput, ThreeAxisStateSpace, states_topic};
-use super::{Authority, ErrorBand, EstimateNeeds, Law, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable};
+use super::{
+    Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable,
+};
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::requirement::{Requirements, Rule};
 
@@ -65,6 +67,9 @@ pub struct StateSpace {
     /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub track: bool,
+    /// Number of states in the log, if there are more than those of the law: of several modes, the largest.
+    #[serde(skip)]
+    logged: usize,
 }
 
 fn one() -> Positive {
@@ -97,9 +102,22 @@ fn first_repetition(names: &[String]) -> Option<ConfigError> {
 }
 
 impl StateSpace {
+    /// Gives the laws about three axes among those of modes one topic for their states.
+    pub(super) fn share_topic<'a>(laws: impl Iterator<Item = &'a mut LawKind>) {
+        let compensator = |law: &'a mut LawKind| match law {
+            LawKind::StateSpace(law) if law.is_three_axis() => Some(law),
+            _ => None,
+        };
+        let mut laws: Vec<&mut Self> = laws.filter_map(compensator).collect();
+        let most = laws.iter().map(|law| law.a.len()).max().unwrap_or(0);
+        for law in &mut laws {
+            law.logged = most;
+        }
+    }
+
     /// Returns the topics of the rows that the law reports beyond those of the engine.
     pub fn topics(&self) -> Vec<Arc<CustomTopic>> {
-        let topic = self.is_three_axis().then(|| states_topic(self.a.len()));
+        let topic = self.is_three_axis().then(|| states_topic(self.a.len().max(self.logged)));
         topic.flatten().into_iter().collect()
     }
 
@@ -302,7 +320,7 @@ impl LawSpec for StateSpace {
             gain: self.gain.get(),
             tuned: f64::NAN,
             limit: self.limit.map_or(f64::INFINITY, Positive::get),
-            topic: states_topic(matrices.a.nrows()),
+            topic: states_topic(matrices.a.nrows().max(self.logged)),
             matrices,
         }))
     }

@@ -117,7 +117,9 @@ impl ThreeAxisStateSpace {
 impl Part for ThreeAxisStateSpace {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         let row = self.topic.as_ref().filter(|_| at.occasion == Occasion::Period);
-        let row = row.and_then(|topic| topic.row(self.state.iter().copied()).ok());
+        // The topic may have the states of a larger law of another mode.
+        let states = self.state.iter().copied().chain(std::iter::repeat(f64::NAN));
+        let row = row.and_then(|topic| topic.row(states.take(topic.fields().len())).ok());
         if let Some(row) = row {
             report.add(row);
         }

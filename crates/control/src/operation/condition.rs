@@ -1,7 +1,9 @@
 //! Condition of a mode's end as it is read, and whether it holds.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 
 use super::quantity::ModeQuantity;
@@ -22,6 +24,8 @@ pub struct Vocabulary<'a> {
     pub sensors: Vec<&'a str>,
     /// Names of the modes, in their order.
     pub modes: Vec<&'a str>,
+    /// Numbers by name, in the units of the quantities that they are compared with.
+    pub numbers: Option<&'a BTreeMap<String, Finite>>,
 }
 
 /// Comparison of a quantity with a number.

@@ -9,6 +9,6 @@ mod sequence;
 
 pub use condition::{Comparison, ConditionFault, Expression, ModeReadings, Vocabulary};
 pub use mode_condition::ModeCondition;
-pub use operating_mode::{ModeExit, ModeTarget, OperatingMode};
+pub use operating_mode::{ModeExit, ModeTarget, OperatingMode, SlewStart};
 pub use quantity::ModeQuantity;
 pub use sequence::{ModeChange, ModeSequence, SequencedMode};

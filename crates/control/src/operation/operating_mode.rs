@@ -1,18 +1,20 @@
 //! Mode of operation as written in a scenario.
 
+use std::collections::BTreeMap;
+
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Positive, Time};
 use flexsc_numerics::time::Span;
-use flexsc_spacecraft::environment::OrbitEnvironment;
+use flexsc_spacecraft::environment::{GroundSite, OrbitEnvironment};
 use flexsc_spacecraft::manoeuvre::SlewProfile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::condition::{ConditionFault, Vocabulary};
+use super::condition::{ConditionFault, Expression, Vocabulary};
 use super::mode_condition::ModeCondition;
 use super::parser::{listed, sensor_index};
 use crate::actuator::ActuatorName;
-use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis, Stage};
+use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis, SkyDirection, Stage};
 
 /// A mode of operation: the law that acts in it, with what it uses, and when it ends. A run begins in the first mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,6 +47,10 @@ pub struct ModeExit {
     pub to: String,
     /// Condition, such as `"rate < 2e-3 and time > 60"`.
     pub when: ModeCondition,
+    /// Numbers of the condition by name, such as `{ slow = 2e-3 }` for `"rate < slow"`, in SI units: keys for campaigns and
+    /// searches.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub numbers: BTreeMap<String, Finite>,
     /// Time for which the condition has to hold without a break (s).
     #[serde(default, rename = "for", skip_serializing_if = "is_zero")]
     pub dwell: Time,
@@ -78,8 +84,7 @@ pub struct ModeTarget {
     /// Yaw (rad).
     #[serde(default)]
     pub yaw: Finite,
-    /// Largest acceleration of the slew about one axis to it (rad/s²), from where the reference is; default: the reference
-    /// jumps.
+    /// Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
     /// Largest rate of the slew (rad/s); no limit by default.
@@ -88,6 +93,19 @@ pub struct ModeTarget {
     /// How the rate of the slew rises and falls.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: SlewProfile,
+    /// Start of the slew; default: the estimated attitude after a law that does not control the attitude, else the reference.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slew_from: Option<SlewStart>,
+}
+
+/// Start of the slew to the target of a mode.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SlewStart {
+    /// Reference attitude at the start of the mode.
+    Reference,
+    /// Estimated attitude of the body at the start of the mode.
+    Estimate,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -103,7 +121,8 @@ fn is_trapezoid(profile: &SlewProfile) -> bool {
 impl ModeTarget {
     /// Returns the target of the start of a run.
     pub fn at_start(&self) -> AttitudeTarget {
-        let Self { frame, primary, secondary, roll, pitch, yaw, acceleration, rate_limit, profile } = *self;
+        let Self { frame, primary, secondary, roll, pitch, yaw, acceleration, rate_limit, profile, .. } =
+            *self;
         AttitudeTarget {
             frame,
             primary,
@@ -120,10 +139,22 @@ impl ModeTarget {
 
     /// Checks the target against the sky; returns a key within it and the reason.
     pub fn fault(&self, sky: &OrbitEnvironment) -> Option<ConfigError> {
+        if self.slew_from.is_some() && self.acceleration.is_none() {
+            let why = "needs an `acceleration`: without one the reference jumps to the target";
+            return Some(ConfigError::new("slew_from", why));
+        }
         let fault = AttitudeProfile::validate(&[self.at_start()], sky, &[])?;
         Some(ConfigError {
             key: fault.key.trim_start_matches("[0]").trim_start_matches('.').to_owned(),
             ..fault
+        })
+    }
+
+    /// Returns the ground site to which the target points an axis, if there is one.
+    pub fn site(&self) -> Option<GroundSite> {
+        [self.primary, self.secondary].into_iter().flatten().find_map(|axis| match axis.along {
+            SkyDirection::Site(site) => Some(site),
+            _ => None,
         })
     }
 }
@@ -168,6 +199,7 @@ impl OperatingMode {
         let known = Vocabulary {
             sensors: sensors.to_vec(),
             modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
+            numbers: None,
         };
         modes.iter().enumerate().find_map(|(index, mode)| {
             let named = known.modes[..index].contains(&mode.name.as_str());
@@ -196,6 +228,25 @@ impl OperatingMode {
 }
 
 impl ModeExit {
+    /// Reads the condition with its numbers.
+    ///
+    /// # Errors
+    /// The first part that is no condition, and the reason.
+    pub fn read(&self, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
+        self.when.parse(&Vocabulary { numbers: Some(&self.numbers), ..known.clone() })
+    }
+
+    /// Returns why the condition cannot have a number of this name.
+    fn number_fault(&self, name: &str) -> Option<String> {
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let begins = name.starts_with(|c: char| c.is_ascii_alphabetic());
+        if !begins || !name.chars().all(is_word) || ["and", "or", "not"].contains(&name) {
+            return Some("must have a name of letters, digits and `_` that begins with a letter".to_owned());
+        }
+        let is_used = self.when.text().split(|c: char| !is_word(c)).any(|word| word == name);
+        (!is_used).then(|| format!("is not in the condition, `{}`", self.when.text()))
+    }
+
     fn fault(&self, known: &Vocabulary<'_>, of: &str) -> Option<ConfigError> {
         if !known.modes.contains(&self.to.as_str()) {
             let why = format!("must name one of the modes, {}, got `{}`", listed(&known.modes), self.to);
@@ -204,7 +255,11 @@ impl ModeExit {
         if self.to == of {
             return Some(ConfigError::new("to", format!("must name another mode, got `{of}` itself")));
         }
-        let read = match self.when.parse(known) {
+        if let Some((name, why)) = self.numbers.keys().find_map(|name| Some((name, self.number_fault(name)?)))
+        {
+            return Some(ConfigError::new(format!("numbers.{name}"), why));
+        }
+        let read = match self.read(known) {
             Ok(read) => read,
             Err(ConditionFault { part, why }) => {
                 return Some(ConfigError { part: Some(part), ..ConfigError::new("when", why) });

@@ -141,6 +141,8 @@ impl<'a> Parser<'a> {
         let number = if text.is_empty() {
             let end = self.text.len();
             return Err(fault(end.saturating_sub(1)..end, format!("needs a number after `{sign}`")));
+        } else if let Some(named) = self.known.numbers.and_then(|numbers| numbers.get(text)) {
+            named.get()
         } else {
             number_in(text, quantity.unit()).map_err(|why| fault(part.clone(), why))?
         };
@@ -168,18 +170,13 @@ impl<'a> Parser<'a> {
                     fault(part, format!("must name one of the sensors, {listed}, got `{name}`"))
                 })
             }
-            ModeQuantity::ENTRIES => {
-                let (part, name) = self.argument(word, "mode")?;
-                let index = self.known.modes.iter().position(|known| *known == name);
-                index.map(ModeQuantity::Entries).ok_or_else(|| {
-                    let listed = listed(&self.known.modes);
-                    fault(part, format!("must name one of the modes, {listed}, got `{name}`"))
-                })
-            }
+            ModeQuantity::ENTRIES => self.mode(word).map(ModeQuantity::Entries),
+            _ if word == ModeQuantity::ELEVATIONS[0] => self.mode(word).map(ModeQuantity::Elevation),
+            _ if word == ModeQuantity::ELEVATIONS[1] => self.mode(word).map(ModeQuantity::TrueElevation),
             _ => ModeQuantity::from_word(word).ok_or_else(|| {
                 let why = if word.starts_with("truth.") {
-                    "reads the truth, of which `truth.time` and `truth.run_time` have exact instants; test others on \
-                     what the law knows"
+                    "reads the truth, of which `truth.time`, `truth.run_time`, `truth.sunlight` and `truth.elevation(MODE)` \
+                     have exact instants; test others on what the law knows"
                         .to_owned()
                 } else {
                     let words: Vec<&str> = ModeQuantity::words().collect();
@@ -190,6 +187,16 @@ impl<'a> Parser<'a> {
                 fault(part, why)
             }),
         }
+    }
+
+    /// Reads a mode as the argument of a quantity, and returns its index.
+    fn mode(&mut self, word: &str) -> Result<usize, ConditionFault> {
+        let (part, name) = self.argument(word, "mode")?;
+        let index = self.known.modes.iter().position(|known| *known == name);
+        index.ok_or_else(|| {
+            let listed = listed(&self.known.modes);
+            fault(part, format!("must name one of the modes, {listed}, got `{name}`"))
+        })
     }
 
     /// Reads the argument of a quantity: `(star_tracker)`.
@@ -261,7 +268,11 @@ mod tests {
     use super::*;
 
     fn known() -> Vocabulary<'static> {
-        Vocabulary { sensors: vec!["gyro", "star_tracker", "star_tracker"], modes: vec!["safe", "point-2"] }
+        Vocabulary {
+            sensors: vec!["gyro", "star_tracker", "star_tracker"],
+            modes: vec!["safe", "point-2"],
+            numbers: None,
+        }
     }
 
     fn compared(quantity: ModeQuantity, comparison: Comparison, limit: f64) -> Expression {

@@ -25,6 +25,8 @@ pub enum ModeQuantity {
     Sunlight,
     /// Time since the last reading of a sensor, or since it came into use (s).
     Silent(usize),
+    /// Elevation above the horizon of the ground site in the target of a mode (rad), from the ephemeris on board.
+    Elevation(usize),
     /// Number of times that a mode was entered, the start included.
     Entries(usize),
     /// True if a filter has lost lock.
@@ -33,10 +35,14 @@ pub enum ModeQuantity {
     TrueTime,
     /// True time since the start of the run (s), at any instant.
     TrueRunTime,
+    /// Part of the Sun's disc in view, at any instant.
+    TrueSunlight,
+    /// Elevation above the horizon of the ground site in the target of a mode (rad), at any instant.
+    TrueElevation(usize),
 }
 
 /// Words of the quantities without an argument, with their units.
-const WORDS: [(&str, ModeQuantity, &str); 13] = [
+const WORDS: [(&str, ModeQuantity, &str); 14] = [
     ("time", ModeQuantity::Time, "s"),
     ("run_time", ModeQuantity::RunTime, "s"),
     ("rate", ModeQuantity::Rate, "rad/s"),
@@ -50,6 +56,7 @@ const WORDS: [(&str, ModeQuantity, &str); 13] = [
     ("lock_lost", ModeQuantity::LockLost, ""),
     ("truth.time", ModeQuantity::TrueTime, "s"),
     ("truth.run_time", ModeQuantity::TrueRunTime, "s"),
+    ("truth.sunlight", ModeQuantity::TrueSunlight, ""),
 ];
 
 impl ModeQuantity {
@@ -58,6 +65,9 @@ impl ModeQuantity {
     /// Word of the quantity with a mode as its argument.
     pub const ENTRIES: &'static str = "entries";
 
+    /// Words of the quantities with a mode, whose target has a ground site, as their argument.
+    pub const ELEVATIONS: [&'static str; 2] = ["elevation", "truth.elevation"];
+
     /// Returns the quantity of a word without an argument.
     pub fn from_word(word: &str) -> Option<Self> {
         WORDS.iter().find(|(known, ..)| *known == word).map(|(_, quantity, _)| *quantity)
@@ -65,13 +75,14 @@ impl ModeQuantity {
 
     /// Iterates over the words of all quantities, without arguments.
     pub fn words() -> impl Iterator<Item = &'static str> {
-        WORDS.iter().map(|(word, ..)| *word).chain([Self::SILENT, Self::ENTRIES])
+        WORDS.iter().map(|(word, ..)| *word).chain([Self::SILENT, Self::ENTRIES]).chain(Self::ELEVATIONS)
     }
 
     /// Returns the unit.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Silent(_) => "s",
+            Self::Elevation(_) | Self::TrueElevation(_) => "rad",
             _ => WORDS.iter().find(|(_, quantity, _)| *quantity == self).map_or("", |(.., unit)| *unit),
         }
     }
@@ -83,7 +94,12 @@ impl ModeQuantity {
 
     /// Returns true for a quantity of the truth, whose condition is met at an exact instant.
     pub fn is_truth(self) -> bool {
-        matches!(self, Self::TrueTime | Self::TrueRunTime)
+        matches!(self, Self::TrueTime | Self::TrueRunTime) || self.is_of_sky()
+    }
+
+    /// Returns true for a quantity of the truth that the orbit and the Sun determine before the run.
+    pub fn is_of_sky(self) -> bool {
+        matches!(self, Self::TrueSunlight | Self::TrueElevation(_))
     }
 
     /// Returns true for times that are compared exactly.

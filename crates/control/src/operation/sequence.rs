@@ -24,6 +24,8 @@ struct SequencedExit {
     text: String,
     condition: Expression,
     dwell: Span,
+    /// Instants at which quantities of the sky pass numbers of the condition, in order.
+    crossings: Vec<Instant>,
     /// True if the condition reads the truth, and is tested at exact instants.
     is_exact: bool,
 }
@@ -58,19 +60,33 @@ pub struct ModeSequence {
 
 impl SequencedMode {
     /// Reads the conditions of modes, which were checked before, on sensors of these kinds; a mode whose law has no period
-    /// is tested at `shortest`.
-    pub fn from_modes(modes: &[OperatingMode], sensors: &[&str], shortest: Span) -> Vec<Self> {
+    /// is tested at `shortest`. `crossings` returns the instants at which a quantity of the sky passes a number.
+    pub fn from_modes(
+        modes: &[OperatingMode],
+        sensors: &[&str],
+        shortest: Span,
+        crossings: &dyn Fn(ModeQuantity, f64) -> Vec<Instant>,
+    ) -> Vec<Self> {
         let known = Vocabulary {
             sensors: sensors.to_vec(),
             modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
+            numbers: None,
+        };
+        let passed = |condition: &Expression| {
+            let of_sky = condition.leaves().into_iter().filter(|(quantity, _)| quantity.is_of_sky());
+            let mut instants: Vec<Instant> =
+                of_sky.flat_map(|(quantity, limit)| crossings(quantity, limit.unwrap_or(f64::NAN))).collect();
+            instants.sort_unstable();
+            instants
         };
         let each = modes.iter().map(|mode| {
             let exits = mode.leave.iter().filter_map(|exit| {
-                let condition = exit.when.parse(&known).ok()?;
+                let condition = exit.read(&known).ok()?;
                 Some(SequencedExit {
                     to: known.modes.iter().position(|name| *name == exit.to)?,
                     text: exit.when.text().to_owned(),
                     is_exact: condition.reads_truth(),
+                    crossings: passed(&condition),
                     condition,
                     dwell: exit.dwell(),
                 })
@@ -86,15 +102,21 @@ impl SequencedMode {
 }
 
 impl SequencedExit {
-    /// Returns the instants at which the truth may make the condition true or false.
-    fn exact_instants(&self, entered: Instant) -> impl Iterator<Item = Instant> {
+    /// Returns the instants at which the truth may make the condition true or false, of those of the sky the next one after
+    /// `tested`.
+    fn exact_instants(&self, entered: Instant, tested: Instant) -> impl Iterator<Item = Instant> {
         let instant = move |(quantity, limit): (ModeQuantity, Option<f64>)| {
             let origin = if quantity == ModeQuantity::TrueTime { entered } else { Instant::START };
             Some(origin + Span::from_seconds(limit?))
         };
         // A time is above its limit from the next tick on.
         let leaves = if self.is_exact { self.condition.leaves() } else { Vec::new() };
-        leaves.into_iter().filter_map(instant).flat_map(|at| [at, at + Span::TICK])
+        let reads_sky = leaves.iter().any(|(quantity, _)| quantity.is_of_sky());
+        let next = self.crossings.get(self.crossings.partition_point(|at| *at <= tested)).copied();
+        // The sky may meet the condition from the start of the mode on.
+        let of_sky = next.into_iter().chain(reads_sky.then_some(entered + Span::TICK));
+        let clocks = leaves.into_iter().filter(|(quantity, _)| !quantity.is_of_sky());
+        clocks.filter_map(instant).flat_map(|at| [at, at + Span::TICK]).chain(of_sky)
     }
 }
 
@@ -141,7 +163,7 @@ impl ModeSequence {
         let sampled = exits.iter().any(|exit| !exit.is_exact).then_some(self.next);
         let exact = exits.iter().zip(&self.held).flat_map(|(exit, held)| {
             let dwelt = held.filter(|_| exit.is_exact).map(|since| since + exit.dwell);
-            exit.exact_instants(self.entered).chain(dwelt).filter(|at| *at > self.tested)
+            exit.exact_instants(self.entered, self.tested).chain(dwelt).filter(|at| *at > self.tested)
         });
         exact.chain(sampled).min()
     }
@@ -214,7 +236,8 @@ mod tests {
         }
         let modes = flexsc_formats::document::from_text::<Of>(text).unwrap().mode;
         assert_eq!(OperatingMode::fault(&modes, &[]), None);
-        ModeSequence::new(SequencedMode::from_modes(&modes, &[], Span::from_seconds(1.0))).unwrap()
+        ModeSequence::new(SequencedMode::from_modes(&modes, &[], Span::from_seconds(1.0), &|_, _| Vec::new()))
+            .unwrap()
     }
 
     /// Returns the changes of a run with a rate over time.

@@ -315,3 +315,42 @@ impl GyroState {
         rate
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use flexsc_numerics::attitude::{Vector, rotation};
+    use flexsc_spacecraft::environment::EnvironmentObservation;
+
+    use super::*;
+    use crate::sensor::Orientation;
+
+    /// Returns what a gyro measures of these rates (rad/s) after one second of them.
+    fn measured(text: &str, rate: [f64; 3]) -> [f64; 3] {
+        let gyro: Gyro = flexsc_formats::document::from_text(text).unwrap();
+        assert_eq!(gyro.inconsistency(), None);
+        let mut state = gyro.start(3, Seed { scenario: 1, run: 0 }, 0);
+        let read = |state: &mut dyn Sensor, t: f64| {
+            let turned = rate.map(|rate| rate * t);
+            let orientation = Orientation::Attitude(rotation(&Vector::from(turned)));
+            let sky = EnvironmentObservation::default();
+            let truth = Truth { orientation, elastic: [0.0; 3], rate, rigid: rate, turned, sky };
+            state.read(Instant::START + Span::from_seconds(t), &truth, None).unwrap().rate.unwrap()
+        };
+        read(&mut state, 0.0);
+        read(&mut state, 1.0)
+    }
+
+    #[test]
+    fn a_rate_beyond_the_range_is_clipped_after_the_errors() {
+        let errors = "bias = [1e-3, 0, 0]\nscale = [0, 0.5, 0]\nrange = [0.02, 0.04, 0.05]";
+        let sampled = format!("period = 1.0\n{errors}");
+        let within = measured(&sampled, [0.018, -0.02, 0.049]);
+        let exact = [0.019, -0.03, 0.049];
+        assert!(within.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-15), "{within:?}");
+        assert_eq!(measured(&sampled, [0.0195, -0.03, 0.06]), [0.02, -0.04, 0.05]);
+        assert_eq!(measured(&sampled, [-0.03, 0.03, -0.06]), [-0.02, 0.04, -0.05]);
+        // A gyro that integrates clips the mean rate.
+        let integrating = format!("period = 1.0\nquantum = 1e-9\n{errors}");
+        assert_eq!(measured(&integrating, [0.03, -0.04, 0.06]), [0.02, -0.04, 0.05]);
+    }
+}

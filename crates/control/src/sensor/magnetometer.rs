@@ -120,3 +120,34 @@ impl VectorSensor for Magnetometer {
         &self.faults
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use flexsc_numerics::attitude::rotation;
+    use flexsc_numerics::time::Instant;
+
+    use super::*;
+    use crate::sensor::{Orientation, Truth};
+
+    #[test]
+    fn a_field_beyond_the_range_is_clipped_after_the_errors() {
+        let text = "period = 1.0\nbias = [1e-6, 0, 0]\nscale = [0, 0.5, 0]\nrange = [2e-5, 4e-5, 5e-5]";
+        let sensor: Magnetometer = flexsc_formats::document::from_text(text).unwrap();
+        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut measure = |field: [f64; 3]| {
+            let sky = EnvironmentObservation {
+                field: Some(Vector::from(field)),
+                ..EnvironmentObservation::default()
+            };
+            let orientation = Orientation::Attitude(rotation(&Vector::zeros()));
+            let [elastic, rate] = [[0.0; 3]; 2];
+            let truth = Truth { orientation, elastic, rate, rigid: rate, turned: rate, sky };
+            state.read(Instant::START, &truth, None).unwrap().sight.unwrap().vector
+        };
+        let within = measure([1.8e-5, -2e-5, 4.9e-5]);
+        assert!((within - Vector::new(1.9e-5, -3e-5, 4.9e-5)).norm() < 1e-19, "{within}");
+        // The bias and the scale lead beyond the range; so does the field itself.
+        assert_eq!(measure([1.95e-5, -3e-5, 6e-5]), Vector::new(2e-5, -4e-5, 5e-5));
+        assert_eq!(measure([-3e-5, 3e-5, -6e-5]), Vector::new(-2e-5, 4e-5, -5e-5));
+    }
+}

@@ -2,6 +2,7 @@
 
 mod accelerometer;
 mod custom_sensor;
+mod direction_sensor;
 mod earth_sensor;
 mod exclusion;
 mod exposure;

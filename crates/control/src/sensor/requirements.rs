@@ -33,12 +33,15 @@ impl SensorKind {
             Self::EarthSensor(_) => EarthSensor::requires(offers, needs),
             Self::Tachometer(_) => Tachometer::requires(ordinal, offers, needs),
             Self::Accelerometer(_) => Accelerometer::requires(offers, needs),
-            Self::Continuous => needs.require(
-                Rule::Sensor,
-                offers.sensors.motion_sensors <= 1,
-                "",
-                "gives the motion at every instant, so other sensors add nothing",
-            ),
+            Self::Continuous => {
+                let is_alone = offers.sensors.motion_sensors <= 1;
+                let why = if offers.sensors.vector_sensors + 1 == offers.sensors.motion_sensors {
+                    "has no samples, and sensors of the field and of directions have: use a `sampled` sensor beside them"
+                } else {
+                    "gives the motion at every instant, so other sensors add nothing"
+                };
+                needs.require(Rule::Sensor, is_alone, "", why);
+            }
             Self::Sampled(_) | Self::Own(_) => {}
         }
     }
@@ -74,6 +77,7 @@ impl OneOrMany<SensorKind> {
     pub fn offers(&self, law: Option<Span>) -> SensorOffers {
         SensorOffers {
             motion_sensors: self.motion_sensors(),
+            vector_sensors: self.iter().filter(|sensor| sensor.measures_vector()).count(),
             is_continuous: self.iter().any(SensorKind::is_continuous),
             magnetic_field: self.iter().any(SensorKind::measures_field),
             period: self.period(law),

@@ -64,11 +64,22 @@ impl LinearAttitudeFilter {
             match role {
                 SensorRole::None => {}
                 SensorRole::Gyro { .. } => found.0 = Some(mounted(index, 0.0)),
-                SensorRole::Corrects { .. }
-                    if found.1.is_some() || scenario.sensor[index].measures_vector() =>
-                {
-                    let why = "has gains that settle only with one sensor of the attitude and none of vectors: a loop has \
-                               one `star_tracker` or `sampled` sensor";
+                SensorRole::Corrects { .. } if scenario.sensor[index].measures_vector() => {
+                    let why = format!(
+                        "reads the directions of `{}`, with which its gains change with the attitude and do not settle, so that there \
+                         is no linear loop: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor; \
+                         others are simulated",
+                        scenario.sensor_key(index)
+                    );
+                    return Err(ConfigError::new("", why));
+                }
+                SensorRole::Corrects { .. } if found.1.is_some() => {
+                    let why = format!(
+                        "reads `{}` beside another sensor of the attitude, so that its gains change from sample to sample and do not \
+                         settle to one: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor; \
+                         others are simulated",
+                        scenario.sensor_key(index)
+                    );
                     return Err(ConfigError::new("", why));
                 }
                 SensorRole::Corrects { latency, noise, gain } => {

@@ -8,6 +8,7 @@ mod filter;
 pub mod goal;
 mod index_record;
 mod line_of_sight;
+mod mode_bands;
 mod operation;
 mod pointing_index;
 mod requirements;
@@ -213,7 +214,6 @@ impl Record for MetricsCollector {
                 } else {
                     sample.get().into_iter().for_each(|event| rotation.observe_bearing_event(event));
                     sample.get().into_iter().for_each(|row| rotation.observe_acceleration(row));
-                    sample.get().into_iter().for_each(|event| rotation.observe_mode(now, event));
                     sample.get().into_iter().for_each(|event| self.blinding.observe(event));
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));

@@ -4,10 +4,12 @@ use flexsc_control::actuator::{JetCycle, Saturation};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
-    Accelerations, ModeEvent, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle, WheelEvent,
+    Accelerations, ModeTargetStart, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle,
+    WheelEvent,
 };
 
 use super::goal::GoalMetrics;
+use super::mode_bands::ModeBands;
 use super::{
     ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, BURN_IMPULSE, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE,
     FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
@@ -71,8 +73,7 @@ pub struct ThreeAxisMetrics {
     bands: [f64; 3],
     outside: Option<f64>,
     end: f64,
-    /// True for modes of operation that have a target.
-    retargeting: Vec<bool>,
+    modes: ModeBands,
 }
 
 impl ThreeAxisMetrics {
@@ -82,6 +83,8 @@ impl ThreeAxisMetrics {
         let own: [f64; 3] = std::array::from_fn(|axis| {
             scenario.study.expected_bands.get(axis).copied().flatten().unwrap_or(f64::NAN)
         });
+        let modes = ModeBands::new(scenario);
+        let own = modes.first().unwrap_or(own);
         let bands = scenario.reference.band.map_or(own, |band| [Positive::get(band); 3]);
         let from = scenario.last_target_start(end).seconds();
         Self {
@@ -117,7 +120,7 @@ impl ThreeAxisMetrics {
             saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
             slews: (f64::NAN, 0.0, 0),
             has_slews: scenario.study.profile.has_slews() || slews_to_mode(scenario),
-            retargeting: scenario.mode.iter().map(|mode| mode.target.is_some()).collect(),
+            modes,
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
             steered: (!scenario.study.gimbals.is_empty()).then(SteeringRecord::unknown),
@@ -126,16 +129,18 @@ impl ThreeAxisMetrics {
         }
     }
 
-    /// Observes the start of a mode of operation: the goal begins with its target.
-    pub fn observe_mode(&mut self, now: Instant, event: &ModeEvent) {
-        if self.retargeting.get(event.index as usize) == Some(&true) {
-            self.verdict = GoalMetrics::new(now.seconds(), self.verdict.band());
-            self.outside = None;
+    /// Observes the start of a mode of operation with a target: the goal begins with it.
+    fn observe_target(&mut self, now: Instant, start: ModeTargetStart) {
+        if let Some(bands) = self.modes.bands(start) {
+            self.bands = bands;
         }
+        self.verdict = GoalMetrics::new(now.seconds(), self.bands.into_iter().fold(0.0, f64::max));
+        self.outside = None;
     }
 
     /// Observes the report of a cycle; other reports have no cycle.
     pub fn observe_cycle(&mut self, now: Instant, report: &Report) {
+        report.get::<ModeTargetStart>().into_iter().for_each(|start| self.observe_target(now, *start));
         let Some(cycle) = report.get::<ThreeAxisCycle>() else { return };
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |vector: [f64; 3]| vector.iter().map(|value| value * value).sum::<f64>();

@@ -2,7 +2,7 @@
 
 use flexsc_control::actuator::{ActuatorTask, AssignedActuator, AssignedMember, WheelUnloading};
 use flexsc_control::law::Stage;
-use flexsc_control::offers::{ActuatorMember, Offers};
+use flexsc_control::offers::{ActuatorMember, AxisLaw, Offers};
 use flexsc_control::one_or_many::OneOrMany;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
@@ -47,13 +47,35 @@ impl ScenarioSpec {
     /// Checks that the shares about each axis sum to 1, in each stage of the law if stages select actuators.
     pub(super) fn validate_shares(&self, offers: &Offers) -> Option<ConfigError> {
         if !self.law.selects_actuators() {
-            return self.validate_sums(offers);
+            return self.validate_sums(offers).or_else(|| self.validate_pulse_periods(offers));
         }
         let misplaced = self.validate_selection(offers);
         misplaced.or_else(|| {
             let mut stages = self.law.stages().iter().enumerate();
-            stages.find_map(|(index, stage)| self.validate_stage(index, stage, offers))
+            let fault = stages.find_map(|(index, stage)| self.validate_stage(index, stage, offers));
+            fault.or_else(|| self.validate_pulse_periods(offers))
         })
+    }
+
+    /// Checks that an actuator without pulses has one period in which it executes changes of the rate about an axis.
+    fn validate_pulse_periods(&self, offers: &Offers) -> Option<ConfigError> {
+        let held = offers.actuators.iter().filter(|member| member.executes && !member.offers.pulses);
+        held.flat_map(|member| (0..self.axis_count()).map(move |axis| (member, axis))).find_map(
+            |(member, axis)| {
+                let plans = |law: &&AxisLaw| {
+                    law.axis == axis && law.offers.plans_pulses && law.drives(member.kind)
+                };
+                let mut laws = offers.laws.iter().filter(plans);
+                let first = laws.next().filter(|_| member.shares[axis] > 0.0)?;
+                let other = laws.find(|law| law.offers.period != first.offers.period)?;
+                let period = first.offers.period?.seconds();
+                let why = format!(
+                    "must be that of `{}`, {period} s: `{}` holds the torque of a change of the rate for one period",
+                    first.key, member.key
+                );
+                Some(ConfigError::new(format!("{}.period", other.key), why))
+            },
+        )
     }
 
     /// Checks that stages that select actuators fit the other parts.
@@ -97,21 +119,22 @@ impl ScenarioSpec {
                 Some(_) => {}
             }
         }
-        let law = stage.law.offers();
         let selected: Vec<&ActuatorMember> =
             offers.actuators.iter().filter(|member| member.executes && stage.selects(member.kind)).collect();
-        if law.commands_moments {
+        let about = |axis: usize| stage.law.about(axis).offers();
+        let axes = 0..self.axis_count();
+        if axes.clone().any(|axis| about(axis).commands_moments) {
             let has_torquers = selected.iter().any(|member| member.kind == "magnetorquers");
             let unloads = |member: &ActuatorMember| !member.executes && member.kind == "magnetorquers";
-            if has_torquers || offers.actuators.iter().any(unloads) {
+            if !has_torquers && !offers.actuators.iter().any(unloads) {
+                return at(key, "must include `magnetorquers`, which execute the law's moments".to_owned());
+            }
+        }
+        axes.zip(AXES).find_map(|(axis, name)| {
+            let law = about(axis);
+            if law.is_open || law.commands_moments {
                 return None;
             }
-            return at(key, "must include `magnetorquers`, which execute the law's moments".to_owned());
-        }
-        if law.is_open {
-            return None;
-        }
-        AXES.iter().enumerate().take(self.axis_count()).find_map(|(axis, name)| {
             let about = if self.axis_count() == 1 { String::new() } else { format!(" about {name}") };
             let serving = selected.iter().filter(|member| member.shares[axis] > 0.0);
             let each: Vec<String> = serving
@@ -120,7 +143,9 @@ impl ScenarioSpec {
                 .collect();
             let sum = serving.map(|member| member.shares[axis]).fold(0.0, |sum, share| sum + share);
             if (sum - 1.0).abs() <= ROUNDING {
-                return None;
+                let why =
+                    || format!("must name one actuator{about} for a law `phase_plane`, got {}", each.len());
+                return (each.len() > 1 && law.plans_pulses).then(|| ConfigError::new(&key, why()));
             }
             let found = if each.is_empty() { "no actuator".to_owned() } else { each.join(", ") };
             at(key.clone(), format!("must have shares that sum to 1{about}, got {sum} ({found})"))
@@ -132,10 +157,10 @@ impl ScenarioSpec {
         for (axis, name) in AXES.iter().enumerate().take(self.axis_count()) {
             let serves = |member: &&ActuatorMember| member.shares[axis] > 0.0;
             let serving: Vec<&ActuatorMember> = offers.actuators.iter().filter(serves).collect();
-            let law = &offers.laws[axis];
+            let mut laws = offers.laws.iter().filter(|law| law.axis == axis);
             let about = if self.axis_count() == 1 { String::new() } else { format!(" about {name}") };
             let Some(last) = serving.last() else {
-                if law.offers.is_open {
+                if laws.all(|law| law.offers.is_open) {
                     continue;
                 }
                 let why = format!(
@@ -151,7 +176,7 @@ impl ScenarioSpec {
                 let key = last.key.rsplit_once('.').map_or("actuator", |(entry, _)| entry);
                 return Some(ConfigError::new(format!("{key}.share"), why));
             }
-            if serving.len() > 1 && law.offers.plans_pulses {
+            if let Some(law) = laws.find(|law| serving.len() > 1 && law.offers.plans_pulses) {
                 let why = format!("needs one actuator{about}, and there are {}", serving.len());
                 return Some(ConfigError::new(&law.key, why));
             }

@@ -4,7 +4,7 @@ use flexsc_control::actuator::{
     ActuatorAuthority, ActuatorKind, ActuatorPlacement, AssignedMember, GroupEffect, PulseWidth,
 };
 use flexsc_control::estimator::adaptive;
-use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, Stage};
+use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, PlacedLaw, Stage};
 use flexsc_control::sensor::Tachometer;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
@@ -23,7 +23,7 @@ impl ResolvedScenario {
     /// is at its limit with its share.
     pub(super) fn authority(&self, written: &ScenarioSpec, axis: usize, stage: Option<&Stage>) -> Authority {
         let (placement, inertia) =
-            (self.placement(self.groups.as_ref(), None), self.axes[axis].commanded_inertia());
+            (self.placement(written, self.groups.as_ref(), None), self.axes[axis].commanded_inertia());
         let alone = |kind: &ActuatorKind| kind.authority(axis, inertia, &placement);
         let members = written.actuator.members();
         let acts = |member: &&AssignedMember<'_>| {
@@ -51,6 +51,7 @@ impl ResolvedScenario {
     /// Returns the data of the body that its actuators depend on, with groups of jets.
     pub(super) fn placement<'a>(
         &'a self,
+        written: &ScenarioSpec,
         groups: Option<&'a [[GroupEffect; 2]; 3]>,
         tachometer: Option<(&'a Tachometer, Seed)>,
     ) -> ActuatorPlacement<'a> {
@@ -60,18 +61,42 @@ impl ResolvedScenario {
             field: self.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound()),
             groups,
             nozzles: &self.nozzles,
-            period: self.assessment_period,
+            period: written.law.cycle(0, "jets").unwrap_or(self.assessment_period),
             tachometer,
         }
     }
 
-    /// Returns the elastic rate above which the active damping of an axis acts (rad/s); 0 for a law without it.
-    pub(super) fn damping_threshold(&self, written: &ScenarioSpec, axis: usize) -> Result<f64, ConfigError> {
-        let Some(damping) = written.law.about(axis).active_damping() else { return Ok(0.0) };
-        let key = format!("{}.damping", written.law.key_about(axis));
+    /// Sets the elastic rates above which active damping acts (rad/s), about each axis and in each stage or mode.
+    pub(super) fn set_damping_thresholds(&mut self, written: &ScenarioSpec) -> Result<(), ConfigError> {
+        for axis in 0..self.axes.len() {
+            for (index, placed) in written.law.laws_about(axis).iter().enumerate() {
+                let own = self.stage_authorities.get(axis).and_then(|stages| stages.get(index)).copied();
+                let threshold =
+                    self.damping_threshold(placed, axis, &own.unwrap_or(self.authorities[axis]))?;
+                if let Some(own) =
+                    self.stage_authorities.get_mut(axis).and_then(|stages| stages.get_mut(index))
+                {
+                    own.threshold = threshold;
+                }
+                let common = &mut self.authorities[axis];
+                common.threshold = common.threshold.max(threshold);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the elastic rate above which the active damping of a law about an axis acts (rad/s); 0 for a law without it.
+    fn damping_threshold(
+        &self,
+        placed: &PlacedLaw<'_>,
+        axis: usize,
+        authority: &Authority,
+    ) -> Result<f64, ConfigError> {
+        let Some(damping) = placed.law.active_damping() else { return Ok(0.0) };
+        let key = format!("{}.damping", placed.key);
         // Without elastic rates the requirement of the law was reported.
         let Some(plan) = &self.adaptive else { return Ok(0.0) };
-        let threshold = damping_threshold(damping, plan, &self.authorities[axis], axis);
+        let threshold = damping_threshold(damping, plan, authority, axis);
         if damping.threshold.is_none() && threshold >= NO_MOTION {
             let name = if self.axes.len() == 1 { "the law" } else { flexsc_numerics::attitude::AXES[axis] };
             return Err(ConfigError::new(
@@ -91,7 +116,9 @@ impl ResolvedScenario {
         body: Option<&ThreeAxisModel>,
         axis: usize,
     ) -> Option<f64> {
-        let law = written.law.about(axis);
+        // Of stages and modes the last one promises the band.
+        let law =
+            written.law.laws_about(axis).pop().map_or_else(|| written.law.about(axis), |placed| placed.law);
         if let Some(band) = law.band_with(&self.authorities[axis]) {
             return Some(band);
         }
@@ -110,6 +137,18 @@ impl ResolvedScenario {
                 (distance > 0.0).then_some(part * distance)
             }
         }
+    }
+
+    /// Returns the bands about the target of each mode of operation, for each axis, as its law promises them.
+    pub(super) fn mode_bands(&self, written: &ScenarioSpec) -> Vec<Vec<ErrorBand>> {
+        let about = |mode: usize, axis: usize| {
+            let law = written.mode[mode].law.about(axis);
+            let authority = self.stage_authorities.get(axis).and_then(|modes| modes.get(mode));
+            let own = authority.and_then(|authority| law.band_with(authority));
+            own.map_or_else(|| law.expected_band(), ErrorBand::Absolute)
+        };
+        let axes = self.axes.len();
+        (0..written.mode.len()).map(|mode| (0..axes).map(|axis| about(mode, axis)).collect()).collect()
     }
 
     /// Returns the arrival band about a target, for each axis (rad); NaN without one.

@@ -1,7 +1,7 @@
 //! Compatibility of the parts of a scenario: the offers of all parts, and the requirements of each that they do not meet.
 
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
+use flexsc_control::law::{AttitudeProfile, AttitudeTarget, PlacedLaw, Stage};
 use flexsc_control::offers::{AxisLaw, BodyOffers, EnvironmentOffers, Offers};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::CommandedQuantity;
@@ -26,8 +26,13 @@ impl ScenarioSpec {
 
     /// Returns the offers of all parts.
     pub(super) fn offers(&self, model: &BodyModel) -> Offers {
-        let law =
-            |axis: usize| AxisLaw { key: self.law.key_about(axis), offers: self.law.about(axis).offers() };
+        let law = |axis: usize, of: PlacedLaw<'_>| AxisLaw {
+            axis,
+            offers: of.law.offers(),
+            actuators: of.stage.and_then(Stage::actuator_kinds),
+            key: of.key,
+        };
+        let about = |axis: usize| self.law.laws_about(axis).into_iter().map(move |of| law(axis, of));
         let around = self.environment.as_ref();
         Offers {
             body: self.body_offers(model),
@@ -40,7 +45,7 @@ impl ScenarioSpec {
                     .and_then(|around| around.orbit.as_ref()?.path(self.duration.seconds(), self.date_ns()))
                     .is_none_or(|orbit| orbit.farthest() <= BELOW_MOON),
             },
-            laws: (0..self.axis_count()).map(law).collect(),
+            laws: (0..self.axis_count()).flat_map(about).collect(),
             law_kind: self.law.kind(),
             law_period: self.law.period(),
             sensors: self.sensor.offers(self.law.period()),

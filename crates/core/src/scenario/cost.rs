@@ -3,7 +3,7 @@
 
 use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::AttitudeTarget;
+use flexsc_control::law::{AttitudeTarget, Relay};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::flow::LONGEST_TURN;
 use flexsc_dynamics::periodic_torque::PeriodicTorque;
@@ -231,10 +231,9 @@ impl Scenario {
         for (index, line) in self.line_of_sight.iter().enumerate() {
             each(format!("line_of_sight[{index}].period"), duration, line.period);
         }
-        for axis in 0..self.axis_count() {
-            if let Some(period) = self.law.about(axis).period() {
-                each(format!("{}.period", self.law.key_about(axis)), duration, period);
-            }
+        let laws = (0..self.axis_count()).flat_map(|axis| self.law.laws_about(axis));
+        for (key, period) in laws.filter_map(|of| Some((of.key, of.law.period()?))) {
+            each(format!("{key}.period"), duration, period);
         }
         for member in self.actuator.members() {
             if let Some(period) = member.kind.period() {
@@ -267,9 +266,9 @@ impl Scenario {
         let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let is_sampled = self.study.sample_period.is_some();
         let axes = self.closed_form_axes();
-        let about_axis =
-            |axis: usize| self.law.about(axis).relay().map_or(0.0, |law| law.search_steps(is_coupled));
-        let search = if is_sampled { 0.0 } else { (0..axes.len()).map(about_axis).fold(0.0, f64::max) };
+        let relays: Vec<_> = (0..axes.len()).map(|axis| self.law.relays_about(axis)).collect();
+        let searched = relays.iter().flatten().map(|law| law.search_steps(is_coupled));
+        let search = if is_sampled { 0.0 } else { searched.fold(0.0, f64::max) };
         let strides = if self.model.chain().is_some() {
             20.0
         } else if search > 0.0 {
@@ -288,12 +287,13 @@ impl Scenario {
             steps.push(("duration".to_owned(), width * strides * duration * fastest));
         }
         // The first window of chatter ends the run.
-        let switchings = |(axis, body): (usize, &AxisModel)| {
-            let mean = self.law.about(axis).relay()?.switching_interval(body.commanded_inertia());
+        let switchings = |(laws, body): (&Vec<&Relay>, &AxisModel)| {
+            let each = laws.iter().map(|law| law.switching_interval(body.commanded_inertia()));
+            let mean = each.reduce(f64::min)?;
             let chatters = mean * SWITCHINGS as f64 <= shortest_window(fastest);
             Some(if chatters { SWITCHINGS as f64 } else { duration / mean })
         };
-        let switchings: Vec<f64> = axes.iter().enumerate().filter_map(switchings).collect();
+        let switchings: Vec<f64> = relays.iter().zip(axes).filter_map(switchings).collect();
         if !(is_sampled || switchings.is_empty()) {
             steps.push((SWITCHES.to_owned(), width * switchings.iter().sum::<f64>()));
         }

@@ -36,7 +36,8 @@ impl Scenario {
     pub(super) fn linear_flow(&self) -> Result<Option<Arc<LinearFlow>>, ConfigError> {
         let Some(body) = self.model.one_axis() else { return Ok(None) };
         let wheel = self.actuator.flywheel().map(|(_, key)| key);
-        let crosses = self.law.is_switching() && self.study.sample_period.is_none();
+        let switches = self.law.is_switching() || self.law.offers().finds_crossings;
+        let crosses = switches && self.study.sample_period.is_none();
         let damped = body.is_coupled();
         if !(damped || wheel.is_some() && crosses) {
             return Ok(None);

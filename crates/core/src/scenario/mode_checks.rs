@@ -3,7 +3,7 @@
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::EstimateNeeds;
 use flexsc_control::offers::Offers;
-use flexsc_control::operation::{ModeQuantity, OperatingMode, Vocabulary};
+use flexsc_control::operation::{ModeQuantity, ModeTarget, OperatingMode, Vocabulary};
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_spacecraft::body::{AssembledSpacecraft, BodyModel};
@@ -25,7 +25,7 @@ impl ScenarioSpec {
         }
         let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
         let names = self.mode.iter().map(|mode| mode.name.as_str()).collect();
-        let known = Vocabulary { sensors: kinds.clone(), modes: names };
+        let known = Vocabulary { sensors: kinds.clone(), modes: names, numbers: None };
         let listed = OperatingMode::fault(&self.mode, &kinds).map(|fault| fault.within("mode"));
         listed.or_else(|| self.validate_mode_targets(model)).or_else(|| {
             self.mode.iter().enumerate().find_map(|(index, mode)| {
@@ -145,8 +145,12 @@ impl ScenarioSpec {
                 }
                 ModeQuantity::Field | ModeQuantity::FieldRate => (!used(&SensorKind::measures_field))
                     .then_some("reads the measured field, and no `magnetometer` is in use in this mode"),
-                ModeQuantity::Sunlight => {
+                ModeQuantity::Sunlight | ModeQuantity::TrueSunlight => {
                     (!offers.environment.sun).then_some("reads the light of `environment.sun`, and there is none")
+                }
+                ModeQuantity::Elevation(mode) | ModeQuantity::TrueElevation(mode) => {
+                    let site = self.mode[mode].target.as_ref().and_then(ModeTarget::site);
+                    site.is_none().then_some("reads the elevation at the `site` in the target of a mode, and that one has none")
                 }
                 ModeQuantity::LockLost => (!filters)
                     .then_some("reads the lock of a Kalman filter about each axis, and there is none"),
@@ -163,11 +167,11 @@ impl ScenarioSpec {
                 _ => None,
             }
         };
-        let samples = self.law.period().is_some();
+        let samples = offers.law_period.or(offers.sample_period).is_some();
         mode.leave.iter().enumerate().find_map(|(place, exit)| {
-            let read = exit.when.parse(known).ok()?;
+            let read = exit.read(known).ok()?;
             let fault = read.leaves().into_iter().find_map(|(quantity, _)| why(quantity)).or_else(|| {
-                let why = "is tested at the samples of a law, and no law of a mode has a period";
+                let why = "is tested at the samples of a law or of a sensor, and here neither has a period: give the sensor one";
                 (!samples && !read.reads_truth()).then_some(why)
             });
             fault.map(|why| ConfigError::new(format!("leave[{place}].when"), why))

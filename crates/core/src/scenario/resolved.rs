@@ -2,11 +2,11 @@
 //! authority.
 
 use flexsc_control::actuator::{
-    Actuator, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext, BackEmfRate,
-    GroupEffect, GyroAxes, ThrusterEffect,
+    Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
+    BackEmfRate, GroupEffect, GyroAxes, ThrusterEffect,
 };
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
-use flexsc_control::law::{AttitudeProfile, Authority, Stage, TorqueDistribution};
+use flexsc_control::law::{AttitudeProfile, Authority, ErrorBand, Stage, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
@@ -84,6 +84,9 @@ pub struct ResolvedScenario {
     pub shared_steps: SharedSteps,
     /// Error band about the target that the law of each axis promises (rad), if it promises one.
     pub expected_bands: Vec<Option<f64>>,
+    /// Bands about the target of each mode of operation, for each axis; of a fraction, that of the distance at the start of
+    /// the mode.
+    pub mode_bands: Vec<Vec<ErrorBand>>,
     /// Requirements, that of `reference.pointing.rms` first.
     pub requirements: Vec<AssessedRequirement>,
 }
@@ -123,7 +126,7 @@ impl ResolvedScenario {
         let last_stage = written.law.stages().last();
         let axes = 0..study.axes.len();
         study.authorities = axes.clone().map(|axis| study.authority(written, axis, last_stage)).collect();
-        if written.law.selects_actuators() {
+        if written.law.selects_actuators() || written.law.is_of_modes() {
             let stages = written.law.stages();
             let in_stages =
                 |axis| stages.iter().map(|stage| study.authority(written, axis, Some(stage))).collect();
@@ -152,9 +155,8 @@ impl ResolvedScenario {
         if let Some(fault) = unmet.first(Rule::ElasticRates) {
             return Err(fault);
         }
-        for axis in 0..study.axes.len() {
-            study.authorities[axis].threshold = study.damping_threshold(written, axis)?;
-        }
+        study.set_damping_thresholds(written)?;
+        study.mode_bands = study.mode_bands(written);
         study.expected_bands =
             (0..study.axes.len()).map(|axis| study.error_band(written, model.three_axis(), axis)).collect();
         Ok(study)
@@ -286,20 +288,22 @@ impl ResolvedScenario {
     pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuator> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let manoeuvre = scenario.manoeuvre.as_ref();
-        let setting = |(axis, model): (usize, &AxisModel)| AxisActuatorContext {
+        let setting = |(axis, model): (usize, &AxisModel), kind: &str| AxisActuatorContext {
             axis,
             inertia: model.commanded_inertia(),
             planned_inertia: manoeuvre
                 .map_or_else(|| model.commanded_inertia(), |of| of.planned_for(model).commanded_inertia()),
             rate: model.rate.get(),
-            cycle: scenario.law.about(axis).period(),
+            cycle: scenario.law.cycle(axis, kind),
             waveform: waveform.clone(),
             share: 1.0,
         };
-        let settings: Vec<AxisActuatorContext> = self.axes.iter().enumerate().map(setting).collect();
+        let settings = |kind: &ActuatorKind| -> Vec<AxisActuatorContext> {
+            self.axes.iter().enumerate().map(|of| setting(of, kind.kind())).collect()
+        };
         let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
         if let Some(kind) = scenario.actuator.only_actuator() {
-            return kind.start(settings, &self.placement(self.groups.as_ref(), tachometer));
+            return kind.start(settings(kind), &self.placement(scenario, self.groups.as_ref(), tachometer));
         }
         let members = scenario.actuator.members();
         let start = |member: &AssignedMember<'_>| {
@@ -307,11 +311,9 @@ impl ResolvedScenario {
                 ActuatorTask::Executes(shares) => (*shares, self.groups.as_ref()),
                 ActuatorTask::Unloads(_) => ([1.0; 3], self.unloading_groups.as_ref()),
             };
-            let own = settings
-                .iter()
-                .map(|of| AxisActuatorContext { share: share[of.axis], ..of.clone() })
-                .collect();
-            member.kind.start(own, &self.placement(groups, tachometer))
+            let own = settings(&member.kind).into_iter();
+            let own = own.map(|of| AxisActuatorContext { share: share[of.axis], ..of }).collect();
+            member.kind.start(own, &self.placement(scenario, groups, tachometer))
         };
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
         let executing = || members.iter().filter(|member| member.executes());
@@ -320,7 +322,7 @@ impl ResolvedScenario {
         };
         let stages = scenario.law.stages().iter().filter(|_| scenario.law.selects_actuators());
         let stages: Vec<_> = stages.map(in_stage).collect();
-        let several = ActuatorSet::new(settings.len(), started);
+        let several = ActuatorSet::new(self.axes.len(), started);
         Box::new(if scenario.law.is_of_modes() && !stages.is_empty() {
             several.in_modes(stages.into_iter().map(|(_, executing)| executing).collect())
         } else {

@@ -203,9 +203,9 @@ impl ControlLaws {
         self.laws.begin(phase, now, pushed);
     }
 
-    /// Selects the laws of a mode, which decide at `now`.
-    pub fn enter_mode(&mut self, now: Instant, mode: usize) {
-        self.laws.enter_mode(now, mode);
+    /// Selects the laws of a mode, which start without a past at the next decision.
+    pub fn enter_mode(&mut self, mode: usize) {
+        self.laws.enter_mode(mode);
     }
 
     /// Returns the command about each axis.

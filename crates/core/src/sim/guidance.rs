@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget, ReferenceNeeds, Setpoint, TargetFrame};
-use flexsc_control::operation::ModeTarget;
+use flexsc_control::operation::{ModeTarget, OperatingMode, SlewStart};
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
@@ -23,7 +23,15 @@ pub struct Guidance {
     /// Sequence of targets of a three-axis body.
     profile: Option<AttitudeProfile>,
     /// Target of each mode of operation that has one.
-    mode_targets: Vec<Option<AttitudeTarget>>,
+    mode_targets: Vec<Option<ModeReference>>,
+}
+
+/// Target of a mode of operation, and the start of a slew to it.
+#[derive(Clone, Debug)]
+struct ModeReference {
+    target: AttitudeTarget,
+    /// For each mode before, true if a slew starts at the estimated attitude, and not at the reference.
+    from_estimate: Vec<bool>,
 }
 
 /// Manoeuvre as a rigid body executes it.
@@ -34,6 +42,22 @@ struct PlannedManoeuvre {
     from: (f64, f64),
     /// Inertia (kg m²) that converts the waveform into acceleration.
     inertia: f64,
+}
+
+impl ModeReference {
+    /// Creates the reference of a mode; a mode before whose law does not read the motion leaves the attitude anywhere.
+    fn new(target: &ModeTarget, scenario: &Scenario) -> Self {
+        let is_loose = |mode: &OperatingMode| !mode.law.offers().reads_motion();
+        let starts = |mode: &OperatingMode| match target.slew_from {
+            Some(start) => start == SlewStart::Estimate,
+            None => is_loose(mode),
+        };
+        let slews = target.acceleration.is_some();
+        Self {
+            target: target.at_start(),
+            from_estimate: scenario.mode.iter().map(|mode| slews && starts(mode)).collect(),
+        }
+    }
 }
 
 impl PlannedManoeuvre {
@@ -59,22 +83,22 @@ impl Guidance {
             mode_targets: scenario
                 .mode
                 .iter()
-                .map(|mode| mode.target.as_ref().map(ModeTarget::at_start))
+                .map(|mode| mode.target.as_ref().map(|target| ModeReference::new(target, scenario)))
                 .collect(),
         }
     }
 
-    /// Takes the target of a mode that begins at `now`, if it has one; returns true if it has.
-    pub fn enter_mode(&mut self, now: Instant, mode: usize) -> bool {
-        let target = self.mode_targets.get(mode).and_then(Option::as_ref);
-        let (Some(target), Some(profile)) = (target, self.profile.as_mut()) else { return false };
-        profile.enter(target, now);
+    /// Takes the target of a mode that begins at `now`, if it has one; returns true if it has. A slew starts at the reference,
+    /// or at the estimated attitude.
+    pub fn enter_mode(&mut self, now: Instant, [before, mode]: [usize; 2], estimated: &Orientation) -> bool {
+        let reference = self.mode_targets.get(mode).and_then(Option::as_ref);
+        let (Some(reference), Some(profile)) = (reference, self.profile.as_mut()) else { return false };
+        let from_estimate = reference.from_estimate.get(before) == Some(&true);
+        if let Some(attitude) = estimated.attitude().filter(|_| from_estimate) {
+            profile.hold(attitude, now);
+        }
+        profile.enter(&reference.target, now);
         true
-    }
-
-    /// Returns the part of the Sun's disc in view of a three-axis body.
-    pub fn sunlight(&self, now: Instant) -> f64 {
-        self.profile.as_ref().map_or(f64::NAN, |profile| profile.sunlight(now))
     }
 
     /// Returns the reference angle (rad) and rate (rad/s) of a one-axis body: during the manoeuvre, those of a rigid

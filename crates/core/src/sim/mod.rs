@@ -14,6 +14,7 @@ mod estimation;
 mod exposures;
 mod guidance;
 mod loads;
+mod mode_sky;
 mod objective;
 mod observation;
 mod operation;

@@ -2,13 +2,15 @@
 //! actuators.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use flexsc_control::actuator::ActuatorEvent;
 use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence, SequencedMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Command, ModeEvent, Record};
+use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
 
+use super::mode_sky::ModeSky;
 use super::run_view::RunView;
 use super::{Simulation, SimulationError};
 use crate::scenario::Scenario;
@@ -24,25 +26,30 @@ pub struct Operation {
     in_use: Vec<Vec<bool>>,
     /// Instants of the last changes.
     changes: VecDeque<Instant>,
+    /// Sky of the conditions.
+    sky: Arc<ModeSky>,
 }
 
 /// Quantities of a run at an instant, as the conditions read them.
 struct KnownQuantities<'a> {
     run: RunView<'a>,
     sequence: &'a ModeSequence,
+    sky: &'a ModeSky,
 }
 
 impl Operation {
     /// Creates the modes of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         let kinds: Vec<&str> = scenario.sensor.iter().map(SensorKind::kind).collect();
-        // A scenario with modes has a law with a period.
-        let shortest = scenario.law.period().unwrap_or(scenario.study.assessment_period);
-        let modes = SequencedMode::from_modes(&scenario.mode, &kinds, shortest);
+        let shortest = scenario.study.assessment_period;
+        let sky = ModeSky::new(scenario);
+        let crossings = |quantity: ModeQuantity, limit: f64| sky.crossings(quantity, limit);
+        let modes = SequencedMode::from_modes(&scenario.mode, &kinds, shortest, &crossings);
         Self {
             sequence: ModeSequence::new(modes),
             in_use: (0..scenario.mode.len()).map(|mode| scenario.sensors_in_use(mode)).collect(),
             changes: VecDeque::new(),
+            sky: Arc::new(sky),
         }
     }
 
@@ -100,19 +107,32 @@ impl Simulation {
         }
         let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
         let before = sequence.clone();
-        let change = sequence.test(now, &KnownQuantities { run: self.read_view(), sequence: &before });
+        let sky = &self.operation.sky;
+        let change = sequence.test(now, &KnownQuantities { run: self.read_view(), sequence: &before, sky });
         self.operation.sequence = Some(sequence);
         let Some(change) = change else { return Ok(()) };
-        let mode = change.to;
-        self.laws.enter_mode(now, mode);
+        let (mode, mut start) = (change.to, None);
+        self.laws.enter_mode(mode);
         self.sensors.set_in_use(now, &self.operation.in_use[mode]);
         self.loads.actuator.update(now, ActuatorEvent::Mode(mode));
-        if self.guidance.enter_mode(now, mode) {
+        let estimates = &self.estimation.estimates;
+        let angles = std::array::from_fn(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.angle));
+        let estimated = self.estimation.origin().rotated_by(angles);
+        if self.guidance.enter_mode(now, [before.active(), mode], &estimated) {
             self.estimation.move_origin(now, &self.guidance);
+            let errors = self.plant.truth().orientation.error_from(&self.guidance.target(now));
+            let distance = f64::sqrt(errors.iter().map(|error| error * error).sum());
+            start = Some(ModeTargetStart { mode, distance });
         }
         let Some(event) = self.operation.event(now, change) else { return Ok(()) };
         self.operation.count_change(now, &event)?;
-        Ok(self.recorder.record_mode(now, &event, record)?)
+        self.recorder.record_mode(now, &event, record)?;
+        if let Some(start) = start {
+            let mut report = Report::new();
+            report.add_value(start);
+            record.record(now, Sample::Report(&report))?;
+        }
+        Ok(())
     }
 }
 
@@ -138,12 +158,15 @@ impl ModeReadings for KnownQuantities<'_> {
             }
             ModeQuantity::Field => run.sensors.measured_field().map_or(f64::NAN, |field| field.norm()),
             ModeQuantity::FieldRate => run.sensors.field_rate.map_or(f64::NAN, |change| change.norm()),
-            ModeQuantity::Sunlight => run.guidance.sunlight(now),
             ModeQuantity::Silent(sensor) => run.sensors.silence(now, sensor).seconds(),
             ModeQuantity::Entries(mode) => self.sequence.entries(mode) as f64,
             ModeQuantity::LockLost => {
                 f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
             }
+            ModeQuantity::Sunlight
+            | ModeQuantity::Elevation(_)
+            | ModeQuantity::TrueSunlight
+            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, now.seconds()),
             clock => self.clock(clock).seconds(),
         }
     }

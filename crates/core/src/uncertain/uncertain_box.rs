@@ -29,7 +29,7 @@ impl UncertainKey {
     /// Returns the value at a part of the range, from 0 at its lower end to 1 at its upper end; of a choice, the
     /// nearest of its values in their order.
     pub fn value_at(&self, part: f64) -> Value {
-        let own = self.own();
+        let own = self.nominal_number();
         let between = |low: f64, high: f64| low * (1.0 - part) + high * part;
         let around = |middle: f64, half: f64| between(middle - half.abs(), middle + half.abs());
         let value = match &self.distribution {
@@ -62,16 +62,16 @@ impl UncertainKey {
     }
 
     /// Returns the value of the scenario itself.
-    pub fn own(&self) -> f64 {
+    pub fn nominal_number(&self) -> f64 {
         number(&self.nominal)
     }
 
     /// Returns the part of the range at which the value of the scenario lies; the nearer end if it is outside.
-    pub fn own_part(&self) -> f64 {
+    pub fn nominal_fraction(&self) -> f64 {
         let [low, high] = self.limits();
         let part = match &self.distribution {
-            Distribution::LogUniform(_) => libm::log(self.own() / low) / libm::log(high / low),
-            _ => (self.own() - low) / (high - low),
+            Distribution::LogUniform(_) => libm::log(self.nominal_number() / low) / libm::log(high / low),
+            _ => (self.nominal_number() - low) / (high - low),
         };
         // A value below a positive range has no logarithm; one of a range without a width has no part.
         if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }
@@ -123,9 +123,9 @@ mod tests {
     fn values_between_have_the_type_and_the_place_of_the_key() {
         let decade = range("{ log_uniform = [1.0, 100.0] }", Value::Float(10.0));
         assert!((decade.number_at(0.5) - 10.0).abs() < 1e-14);
-        assert!((decade.own_part() - 0.5).abs() < 1e-15);
+        assert!((decade.nominal_fraction() - 0.5).abs() < 1e-15);
         assert_eq!(range("{ choice = [4.0, 1.0, 2.0] }", Value::Float(1.0)).number_at(0.4), 2.0);
         assert_eq!(range("{ uniform = [1, 4] }", Value::Integer(2)).value_at(0.6), Value::Integer(3));
-        assert_eq!(range("{ uniform = [1, 4] }", Value::Float(7.0)).own_part(), 1.0);
+        assert_eq!(range("{ uniform = [1, 4] }", Value::Float(7.0)).nominal_fraction(), 1.0);
     }
 }

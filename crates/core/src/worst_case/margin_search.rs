@@ -98,12 +98,12 @@ impl MarginSearch {
         let ranges = uncertain_box(scenario)?;
         let names = ranges.keys.iter().map(|own| own.key.clone()).collect();
         let loops = ScenarioLoops::new(scenario, self.opened, names, false)?;
-        let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::own_part).collect();
+        let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_fraction).collect();
         let numbers = |parts: &[f64]| -> Vec<f64> {
             ranges.keys.iter().zip(parts).map(|(own, part)| own.number_at(*part)).collect()
         };
         // What the loop of the scenario itself lacks, no other point has.
-        let nominal: Vec<f64> = ranges.keys.iter().map(UncertainKey::own).collect();
+        let nominal: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_number).collect();
         loops.loop_at(&nominal, 0).map_err(WorstCaseFault::Request)?;
         let (mut failed, mut first_failure) = (0, None);
         let at = |parts: &Vec<f64>| -> Result<Assessed, String> {

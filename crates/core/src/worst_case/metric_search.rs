@@ -171,7 +171,7 @@ impl MetricSearch {
             Ok(assessed)
         };
         let search = BoxSearch { keys: ranges.keys.len(), most: self.most_runs, seed: scenario.seed };
-        let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::own_part).collect();
+        let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_fraction).collect();
         let (points, worst) = search.run(own.clone(), &mut assess)?;
         let Some(worst) = worst else {
             let reason = first_failure.map_or_else(String::new, |why| format!(": {why}"));

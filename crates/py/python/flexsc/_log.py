@@ -6,22 +6,21 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._handover import Exportable
 from flexsc._result import Topics
 from flexsc._topic import Topic
 from flexsc._values import arrays
 
 if TYPE_CHECKING:
     import os
-    from datetime import datetime
     from pathlib import Path
 
     from matplotlib.figure import Figure, SubFigure
 
-    from flexsc._handover import Format
     from flexsc._scenario import Scenario
 
 
-class Log(Topics):
+class Log(Topics, Exportable):
     """A log file in memory.
 
     >>> import flexsc, pathlib, tempfile
@@ -85,45 +84,8 @@ class Log(Topics):
 
         return plot.at_a_glance(self, name, on)
 
-    def export(
-        self,
-        path: str | os.PathLike[str],
-        format: Format | None = None,
-        *,
-        epoch: str | datetime | None = None,
-        frame: str | None = None,
-        center: str | None = None,
-        object_id: str | None = None,
-        speed: float | None = None,
-        modes: bool = False,
-    ) -> int:
-        """Write the run in a format of other programs, and return the number of bytes.
-
-        The log must have the motion (`log="full"` or `"scene"`).
-
-        Args:
-            path: The file, which is replaced if it exists.
-            format: `aem` and `oem`, CCSDS attitude and orbit ephemeris messages; `glb`, an animated scene for
-                browsers, Blender and Cesium; `vizard`, for the viewer of Basilisk. If omitted, by the ending
-                of the file: `.aem`, `.oem`, `.glb` or `.bin`.
-            epoch: The date of the start in UTC, for a scenario without `epoch`: `aem` and `oem` need one.
-            frame: The frame of the inertial axes in `aem` and `oem`: EME2000, GCRF, ICRF, TEME or TOD.
-            center: The planet of the orbit in `oem` and `vizard`; if omitted, EARTH.
-            object_id: The international designator in `aem` and `oem`.
-            speed: The speed of the animation in `glb` relative to real time; if omitted, it lasts at most a
-                minute.
-            modes: Whether `glb` also has an animation of each mode's shape.
-
-        >>> import flexsc
-        >>> flexsc.read_log("run.mcap").export("run.glb")               # doctest: +SKIP
-
-        Raises:
-            ValueError: The run lacks what the format needs, such as an orbit, or an option contradicts it.
-        """
-        from flexsc._handover import options
-
-        chosen = options(path, format, epoch, frame, center, object_id, speed, modes)
-        return engine.export_log(self._native, chosen, path)
+    def _export(self, options: engine.ExportOptions, path: str | os.PathLike[str]) -> int:
+        return engine.export_log(self._native, options, path)
 
     def _topic(self, name: str) -> Topic:
         if name not in self._read:

@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
 from flexsc._columns import Lookup, read_only
+from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc._values import arrays
 
 if TYPE_CHECKING:
-    from datetime import datetime
-
     import numpy as np
     import numpy.typing as npt
     from matplotlib.figure import Figure, SubFigure
 
-    from flexsc._handover import Format
     from flexsc._scenario import Scenario
 
 Logged = Literal["events", "full", "scene"]
@@ -151,7 +149,7 @@ class Samples(Topics):
         return f"<flexsc.Samples at {len(self.times)} times: {', '.join(self.topics)}>"
 
 
-class Result(Topics):
+class Result(Topics, Exportable):
     """The result of a run: its metrics, and a mapping of its topics as columns, which are read-only.
 
     >>> import flexsc
@@ -350,51 +348,8 @@ class Result(Topics):
         detail = log or ("events" if self._log == "none" else self._log)
         return engine.to_mcap(self.scenario._native, self.run, detail, path, self._stepped)
 
-    def export(
-        self,
-        path: str | os.PathLike[str],
-        format: Format | None = None,
-        *,
-        epoch: str | datetime | None = None,
-        frame: str | None = None,
-        center: str | None = None,
-        object_id: str | None = None,
-        speed: float | None = None,
-        modes: bool = False,
-    ) -> int:
-        """Write the run in a format of other programs, and return the number of bytes.
-
-        The run is simulated again with its motion and its scene, whatever the detail of the result.
-
-        Args:
-            path: The file, which is replaced if it exists.
-            format: `aem` and `oem`, CCSDS attitude and orbit ephemeris messages; `glb`, an animated scene for
-                browsers, Blender and Cesium; `vizard`, for the viewer of Basilisk. If omitted, by the ending
-                of the file: `.aem`, `.oem`, `.glb` or `.bin`.
-            epoch: The date of the start in UTC, for a scenario without `epoch`: `aem` and `oem` need one.
-            frame: The frame of the inertial axes in `aem` and `oem`: EME2000, GCRF, ICRF, TEME or TOD.
-            center: The planet of the orbit in `oem` and `vizard`; if omitted, EARTH.
-            object_id: The international designator in `aem` and `oem`.
-            speed: The speed of the animation in `glb` relative to real time; if omitted, it lasts at most a
-                minute.
-            modes: Whether `glb` also has an animation of each mode's shape.
-
-        >>> import flexsc, pathlib, tempfile
-        >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0)
-        >>> run = scenario.simulate(log="none")
-        >>> with tempfile.TemporaryDirectory() as out:
-        ...     size = run.export(pathlib.Path(out) / "run.aem", epoch="2026-03-20T14:46:00Z")
-        ...     text = (pathlib.Path(out) / "run.aem").read_text()
-        >>> text.splitlines()[0]
-        'CCSDS_AEM_VERS = 2.0'
-
-        Raises:
-            ValueError: The run lacks what the format needs, such as an orbit, or an option contradicts it.
-        """
-        from flexsc._handover import options
-
-        chosen = options(path, format, epoch, frame, center, object_id, speed, modes)
-        return engine.export_run(self.scenario._native, self.run, chosen, path, self._stepped)
+    def _export(self, options: engine.ExportOptions, path: str | os.PathLike[str]) -> int:
+        return engine.export_run(self.scenario._native, self.run, options, path, self._stepped)
 
     def __repr__(self) -> str:
         topics = ", ".join(self.topics) or "metrics only"

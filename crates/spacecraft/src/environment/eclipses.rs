@@ -88,5 +88,5 @@ pub(super) fn part_in_view(orbit: &OrbitPath, sun: &SunPath, t: f64) -> f64 {
     if position.dot(&sun) > 0.11 * planet * sun.norm() {
         return 1.0;
     }
-    Discs::seen(&position, &sun, planet).part_in_view()
+    Discs::from_position(&position, &sun, planet).part_in_view()
 }

@@ -59,6 +59,26 @@ impl GroundSite {
         [position, velocity, turned(&velocity)]
     }
 
+    /// Returns the elevation (rad) above the horizon of the site of a position (m) in inertial axes at a time since the start
+    /// (s), with the angle of Greenwich at the start (rad).
+    pub fn elevation(&self, position: &Vector, greenwich: f64, t: f64) -> f64 {
+        let [site, ..] = self.motion(greenwich, t);
+        let (sin, cos) = libm::sincos(greenwich + self.longitude.get() + ROTATION * t);
+        let (up, across) = libm::sincos(self.latitude.get());
+        let vertical = Vector::new(across * cos, across * sin, up);
+        let line = position - site;
+        libm::atan2(vertical.dot(&line), vertical.cross(&line).norm())
+    }
+
+    /// Returns a time (s) after `t` within which the elevation of a body on an orbit, at most as fast as `speed` (m/s), cannot
+    /// change by `change` (rad).
+    pub fn steady_time(&self, position: &Vector, greenwich: f64, t: f64, [speed, change]: [f64; 2]) -> f64 {
+        let [site, ..] = self.motion(greenwich, t);
+        let (distance, relative) = ((position - site).norm(), speed + self.speed());
+        // Until half of the distance is covered, the line of sight turns at most twice as fast as at that speed here.
+        (0.5 * distance / relative).min(change / (2.0 * relative / distance + ROTATION))
+    }
+
     /// Returns the distance from the Earth's centre (m).
     pub fn distance(&self) -> f64 {
         let [across, along] = self.meridian_position();

@@ -5,6 +5,7 @@ mod date;
 mod deferred;
 mod density;
 mod dipole;
+mod direction_motion;
 mod drag;
 mod eclipses;
 mod field_model;
@@ -45,6 +46,7 @@ use solar_disc::ASTRONOMICAL_UNIT;
 pub use bright_body::BrightBody;
 pub use density::DensityModel;
 pub use dipole::Dipole;
+pub use direction_motion::DirectionMotion;
 pub use drag::{Drag, DragPlate};
 pub use eclipses::ShadowShape;
 pub use field_model::FieldModel;
@@ -59,7 +61,7 @@ pub use orbit_kind::{EphemerisOrbit, OrbitKind, TwoLineOrbit};
 pub use orbit_path::OrbitPath;
 pub use sampled_orbit::SampledOrbit;
 pub use solar_pressure::{SolarPlate, SolarPressure};
-pub use sun::{Sun, SunMotion, SunPath};
+pub use sun::{Sun, SunPath};
 pub use surroundings::SurroundingsState;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.

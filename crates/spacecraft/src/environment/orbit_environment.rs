@@ -130,7 +130,7 @@ impl OrbitEnvironment {
     }
 
     /// Returns the rate (rad/s) with which the part of the Sun's disc in view varies at a time since the start (s).
-    pub(super) fn light_rate(&self, t: f64) -> f64 {
+    pub fn light_rate(&self, t: f64) -> f64 {
         self.eclipses().map_or(0.0, |eclipses| eclipses.rate(t))
     }
 

@@ -29,7 +29,7 @@ pub(super) struct Discs {
 impl Discs {
     /// Returns the discs seen from a position, with the Sun at `sun` (both from the planet's centre, m) and a planet of
     /// this radius (m).
-    pub fn seen(position: &Vector, sun: &Vector, planet_radius: f64) -> Self {
+    pub fn from_position(position: &Vector, sun: &Vector, planet_radius: f64) -> Self {
         let to_sun = sun - position;
         let angular = |radius: f64, distance: f64| libm::asin((radius / distance).min(1.0));
         Self {
@@ -105,7 +105,7 @@ mod tests {
             (-2_560_000.0, 6_390_000.0, 0.0, 0.998_506_286_831_96),
             (-42_000_000.0, 5_000_000.0, 4_000_000.0, 0.578_595_669_022_47),
         ] {
-            let found = Discs::seen(&Vector::new(x, y, z), &sun, 6_378_137.0).part_in_view();
+            let found = Discs::from_position(&Vector::new(x, y, z), &sun, 6_378_137.0).part_in_view();
             // Rounding of the angles, 1e-16 of 1 rad, against a disc of 0.0093 rad.
             assert!((found - expected).abs() < 1e-12, "{x}: {found}");
         }

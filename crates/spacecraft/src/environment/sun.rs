@@ -11,6 +11,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::date::{DAY, J2000};
+use super::direction_motion::DirectionMotion;
 
 /// Word of the scenario for the Sun at the date.
 const EPOCH: &str = "epoch";
@@ -41,17 +42,6 @@ pub enum SunPath {
     Fixed(Vector),
     /// Sun as seen from the Earth, in a run that starts at this time (s) after J2000.
     Dated(f64),
-}
-
-/// Direction to the Sun as a unit vector in inertial axes, with its derivatives.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct SunMotion {
-    /// Direction.
-    pub direction: Vector,
-    /// Rate of change (1/s).
-    pub rate: Vector,
-    /// Rate of change of the rate (1/s²).
-    pub acceleration: Vector,
 }
 
 /// Light of the Sun at an instant.
@@ -87,11 +77,9 @@ impl SunPath {
     }
 
     /// Returns the direction with its derivatives at a time since the start (s).
-    pub fn motion(&self, t: f64) -> SunMotion {
+    pub fn motion(&self, t: f64) -> DirectionMotion {
         match self {
-            Self::Fixed(direction) => {
-                SunMotion { direction: *direction, rate: Vector::zeros(), acceleration: Vector::zeros() }
-            }
+            Self::Fixed(direction) => DirectionMotion::fixed(*direction),
             Self::Dated(start) => almanac(start + t),
         }
     }
@@ -134,7 +122,7 @@ fn anomaly(days: f64) -> f64 {
 
 /// Returns the direction to the Sun at `seconds` after J2000, within 0.01 degrees from 1950 to 2050: the low-precision
 /// formulas of \[AstronomicalAlmanac\].
-fn almanac(seconds: f64) -> SunMotion {
+fn almanac(seconds: f64) -> DirectionMotion {
     let days = seconds / DAY;
     let anomaly = anomaly(days);
     let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
@@ -148,7 +136,7 @@ fn almanac(seconds: f64) -> SunMotion {
     let (up, along) = libm::sincos((23.439 - 4e-7 * days).to_radians());
     let direction = Vector::new(cos, along * sin, up * sin);
     let ahead = Vector::new(-sin, along * cos, up * cos);
-    SunMotion {
+    DirectionMotion {
         direction,
         rate: ahead * rate,
         acceleration: ahead * acceleration - direction * (rate * rate),

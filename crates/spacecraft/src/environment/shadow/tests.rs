@@ -110,7 +110,7 @@ fn under_a_moving_sun_the_edges_are_those_of_its_direction_then() {
 /// and within second (rad): both are zero on the edges.
 fn contacts(orbit: &Kepler, sun: &SunPath, t: f64) -> [f64; 3] {
     let place = sun.direction(t) * (sun.distance(t)[0] * ASTRONOMICAL_UNIT);
-    let discs = Discs::seen(&orbit.at(t).position, &place, orbit.planet_radius.get());
+    let discs = Discs::from_position(&orbit.at(t).position, &place, orbit.planet_radius.get());
     let Discs { sun, planet, apart } = discs;
     [discs.part_in_view(), apart - planet - sun, apart - (planet - sun).abs()]
 }
