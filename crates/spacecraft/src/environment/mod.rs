@@ -2,6 +2,7 @@
 
 mod bright_body;
 mod date;
+mod deep_space;
 mod deferred;
 mod density;
 mod dipole;
@@ -19,6 +20,7 @@ mod orbit;
 mod orbit_environment;
 mod orbit_kind;
 mod orbit_path;
+mod resonance;
 mod sampled_orbit;
 mod sgp4;
 mod shadow;
@@ -30,6 +32,7 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 mod thermal_response;
+mod time_jet;
 mod two_lines;
 mod wmm_2025;
 
@@ -130,6 +133,9 @@ impl Environment {
         if let Some(orbit) = &mut self.orbit {
             orbit.inline(epoch_ns);
         }
+        if let Some(field) = &mut self.magnetic_field {
+            field.inline();
+        }
         if let Some(table) = self.drag.as_mut().and_then(|drag| drag.table.as_mut()) {
             table.inline();
         }
@@ -141,7 +147,9 @@ impl Environment {
         if self.sun == Some(Sun::Epoch) && epoch_ns.is_none() {
             return Some(ConfigError::new("sun", "follows from the scenario's `epoch`, and there is none"));
         }
-        if let Some(fault) = self.magnetic_field.and_then(|field| field.run_error(duration, epoch_ns)) {
+        if let Some(fault) =
+            self.magnetic_field.as_ref().and_then(|field| field.run_error(duration, epoch_ns))
+        {
             return Some(fault.within("magnetic_field"));
         }
         let orbit = self.orbit.as_ref()?;
