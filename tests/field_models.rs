@@ -4,6 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::record::Trace;
 
 use crate::traces::{times, traced, within};
+use crate::util::Dir;
 
 /// Returns the rows of a column along three axes.
 fn along(trace: &Trace, topic: &str, field: &str) -> Vec<[f64; 3]> {
@@ -132,4 +133,46 @@ fn the_model_follows_from_the_date() {
     // Without a date it is the dipole, with the meridian at inertial x.
     let undated = BOARD_MODEL.replace("epoch = 2026-11-24T00:00:00Z", "");
     assert_eq!(field(&undated), with("model = \"dipole\", meridian = 0.0"));
+}
+
+/// A file of coefficients, whose first degree is a dipole, has its field; a log repeats without the file, and a damaged file is refused
+/// with its line.
+#[test]
+fn files_of_coefficients_are_fields() {
+    let wmm = "  2025.0  WMM-2025  11/13/2024\n1 0 -29350.0 0.0 12.6 0.0\n1 1 -1410.3 4545.5 10.0 -21.5\n9999999999999999999999999\n";
+    let shc = "# comment\n1 1 2 2 1 2025.0 2030.0\n2025.0 2030.0\n1 0 -29350.0 -29287.0\n1 1 -1410.3 -1360.3\n1 -1 4545.5 4438.0\n";
+    let field = |scenario: &Scenario| scenario.orbit_environment().field_at(900.0).expect("a field");
+    // The day of the year 328 of 365, of the first degree of IGRF-14 with its rates.
+    let years = 1.0 + 327.0 / 365.0;
+    let [g10, g11, h11] = [[-29_350.0, 12.6], [-1410.3, 10.0], [4545.5, -21.5]]
+        .map(|[value, rate]| 1e-9 * (value + rate * years));
+    let dipole = format!("magnetic_field = {{ coefficients = [{g11:e}, {h11:e}, {g10:e}] }}");
+    let exact = field(
+        &Scenario::parse("a.toml", &BOARD_MODEL.replace("magnetic_field = {}", &dipole)).expect("a scenario"),
+    );
+    let dir = Dir::with(&[]);
+    for (name, text) in [("field.COF", wmm), ("field.shc", shc)] {
+        dir.write(name, text);
+        dir.write(
+            "study.toml",
+            BOARD_MODEL.replace("magnetic_field = {}", &format!("magnetic_field = {{ table = \"{name}\" }}")),
+        );
+        let scenario = Scenario::load(&dir.path("study.toml")).expect("a scenario");
+        let off = (field(&scenario) - exact).norm();
+        assert!(off < 1e-17, "{name}: {off:e}");
+        let alone = scenario.self_contained().to_toml();
+        assert!(!alone.contains(name), "{alone}");
+        assert_eq!(field(&Scenario::parse("alone.toml", &alone).expect("self-contained")), field(&scenario));
+    }
+    dir.write("field.shc", shc.replace("1 -1 4545.5", "1 -2 4545.5"));
+    dir.run("check study.toml").exits(2).says(&[
+        "study.toml:",
+        "`environment.magnetic_field.table`",
+        "field.shc: line 6: must have an order from -1 to 1, got -2",
+    ]);
+    dir.write(
+        "study.toml",
+        BOARD_MODEL.replace("magnetic_field = {}", "magnetic_field = { table = \"none.COF\" }"),
+    );
+    dir.run("check study.toml").exits(2).says(&["`environment.magnetic_field.table`", "none.COF"]);
 }

@@ -213,8 +213,28 @@ fn densities_of_every_model_scale_and_are_refused_where_they_are_unknown() {
     );
 }
 
+/// Published states of the verification of SGP4 in deep space (AIAA 2006-6753, `tcppver.out`) in a log.
 #[test]
-fn the_example_meets_its_goal() {
-    let dir = Dir::with(&["two-line-orbit"]);
-    dir.run("simulate two-line-orbit.toml").exits(0).says(&["goal           met"]);
+fn a_log_has_the_states_of_an_orbit_of_half_a_day() {
+    let molniya = "{ tle = [\"1 08195U 75081A   06176.33215444  .00000099  00000-0  11873-3 0   813\", \
+                   \"2 08195  64.1586 279.0717 6877146 264.7651  20.2257  2.00491383225656\"] }";
+    let trace = traced(&scenario(&drifting(molniya, "sun = \"epoch\"\ngravity_gradient = {}\n")));
+    for (t, exact) in [
+        (0.0, [2_349_894.833_50, -14_785_938.115_62, 21.193_78]),
+        (7200.0, [15_223_917.136_58, -17_852_958.817_13, 25_280_395.582_24]),
+    ] {
+        let row = times(&trace, "/orbit").iter().position(|time| *time == t).expect("a row");
+        let position = &within(&trace, "/orbit", "axes", "position_m")[3 * row..3 * row + 3];
+        for (found, exact) in position.iter().zip(exact) {
+            assert!((found - exact).abs() < 1e-3, "{t}: {found} {exact}");
+        }
+    }
+}
+
+#[test]
+fn the_examples_meet_their_goals() {
+    let dir = Dir::with(&["two-line-orbit", "molniya", "field-aligned"]);
+    for name in ["two-line-orbit", "molniya", "field-aligned"] {
+        dir.run(&format!("simulate {name}.toml")).exits(0).says(&["goal           met"]);
+    }
 }

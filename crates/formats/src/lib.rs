@@ -5,4 +5,5 @@ pub mod count;
 pub mod density_table;
 pub mod document;
 pub mod ephemeris;
+pub mod harmonic_table;
 pub mod structure;

@@ -130,13 +130,14 @@ impl DirectionPair {
     /// Returns the first time (s) at which the directions may be parallel; as an error, the time up to which it is known
     /// that they are not. The bounds of their rates exclude all others.
     fn singular_time(&self, sky: &OrbitEnvironment, from: f64) -> Option<Result<f64, f64>> {
-        let rate = self.primary.along.fastest(sky) + self.secondary.along.fastest(sky);
         let mut t = from;
         for _ in 0..MOST_INSTANTS {
             let angle = self.angle(sky, t);
-            if angle < LEAST_ANGLE {
+            // A field of zero has no angle.
+            if angle.is_nan() || angle < LEAST_ANGLE {
                 return Some(Ok(t));
             }
+            let rate = self.primary.along.fastest(sky, t) + self.secondary.along.fastest(sky, t);
             if t >= sky.duration() || rate == 0.0 {
                 return None;
             }
@@ -205,6 +206,103 @@ mod tests {
         }
     }
 
+    /// Attitudes with an axis along the field or along one of the local axes: 40 digits, `tests/golden/field_references.py`.
+    #[test]
+    fn attitudes_along_the_field_are_those_of_forty_digits() {
+        // 2025-01-01T00:00:00Z.
+        let sky = |degree: u32| magnetic_sky(&format!("model = \"IGRF-14\", degree = {degree}"));
+        let field = "{ body = [0, 0, 1], along = \"field\" }";
+        let pairs = [
+            (13, format!("primary = {field}\nsecondary = {{ body = [1, 0, 0], along = \"sun\" }}")),
+            (
+                1,
+                format!(
+                    "primary = {{ body = [0, 0, 1], along = \"nadir\" }}\nsecondary = {}",
+                    field.replace("0, 0, 1", "1, 0, 0")
+                ),
+            ),
+            (
+                4,
+                format!(
+                    "primary = {{ body = [0, 0, 1], along = {{ orbit = [0.3, 0.1, 1] }} }}\nsecondary = {}",
+                    field.replace("0, 0, 1", "1, 0, 0")
+                ),
+            ),
+        ];
+        #[rustfmt::skip]
+        let rows = [
+            (0, 600.0, [-0.003_561_327_245_118, 0.928_334_059_895_6, 0.229_587_518_908_4, -0.292_357_249_521_1],
+             [5.009_466_030_962e-6, 0.001_734_216_084_533, -4.676_085_995_002e-6], [2.651_169_520_032e-7, -1.024_145_040_696e-6, -2.312_162_518_76e-7]),
+            (0, 1500.0, [-0.214_637_780_380_8, 0.881_155_537_495_1, 0.149_640_242_179_4, 0.393_831_613_631_2],
+             [0.000_272_627_148_975_7, 0.001_853_250_511_75, 0.000_242_129_867_506_2], [7.377_690_806_662e-7, 7.776_715_411_903e-7, 1.559_016_039_788e-6]),
+            (1, 600.0, [-0.210_764_178_545_3, -0.121_042_978_133, 0.970_008_439_795_5, 0.003_268_824_314_491],
+             [-0.000_194_656_265_714_3, -0.001_079_968_128_748, 0.000_741_723_820_118_7], [-7.978_074_499_416e-7, 1.623_050_099_532e-7, 5.993_097_087_669e-6]),
+            (1, 1500.0, [-0.105_257_126_890_4, 0.933_474_241_300_9, 0.212_646_621_329, 0.268_939_012_610_5],
+             [-9.263_366_367_309e-5, 0.001_073_445_611_361, 9.059_671_008_663e-5], [9.917_796_249_782e-8, -1.394_163_787_347e-8, -3.268_001_395_194e-7]),
+            (2, 600.0, [0.086_013_106_357_09, 0.925_302_420_543_4, -0.126_709_380_555_8, -0.346_932_138_826_3],
+             [0.000_690_702_559_246_2, 0.000_846_288_792_793_6, -0.003_225_195_648_362], [-2.652_362_910_46e-6, 2.141_337_020_98e-6, 2.033_836_650_077e-5]),
+            (2, 1500.0, [-0.132_276_962_632_2, 0.956_847_973_080_1, 0.228_948_167_140_6, 0.120_530_072_315_1],
+             [-7.985_688_050_889e-5, 0.001_069_549_448_707, -0.000_335_252_283_210_8], [-2.470_332_213_75e-7, -4.082_143_142_068e-8, 6.140_774_752_967e-7]),
+        ];
+        for (place, t, [w, x, y, z], rate, acceleration) in rows {
+            let (degree, text) = &pairs[place];
+            let found = pair(text).state_at(&sky(*degree), t);
+            let expected = nalgebra::Quaternion::new(w, x, y, z);
+            let off = (found.attitude - expected).norm().min((found.attitude + expected).norm());
+            assert!(off < 2e-12, "{place} {t}: {off:e}");
+            let off = (found.rate - Vector::from(rate)).norm();
+            assert!(off < 1e-14, "{place} {t}: {off:e}");
+            let off = (found.acceleration - Vector::from(acceleration)).norm();
+            assert!(off < 1e-10 * found.acceleration.norm(), "{place} {t}: {off:e}");
+        }
+    }
+
+    /// The bound of the field's rate holds over the time that it is for, and a field along the nadir is found.
+    #[test]
+    fn the_rate_of_the_field_is_bounded() {
+        for keys in
+            ["model = \"IGRF-14\"", "model = \"dipole\"", "coefficients = [3e-6, 0, 1e-6], rotation = 2e-4"]
+        {
+            let sky = magnetic_sky(keys);
+            let mut tightest: f64 = 0.0;
+            for k in 0..580 {
+                let t = 10.0 * f64::from(k);
+                let bound = SkyDirection::Field.fastest(&sky, t);
+                for part in [0.0, 0.5, 1.0] {
+                    let rate = SkyDirection::Field.motion(&sky, t + part / bound).rate.norm();
+                    assert!(rate <= bound, "{keys} {t}: {rate} {bound}");
+                    tightest = tightest.max(rate / bound);
+                }
+            }
+            assert!(tightest > 0.1, "{keys}: {tightest}");
+        }
+        // Over the magnetic pole of a dipole along the axis the field is along the nadir.
+        let sky = magnetic_sky("coefficients = [0, 0, -3e-5]");
+        let two = pair(
+            "primary = { body = [0, 0, 1], along = \"nadir\" }\nsecondary = { body = [1, 0, 0], along = \"field\" }",
+        );
+        assert_eq!(two.validate(&sky, 0.0), None);
+        let polar = from_text(
+            "orbit = { semi_major_axis = 7e6, inclination = 1.5707963267948966 }\nmagnetic_field = { coefficients = [0, 0, -3e-5] }",
+        );
+        let fault = two.validate(&polar, 0.0).unwrap();
+        // A quarter of a revolution of 5829 s.
+        assert!(fault.key == "secondary.along" && fault.why.contains("at 145"), "{fault:?}");
+    }
+
+    fn from_text(text: &str) -> OrbitEnvironment {
+        let environment = flexsc_formats::document::from_text(text).unwrap();
+        OrbitEnvironment::new(&environment, Span::from_seconds(6000.0), Some(1_735_689_600_000_000_000))
+    }
+
+    /// Orbit and Sun of the oracle with a magnetic field, whose meridian is at 1.1 rad.
+    fn magnetic_sky(field: &str) -> OrbitEnvironment {
+        from_text(&format!(
+            "orbit = {{ semi_major_axis = 6.978e6, eccentricity = 0.01, inclination = 1.7, node = 0.4, perigee = 0.3, anomaly = 0.2 }}\n\
+             sun = [0.9, 0.4, 0.17]\nmagnetic_field = {{ meridian = 1.1, {field} }}"
+        ))
+    }
+
     /// The bounds of the rates hold, and the least angle between nadir and Sun is 0.0398 rad, at 5495 s.
     #[test]
     fn the_least_angle_is_certified() {
@@ -216,7 +314,10 @@ mod tests {
             let direction = pair(&text).primary.along;
             for k in 0..600 {
                 let motion = direction.motion(&sky, 10.0 * f64::from(k));
-                assert!(motion.rate.norm() <= direction.fastest(&sky) * (1.0 + 1e-12), "{along} {k}");
+                assert!(
+                    motion.rate.norm() <= direction.fastest(&sky, 10.0 * f64::from(k)) * (1.0 + 1e-12),
+                    "{along} {k}"
+                );
             }
         }
         let near = pair(
@@ -250,6 +351,14 @@ mod tests {
         assert_eq!(fault(nadir, inertial, &sky()), Some("secondary.body".to_owned()));
         let zero = "body = [1, 0, 0], along = { inertial = [0, 0, 0] }";
         assert_eq!(fault(nadir, zero, &sky()), Some("secondary.along".to_owned()));
+        let field = "body = [1, 0, 0], along = \"field\"";
+        assert_eq!(fault(nadir, field, &sky()), Some("secondary.along".to_owned()));
+        let zero = magnetic_sky("coefficients = [0, 0, 0]");
+        assert_eq!(fault(nadir, field, &zero), Some("secondary.along".to_owned()));
+        let local = "body = [1, 0, 0], along = { orbit = [0, 0, -1] }";
+        assert_eq!(fault(nadir, local, &none), Some("primary.along".to_owned()));
+        assert_eq!(fault(nadir, local, &sky()), Some("secondary.along".to_owned()));
+        assert_eq!(fault(nadir, &local.replace("-1", "0"), &sky()), Some("secondary.along".to_owned()));
         let high = "body = [1, 0, 0], along = { site = { latitude = 0, longitude = 0, height = 1e6 } }";
         assert_eq!(fault(nadir, high, &sky()), Some("secondary.along".to_owned()));
     }

@@ -27,6 +27,11 @@ impl ScenarioSpec {
                 self.epoch = orbit.epoch_ns().and_then(epoch::date);
             }
         }
+        let field = around.magnetic_field.as_mut();
+        let other = before.and_then(|before| before.magnetic_field.as_ref());
+        if let Some(fault) = field.and_then(|field| field.read(directory, other)) {
+            return Some(fault.within("environment.magnetic_field"));
+        }
         if let Some(fault) = around.drag.as_mut().and_then(|drag| drag.read(directory)) {
             return Some(fault.within("environment.drag"));
         }

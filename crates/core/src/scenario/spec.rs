@@ -184,7 +184,7 @@ impl ScenarioSpec {
         self.log.period_for(self.duration)
     }
 
-    /// Replaces references to files of modes, orbits and densities by what was read from them.
+    /// Replaces references to files of modes, orbits, fields and densities by what was read from them.
     pub(crate) fn inline_files(&mut self) {
         if let Some(Body::Spatial(spatial)) = &mut self.body {
             spatial.modes.inline();

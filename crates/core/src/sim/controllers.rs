@@ -118,7 +118,9 @@ impl ControlLaws {
         }
         if let [roll, pitch, yaw] = estimates {
             let total = total_angle(roll.angle, pitch.angle, yaw.angle);
-            estimates.iter_mut().for_each(|estimate| estimate.total_angle = total);
+            for estimate in &mut *estimates {
+                estimate.total_angle = total;
+            }
         }
         let led = guidance.reference_motion(now, estimates);
         let setpoint =

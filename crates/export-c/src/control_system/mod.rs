@@ -58,7 +58,10 @@ impl ControlSystem {
         let axes = scenario.study.axes.len();
         let laws: Vec<&LawKind> = (0..axes).map(|axis| scenario.law.about(axis)).collect();
         if !scenario.mode.is_empty() {
-            return Err(NotExportable::new("mode", "changes the laws in a run: choose one with `--mode NAME`"));
+            return Err(NotExportable::new(
+                "mode",
+                "changes the laws in a run: choose one with `--mode NAME`",
+            ));
         }
         if scenario.adaptation.is_some() {
             let reason = "tunes the law in a run: leave it out, and write the value that it reaches";

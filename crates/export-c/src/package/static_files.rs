@@ -8,7 +8,8 @@ use super::Plan;
 pub fn board_files() -> [(&'static str, &'static str); 3] {
     [
         ("boards/double_sum.c", include_str!("files/double_sum.c")),
-        ("boards/mps2.ld", include_str!("files/mps2.ld")), ("boards/start.c", include_str!("files/start.c")),
+        ("boards/mps2.ld", include_str!("files/mps2.ld")),
+        ("boards/start.c", include_str!("files/start.c")),
     ]
 }
 

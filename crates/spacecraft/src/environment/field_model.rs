@@ -1,6 +1,7 @@
 //! Models of the Earth's magnetic field: their coefficients at a date.
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::harmonic_table::HarmonicTable;
 use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,6 +28,9 @@ pub enum FieldModel {
     /// The World Magnetic Model for 2025 to 2030.
     #[serde(rename = "WMM2025")]
     Wmm2025,
+    /// Coefficients of the scenario or of a file.
+    #[serde(rename = "table")]
+    Table,
 }
 
 impl FieldModel {
@@ -36,14 +40,15 @@ impl FieldModel {
             Self::Dipole => "dipole",
             Self::Igrf14 => "IGRF-14",
             Self::Wmm2025 => "WMM2025",
+            Self::Table => "table",
         }
     }
 
-    /// Returns the highest degree of the model.
+    /// Returns the highest degree of the model, the highest of any table.
     pub fn highest_degree(self) -> usize {
         match self {
             Self::Dipole => 1,
-            Self::Igrf14 => MOST_DEGREES,
+            Self::Igrf14 | Self::Table => MOST_DEGREES,
             Self::Wmm2025 => 12,
         }
     }
@@ -53,31 +58,49 @@ impl FieldModel {
         if self == Self::Igrf14 { 2000.0 } else { 2025.0 }
     }
 
+    /// Returns the years of the model, of a table those of its own; `None` if it does not depend on the date.
+    fn years(self, table: Option<&HarmonicTable>) -> Option<[f64; 2]> {
+        match self {
+            Self::Dipole => None,
+            Self::Igrf14 | Self::Wmm2025 => Some([self.first_year(), LAST_YEAR]),
+            Self::Table => table?.years(),
+        }
+    }
+
     /// Checks that the model covers a run of this duration from `epoch_ns` nanoseconds after 1970, UTC; returns the key and
     /// the reason if not.
-    pub(super) fn date_error(self, epoch_ns: Option<u64>, duration: Span) -> Option<ConfigError> {
-        if self == Self::Dipole {
-            return None;
-        }
-        let (name, first) = (self.name(), self.first_year());
+    pub(super) fn date_error(
+        self,
+        table: Option<&HarmonicTable>,
+        epoch_ns: Option<u64>,
+        duration: Span,
+    ) -> Option<ConfigError> {
+        let (name, [first, last]) = (self.name(), self.years(table)?);
+        let key = if self == Self::Table { "table" } else { "model" };
         let Some(epoch_ns) = epoch_ns else {
             let why = format!(
                 "depends on the date with \"{name}\": it needs the scenario's `epoch`, and there is none"
             );
-            return Some(ConfigError::new("model", why));
+            return Some(ConfigError::new(key, why));
         };
         let start = epoch_ns as f64 / 1e9;
         let (from, to) = (year(start), year(start + duration.seconds()));
+        let igrf = Self::Igrf14.first_year();
+        let other = if self != Self::Igrf14 && from >= igrf && to <= LAST_YEAR {
+            format!("use \"{}\", which covers {igrf} to {LAST_YEAR}", Self::Igrf14.name())
+        } else {
+            "use \"dipole\" outside".to_owned()
+        };
         let why = || {
             format!(
-                "covers {first} to {LAST_YEAR} with \"{name}\", and the run is from {from:.2} to {to:.2}: use \"dipole\" outside"
+                "covers {first} to {last} with \"{name}\", and the run is from {from:.2} to {to:.2}: {other}"
             )
         };
-        (from < first || to > LAST_YEAR).then(|| ConfigError::new("model", why()))
+        (from < first || to > last).then(|| ConfigError::new(key, why()))
     }
 
-    /// Returns the field up to a degree at `epoch_ns` nanoseconds after 1970, UTC; `None` for the dipole, which has
-    /// coefficients of its own.
+    /// Returns the field up to a degree at `epoch_ns` nanoseconds after 1970, UTC; `None` for the dipole and for tables, which
+    /// have coefficients of their own.
     pub(super) fn harmonics(self, degree: usize, epoch_ns: u64) -> Option<SphericalHarmonics> {
         self.harmonics_in(degree, year(epoch_ns as f64 / 1e9))
     }
@@ -88,7 +111,7 @@ impl FieldModel {
             SphericalHarmonics::new(RADIUS, degree, rows.map(|row| row.map(|part| part * 1e-9)))
         };
         match self {
-            Self::Dipole => None,
+            Self::Dipole | Self::Table => None,
             Self::Igrf14 => {
                 // Linear between the epochs of every five years, and from the last one on with the rate.
                 let epoch = ((since / 5.0) as usize).min(5);

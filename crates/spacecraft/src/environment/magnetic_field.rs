@@ -1,9 +1,11 @@
 //! The magnetic field of a planet, which turns with it: a model of the Earth's, or a dipole through the centre, tilted
 //! against the axis (\[Wertz78\]).
 
+use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::harmonic_table::HarmonicTable;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::time::Span;
@@ -11,26 +13,29 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::FieldModel;
-use super::date::greenwich;
+use super::date::{greenwich, year};
 use super::spherical_harmonics::SphericalHarmonics;
 
 /// Magnetic field of the orbit's planet: a model of the Earth's, or a tilted dipole, B = (a/R)³ (3 (g.r) r - g) with r
 /// the direction from the planet's centre and g, which points south.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MagneticField {
-    /// Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless `coefficients` or `radius`
-    /// differ from their defaults.
+    /// Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch` unless
+    /// `coefficients` or `radius` differ from their defaults.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<FieldModel>,
-    /// Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest, 13 of IGRF-14 and
-    /// 12 of WMM2025.
+    /// Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table: Option<HarmonicTable>,
+    /// Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest, 13 of IGRF-14,
+    /// 12 of WMM2025, and up to 13 of a table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degree: Option<u32>,
     /// Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the planet: z along its axis, x
     /// through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     pub coefficients: [Finite; 3],
-    /// Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius.
+    /// Reference radius a of the coefficients of a dipole or a table (m); default: the Earth's mean radius.
     pub radius: Positive,
     /// Rotation rate of the planet (rad/s); default: the Earth's.
     pub rotation: Finite,
@@ -45,6 +50,7 @@ impl Default for MagneticField {
     fn default() -> Self {
         Self {
             model: None,
+            table: None,
             degree: None,
             coefficients: [-1450.9e-9, 4652.5e-9, -29_404.8e-9].map(|t| Finite::new(t).unwrap_or_default()),
             radius: Positive::new(6_371_200.0).unwrap_or(Positive::ONE),
@@ -67,17 +73,51 @@ impl MagneticField {
 
     /// Returns the model of the field in a scenario with a date of its start, or without.
     pub fn model(&self, has_date: bool) -> FieldModel {
-        let default =
-            if has_date && self.dipole_key().is_none() { FieldModel::Igrf14 } else { FieldModel::Dipole };
+        let default = match self.dipole_key() {
+            _ if self.table.is_some() => FieldModel::Table,
+            None if has_date => FieldModel::Igrf14,
+            _ => FieldModel::Dipole,
+        };
         self.model.unwrap_or(default)
+    }
+
+    /// Returns the highest degree of a model with the table's coefficients.
+    fn highest_degree(&self, model: FieldModel) -> usize {
+        let own = self.table.as_ref().filter(|_| model == FieldModel::Table);
+        own.map_or(usize::MAX, HarmonicTable::degree).min(model.highest_degree())
+    }
+
+    /// Reads the file of a table relative to `directory`, or takes the coefficients of `other` if that has read the same file;
+    /// returns a key within the field and the reason.
+    pub fn read(&mut self, directory: &Path, other: Option<&Self>) -> Option<ConfigError> {
+        let table = self.table.as_mut()?;
+        table.locate(directory);
+        let other = other.and_then(|other| other.table.as_ref());
+        table.read(other).err().map(|why| ConfigError::new("table", why))
+    }
+
+    /// Replaces the reference to the file of a table by its coefficients.
+    pub(super) fn inline(&mut self) {
+        if let Some(table) = &mut self.table {
+            table.inline(FieldModel::Table.highest_degree());
+        }
     }
 
     /// Checks the field's keys against each other and against a run of this duration from `epoch_ns` nanoseconds after
     /// 1970, if known; returns the key and the reason.
     pub(super) fn run_error(&self, duration: Span, epoch_ns: Option<u64>) -> Option<ConfigError> {
         let model = self.model(epoch_ns.is_some());
-        let (name, highest) = (model.name(), model.highest_degree());
-        if let Some(key) = self.dipole_key().filter(|_| model != FieldModel::Dipole) {
+        let (name, highest) = (model.name(), self.highest_degree(model));
+        if self.table.is_some() != (model == FieldModel::Table) {
+            let why = if self.table.is_some() {
+                format!("is for the model \"table\", and the model is \"{name}\": leave it out")
+            } else {
+                "must be given for the model \"table\"".to_owned()
+            };
+            return Some(ConfigError::new("table", why));
+        }
+        let given = self.dipole_key().filter(|key| model != FieldModel::Table || *key == "coefficients");
+        if let Some(key) = given.filter(|_| model != FieldModel::Dipole) {
             let why = format!("is for the model \"dipole\", and the model is \"{name}\": leave it out");
             return Some(ConfigError::new(key, why));
         }
@@ -86,7 +126,7 @@ impl MagneticField {
             let why = format!("must be {range} with the model \"{name}\", got {degree}");
             return Some(ConfigError::new("degree", why));
         }
-        model.date_error(epoch_ns, duration)
+        model.date_error(self.table.as_ref(), epoch_ns, duration)
     }
 }
 
@@ -114,10 +154,16 @@ impl PlanetField {
     /// a model are those at the start.
     pub fn new(field: &MagneticField, epoch_ns: Option<u64>) -> Self {
         let model = field.model(epoch_ns.is_some());
-        let degree = field.degree.map_or(model.highest_degree(), |degree| degree as usize);
+        let degree = field.degree.map_or(field.highest_degree(model), |degree| degree as usize);
         let dipole =
             || FieldSource::Dipole(Vector::from(field.coefficients.map(Finite::get)), field.radius.get());
-        let source = model.harmonics(degree, epoch_ns.unwrap_or(0));
+        let table = field.table.as_ref().filter(|_| model == FieldModel::Table);
+        let tabulated = table.map(|table| {
+            let rows = table.coefficients(degree, year(epoch_ns.unwrap_or(0) as f64 / 1e9));
+            let tesla = rows.into_iter().map(|row| row.map(|part| part * 1e-9));
+            SphericalHarmonics::new(field.radius.get(), degree, tesla)
+        });
+        let source = tabulated.or_else(|| model.harmonics(degree, epoch_ns.unwrap_or(0)));
         Self {
             source: source.map_or_else(dipole, |source| FieldSource::Harmonics(Arc::new(source))),
             rotation: field.rotation.get(),
@@ -160,6 +206,39 @@ impl PlanetField {
                 let [x, y, z] = (*position).into();
                 let field = harmonics.at(&Vector::new(cos * x + sin * y, cos * y - sin * x, z));
                 Vector::new(cos * field.x - sin * field.y, sin * field.x + cos * field.y, field.z)
+            }
+        }
+    }
+
+    /// Returns the field (T) with its first two derivatives in inertial axes, from position (m), velocity and acceleration in
+    /// inertial axes, at a time since the start (s).
+    pub fn motion(&self, motion: [Vector; 3], t: f64) -> [Vector; 3] {
+        let (sin, cos) = libm::sincos(self.meridian + self.rotation * t);
+        let turn = Vector::z() * self.rotation;
+        let [position, velocity, acceleration] =
+            motion.map(|v| Vector::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z));
+        let velocity = velocity - turn.cross(&position);
+        let carried = turn.cross(&velocity) * 2.0 + turn.cross(&turn.cross(&position));
+        let [field, rate, change] = self.harmonics().motion([position, velocity, acceleration - carried]);
+        let change = change + turn.cross(&rate) * 2.0 + turn.cross(&turn.cross(&field));
+        [field, rate + turn.cross(&field), change]
+            .map(|v| Vector::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z))
+    }
+
+    /// Returns an upper bound of the rate of the field (T/s) for a body that moves at up to `speed` (m/s) between two distances
+    /// from the centre (m).
+    pub fn rate_bound(&self, [nearest, farthest]: [f64; 2], speed: f64) -> f64 {
+        let turn = self.rotation.abs();
+        self.harmonics().gradient_bound(nearest) * (speed + turn * farthest) + turn * self.bound(nearest)
+    }
+
+    /// Returns the spherical harmonics, of a dipole those of degree 1.
+    fn harmonics(&self) -> Arc<SphericalHarmonics> {
+        match &self.source {
+            FieldSource::Harmonics(harmonics) => harmonics.clone(),
+            FieldSource::Dipole(coefficients, radius) => {
+                let rows = [[coefficients.z, 0.0], [coefficients.x, coefficients.y]];
+                Arc::new(SphericalHarmonics::new(*radius, 1, rows.into_iter()))
             }
         }
     }
@@ -209,7 +288,7 @@ mod tests {
     fn with_a_date_its_meridian_is_that_of_greenwich_unless_it_is_a_key() {
         let date = Some(1_774_017_960_000_000_000);
         let dipole = MagneticField { model: Some(FieldModel::Dipole), ..MagneticField::default() };
-        let given = MagneticField { meridian: Finite::new(0.691_984_659), ..dipole };
+        let given = MagneticField { meridian: Finite::new(0.691_984_659), ..dipole.clone() };
         let position = Vector::new(7e6, -1e6, 2e6);
         let at = |field: &MagneticField, date| PlanetField::new(field, date).at(&position, 900.0);
         assert!((at(&dipole, date) - at(&given, None)).norm() < 1e-13);

@@ -2,6 +2,7 @@
 
 mod bright_body;
 mod date;
+mod deep_space;
 mod deferred;
 mod density;
 mod dipole;
@@ -20,6 +21,8 @@ mod orbit;
 mod orbit_environment;
 mod orbit_kind;
 mod orbit_path;
+mod plate_mount;
+mod resonance;
 mod sampled_orbit;
 mod sgp4;
 mod shadow;
@@ -31,6 +34,7 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 mod thermal_response;
+mod time_jet;
 mod two_lines;
 mod wmm_2025;
 
@@ -59,6 +63,7 @@ pub use orbit::to_body;
 pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
 pub use orbit_kind::{EphemerisOrbit, OrbitKind, TwoLineOrbit};
 pub use orbit_path::OrbitPath;
+pub use plate_mount::{PlateMount, PlateMounts};
 pub use sampled_orbit::SampledOrbit;
 pub use solar_pressure::{SolarPlate, SolarPressure};
 pub use sun::{Sun, SunPath};
@@ -132,6 +137,9 @@ impl Environment {
         if let Some(orbit) = &mut self.orbit {
             orbit.inline(epoch_ns);
         }
+        if let Some(field) = &mut self.magnetic_field {
+            field.inline();
+        }
         if let Some(table) = self.drag.as_mut().and_then(|drag| drag.table.as_mut()) {
             table.inline();
         }
@@ -143,7 +151,9 @@ impl Environment {
         if self.sun == Some(Sun::Epoch) && epoch_ns.is_none() {
             return Some(ConfigError::new("sun", "follows from the scenario's `epoch`, and there is none"));
         }
-        if let Some(fault) = self.magnetic_field.and_then(|field| field.run_error(duration, epoch_ns)) {
+        if let Some(fault) =
+            self.magnetic_field.as_ref().and_then(|field| field.run_error(duration, epoch_ns))
+        {
             return Some(fault.within("magnetic_field"));
         }
         let orbit = self.orbit.as_ref()?;

@@ -45,7 +45,7 @@ impl OrbitEnvironment {
         let orbit = environment.orbit.as_ref();
         Self {
             orbit: orbit.and_then(|orbit| orbit.path(duration.seconds(), epoch_ns)),
-            field: environment.magnetic_field.map(|field| PlanetField::new(&field, epoch_ns)),
+            field: environment.magnetic_field.as_ref().map(|field| PlanetField::new(field, epoch_ns)),
             sun: environment.sun.map(|sun| SunPath::new(&sun, epoch_ns.unwrap_or(0))),
             shadow: environment.shadow.unwrap_or_default(),
             eclipses: Deferred::default(),
@@ -174,6 +174,22 @@ impl OrbitEnvironment {
     /// Returns the magnetic field at the body in inertial axes (T) at a time since the start (s).
     pub fn field_at(&self, t: f64) -> Option<Vector> {
         self.field.as_ref().and_then(|field| Some(field.at(&self.position(t)?.position, t)))
+    }
+
+    /// Returns the magnetic field at the body in inertial axes (T) with its first two derivatives at a time since the start
+    /// (s).
+    pub fn field_motion(&self, t: f64) -> Option<[Vector; 3]> {
+        let (orbit, field) = (self.orbit.as_ref()?, self.field.as_ref()?);
+        let [position, velocity, acceleration, _] = orbit.motion(t);
+        Some(field.motion([position, velocity, acceleration], t))
+    }
+
+    /// Returns an upper bound of the rate of the field at the body (T/s); 0 without a field.
+    pub fn field_rate_bound(&self) -> f64 {
+        let on = self.orbit.as_ref().zip(self.field.as_ref());
+        on.map_or(0.0, |(orbit, field)| {
+            field.rate_bound([orbit.nearest(), orbit.farthest()], orbit.largest_speed())
+        })
     }
 
     /// Returns the observable environment at a time since the start (s).

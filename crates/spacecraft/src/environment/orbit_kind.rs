@@ -302,7 +302,7 @@ impl TwoLineOrbit {
     /// Returns rows of SGP4 over a run, and some beyond each end.
     fn sample(&self, duration: f64, epoch_ns: u64) -> Option<SampledOrbit> {
         let elements = two_lines::parse(&self.tle).ok()?;
-        let (orbit, step) = (Sgp4::new(&elements), Self::step(&elements));
+        let (mut orbit, step) = (Sgp4::new(&elements), Self::step(&elements));
         // The difference of two counts is exact where it matters.
         let since = (i128::from(epoch_ns) - i128::from(elements.epoch_ns)) as f64 / 1e9;
         let beyond = (ROWS / 2) as f64;

@@ -1,11 +1,14 @@
-//! SGP4, the theory with which two-line elements are made and read: \[ValladoCrawford06\], for near-Earth orbits, with the
-//! constants of WGS 72. Quantities are in radii of the Earth, radians and minutes, positions in the axes of the true equator and
+//! SGP4, the theory with which two-line elements are made and read: \[ValladoCrawford06\], with the constants of WGS 72 and with the
+//! terms of deep space (SDP4) for periods from 225 min on. Quantities are in radii of the Earth, radians and minutes, positions in the axes of the true equator and
 //! the mean equinox (TEME).
 
 use std::f64::consts::TAU;
 
 use flexsc_numerics::attitude::Vector;
 
+use super::date::greenwich;
+use super::deep_space::{DeepSpace, OrbitElements};
+use super::resonance::{Resonance, ResonantOrbit};
 use super::two_lines::MeanElements;
 
 /// Radius of the Earth (m), WGS 72.
@@ -15,6 +18,8 @@ const GRAVITY: f64 = 3.986_008e14;
 const J2: f64 = 1.082_616e-3;
 const J3: f64 = -2.538_81e-6;
 const J4: f64 = -1.655_97e-6;
+/// Period (min) from which on Sun and Moon act.
+const DEEP_SPACE: f64 = 225.0;
 /// Eccentricity below which terms in its inverse are left out.
 const CIRCULAR: f64 = 1e-4;
 
@@ -25,8 +30,7 @@ pub(super) struct Sgp4 {
     /// Mean motion (rad/min) and semi-major axis (radii), without the secular effect of J2 on the period.
     motion: f64,
     axis: f64,
-    /// Cosine and sine of the inclination.
-    tilt: [f64; 2],
+    tilt: Tilt,
     eta: f64,
     c1: f64,
     c4: f64,
@@ -36,14 +40,35 @@ pub(super) struct Sgp4 {
     perigee_drag: f64,
     anomaly_drag: f64,
     node_drag: f64,
-    /// Coefficients of the long-period terms.
-    long: [f64; 2],
     delta_start: f64,
     /// Coefficients of powers of time from the second on: of the axis (2 to 4), and of the longitude (2 to 5).
     d: [f64; 3],
     powers: [f64; 4],
-    /// True without the terms of higher order, for perigees below 220 km.
+    /// True without the terms of higher order, for perigees below 220 km and in deep space.
     is_simple: bool,
+    /// Terms of Sun and Moon, in deep space.
+    deep_space: Option<DeepSpace>,
+    resonance: Option<Resonance>,
+}
+
+/// Inclination with functions of it.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct Tilt {
+    inclination: f64,
+    cos: f64,
+    sin: f64,
+    /// Coefficients of the long-period terms.
+    long: [f64; 2],
+}
+
+impl Tilt {
+    fn new(inclination: f64) -> Self {
+        let (sin, cos) = libm::sincos(inclination);
+        // An inclination of 180 degrees would divide by zero.
+        let beside = if (1.0 + cos).abs() > 1.5e-12 { 1.0 + cos } else { 1.5e-12 };
+        let long = [-0.25 * (J3 / J2) * sin * (3.0 + 5.0 * cos) / beside, -0.5 * (J3 / J2) * sin];
+        Self { inclination, cos, sin, long }
+    }
 }
 
 /// Returns the square root of GM (radii^1.5/min).
@@ -55,7 +80,8 @@ impl Sgp4 {
     /// Creates the constants of an orbit.
     pub fn new(elements: &MeanElements) -> Self {
         let MeanElements { inclination, eccentricity: e, perigee, anomaly, motion, drag, .. } = *elements;
-        let (sin, cos) = libm::sincos(inclination);
+        let tilt = Tilt::new(inclination);
+        let Tilt { sin, cos, .. } = tilt;
         let (cos2, beta2) = (cos * cos, 1.0 - e * e);
         let (beta, con41, con42) = (f64::sqrt(beta2), 3.0 * cos2 - 1.0, 1.0 - 5.0 * cos2);
         // The elements have the mean motion of Kozai, the theory that of Brouwer.
@@ -115,8 +141,12 @@ impl Sgp4 {
         let first_node_rate = -temp1 * cos;
         let node_rate =
             first_node_rate + (0.5 * temp2 * (4.0 - 19.0 * cos2) + 2.0 * temp3 * (3.0 - 7.0 * cos2)) * cos;
-        // An inclination of 180 degrees would divide by zero.
-        let beside = if (1.0 + cos).abs() > 1.5e-12 { 1.0 + cos } else { 1.5e-12 };
+        let rates = [anomaly_rate, perigee_rate, node_rate];
+        let deep_space = (TAU / motion >= DEEP_SPACE).then(|| DeepSpace::new(elements, motion));
+        let resonance = deep_space.as_ref().and_then(|terms| {
+            let (third_bodies, greenwich) = (&terms.rates, greenwich(elements.epoch_ns));
+            Resonance::new(&ResonantOrbit { elements, motion, axis, rates, third_bodies, greenwich })
+        });
         let c1_2 = c1 * c1;
         let d2 = 4.0 * axis * tsi * c1_2;
         let temp = d2 * tsi * c1 / 3.0;
@@ -125,16 +155,15 @@ impl Sgp4 {
         Self {
             motion,
             axis,
-            tilt: [cos, sin],
+            tilt,
             eta,
             c1,
             c4,
             c5,
-            rates: [anomaly_rate, perigee_rate, node_rate],
+            rates,
             perigee_drag: drag * c3 * libm::cos(perigee),
             anomaly_drag: if e > CIRCULAR { -2.0 / 3.0 * coef * drag / e_eta } else { 0.0 },
             node_drag: 3.5 * beta2 * first_node_rate * c1,
-            long: [-0.25 * (J3 / J2) * sin * (3.0 + 5.0 * cos) / beside, -0.5 * (J3 / J2) * sin],
             delta_start: cube(1.0 + eta * libm::cos(anomaly)),
             d: [d2, d3, d4],
             powers: [
@@ -143,14 +172,16 @@ impl Sgp4 {
                 0.25 * (3.0 * d3 + c1 * (12.0 * d2 + 10.0 * c1_2)),
                 0.2 * (3.0 * d4 + 12.0 * c1 * d3 + 6.0 * d2 * d2 + 15.0 * c1_2 * (2.0 * d2 + c1_2)),
             ],
-            is_simple: lowest < 220.0 / radius_km + 1.0,
+            is_simple: lowest < 220.0 / radius_km + 1.0 || deep_space.is_some(),
+            deep_space,
+            resonance,
             elements: elements.clone(),
         }
     }
 
     /// Returns position (m) and velocity (m/s) at `t` minutes after the epoch of the elements; `None` where the theory
     /// does not hold, as after a decay.
-    pub fn at(&self, t: f64) -> Option<[Vector; 2]> {
+    pub fn at(&mut self, t: f64) -> Option<[Vector; 2]> {
         let of = &self.elements;
         let [anomaly_rate, perigee_rate, node_rate] = self.rates;
         let first_anomaly = of.anomaly + anomaly_rate * t;
@@ -170,60 +201,77 @@ impl Sgp4 {
             circles += of.drag * self.c5 * (libm::sin(anomaly) - libm::sin(of.anomaly));
             along += self.powers[1] * t3 + t4 * (self.powers[2] + t * self.powers[3]);
         }
-        let axis = self.axis * shrinks * shrinks;
+        let mut mean = OrbitElements {
+            eccentricity: of.eccentricity,
+            inclination: of.inclination,
+            anomaly,
+            perigee,
+            node,
+        };
+        let mut axis = self.axis;
+        if let Some(terms) = &self.deep_space {
+            mean = mean.plus(&terms.rates, t);
+            if let Some(resonance) = &mut self.resonance {
+                let [motion, anomaly] = resonance.advance(t, [mean.perigee, mean.node]);
+                mean.anomaly = anomaly;
+                axis = libm::pow(xke() / motion, 2.0 / 3.0);
+            }
+        }
+        let axis = axis * shrinks * shrinks;
         let motion = xke() / libm::pow(axis, 1.5);
-        let e = of.eccentricity - circles;
+        let e = mean.eccentricity - circles;
         // Drag shrinks an orbit: beyond some decades the powers of time do not hold.
         if !((0.5..1.1).contains(&(axis / self.axis)) && (-1e-3..1.0).contains(&e)) {
             return None;
         }
-        let e = e.max(1e-6);
-        anomaly += self.motion * along;
-        self.short_period([axis, motion, e], [anomaly, perigee, node])
+        mean.eccentricity = e.max(1e-6);
+        mean.anomaly += self.motion * along;
+        let Some(terms) = &self.deep_space else {
+            return short_period(&self.tilt, [axis, motion], &mean);
+        };
+        let found = terms.with_periodic_terms(&mean, t)?;
+        short_period(&Tilt::new(found.inclination), [axis, motion], &found)
     }
+}
 
-    /// Returns position (m) and velocity (m/s) with the long- and short-period terms, from semi-major axis (radii), mean
-    /// motion (rad/min) and eccentricity, and from mean anomaly, perigee and node (rad).
-    fn short_period(
-        &self,
-        [axis, motion, e]: [f64; 3],
-        [anomaly, perigee, node]: [f64; 3],
-    ) -> Option<[Vector; 2]> {
-        let [cos_i, sin_i] = self.tilt;
-        let (con41, sin2_i, x7) = (3.0 * cos_i * cos_i - 1.0, 1.0 - cos_i * cos_i, 7.0 * cos_i * cos_i - 1.0);
-        let (sin_w, cos_w) = libm::sincos(perigee);
-        let inverse = 1.0 / (axis * (1.0 - e * e));
-        let (ax, ay) = (e * cos_w, e * sin_w + inverse * self.long[1]);
-        let u = libm::fmod(anomaly + perigee + inverse * self.long[0] * ax, TAU);
-        let (sin, cos) = eccentric_longitude(u, ax, ay);
-        let (e_cos, e_sin, e2) = (ax * cos + ay * sin, ax * sin - ay * cos, ax * ax + ay * ay);
-        let parameter = axis * (1.0 - e2);
-        if parameter <= 0.0 {
-            return None;
-        }
-        let radius = axis * (1.0 - e_cos);
-        let (radial, across) = (f64::sqrt(axis) * e_sin / radius, f64::sqrt(parameter) / radius);
-        let beta = f64::sqrt(1.0 - e2);
-        let temp = e_sin / (1.0 + beta);
-        let sin_u = axis / radius * (sin - ay - ax * temp);
-        let cos_u = axis / radius * (cos - ax + ay * temp);
-        let (sin_2u, cos_2u) = (2.0 * sin_u * cos_u, 1.0 - 2.0 * sin_u * sin_u);
-        let temp1 = 0.5 * J2 / parameter;
-        let temp2 = temp1 / parameter;
-        let distance = radius * (1.0 - 1.5 * temp2 * beta * con41) + 0.5 * temp1 * sin2_i * cos_2u;
-        let latitude = libm::atan2(sin_u, cos_u) - 0.25 * temp2 * x7 * sin_2u;
-        let node = node + 1.5 * temp2 * cos_i * sin_2u;
-        let inclination = self.elements.inclination + 1.5 * temp2 * cos_i * sin_i * cos_2u;
-        let scale = motion * temp1 / xke();
-        let climb = radial - scale * sin2_i * sin_2u;
-        let forward = across + scale * (sin2_i * cos_2u + 1.5 * con41);
-        let [(su, cu), (sn, cn), (si, ci)] = [latitude, node, inclination].map(libm::sincos);
-        let [mx, my] = [-sn * ci, cn * ci];
-        let up = Vector::new(mx * su + cn * cu, my * su + sn * cu, si * su);
-        let ahead = Vector::new(mx * cu - cn * su, my * cu - sn * su, si * cu);
-        let speed = RADIUS * xke() / 60.0;
-        Some([up * (distance * RADIUS), (up * climb + ahead * forward) * speed])
+/// Returns position (m) and velocity (m/s) with the long- and short-period terms, from semi-major axis (radii) and mean
+/// motion (rad/min), and from eccentricity, mean anomaly, perigee and node (rad).
+fn short_period(tilt: &Tilt, [axis, motion]: [f64; 2], elements: &OrbitElements) -> Option<[Vector; 2]> {
+    let Tilt { cos: cos_i, sin: sin_i, long, inclination } = *tilt;
+    let OrbitElements { eccentricity: e, anomaly, perigee, node, .. } = *elements;
+    let (con41, sin2_i, x7) = (3.0 * cos_i * cos_i - 1.0, 1.0 - cos_i * cos_i, 7.0 * cos_i * cos_i - 1.0);
+    let (sin_w, cos_w) = libm::sincos(perigee);
+    let inverse = 1.0 / (axis * (1.0 - e * e));
+    let (ax, ay) = (e * cos_w, e * sin_w + inverse * long[1]);
+    let u = libm::fmod(anomaly + perigee + inverse * long[0] * ax, TAU);
+    let (sin, cos) = eccentric_longitude(u, ax, ay);
+    let (e_cos, e_sin, e2) = (ax * cos + ay * sin, ax * sin - ay * cos, ax * ax + ay * ay);
+    let parameter = axis * (1.0 - e2);
+    if parameter <= 0.0 {
+        return None;
     }
+    let radius = axis * (1.0 - e_cos);
+    let (radial, across) = (f64::sqrt(axis) * e_sin / radius, f64::sqrt(parameter) / radius);
+    let beta = f64::sqrt(1.0 - e2);
+    let temp = e_sin / (1.0 + beta);
+    let sin_u = axis / radius * (sin - ay - ax * temp);
+    let cos_u = axis / radius * (cos - ax + ay * temp);
+    let (sin_2u, cos_2u) = (2.0 * sin_u * cos_u, 1.0 - 2.0 * sin_u * sin_u);
+    let temp1 = 0.5 * J2 / parameter;
+    let temp2 = temp1 / parameter;
+    let distance = radius * (1.0 - 1.5 * temp2 * beta * con41) + 0.5 * temp1 * sin2_i * cos_2u;
+    let latitude = libm::atan2(sin_u, cos_u) - 0.25 * temp2 * x7 * sin_2u;
+    let node = node + 1.5 * temp2 * cos_i * sin_2u;
+    let inclination = inclination + 1.5 * temp2 * cos_i * sin_i * cos_2u;
+    let scale = motion * temp1 / xke();
+    let climb = radial - scale * sin2_i * sin_2u;
+    let forward = across + scale * (sin2_i * cos_2u + 1.5 * con41);
+    let [(su, cu), (sn, cn), (si, ci)] = [latitude, node, inclination].map(libm::sincos);
+    let [mx, my] = [-sn * ci, cn * ci];
+    let up = Vector::new(mx * su + cn * cu, my * su + sn * cu, si * su);
+    let ahead = Vector::new(mx * cu - cn * su, my * cu - sn * su, si * cu);
+    let speed = RADIUS * xke() / 60.0;
+    Some([up * (distance * RADIUS), (up * climb + ahead * forward) * speed])
 }
 
 /// Returns sine and cosine of the eccentric longitude, by Newton's method.
@@ -303,7 +351,7 @@ mod tests {
             ),
         ];
         for (lines, states) in orbits {
-            let orbit = Sgp4::new(&parse(&lines.map(str::to_owned)).unwrap());
+            let mut orbit = Sgp4::new(&parse(&lines.map(str::to_owned)).unwrap());
             for (minutes, position, velocity) in states {
                 let found = orbit.at(*minutes).unwrap();
                 for (axis, (position, velocity)) in position.iter().zip(velocity).enumerate() {

@@ -7,6 +7,8 @@
 
 use flexsc_numerics::attitude::Vector;
 
+use super::time_jet::{JetNumber, TimeJet};
+
 /// Highest degree of a model.
 pub(super) const MOST_DEGREES: usize = 13;
 
@@ -88,7 +90,10 @@ impl SphericalHarmonics {
 
     /// Returns the field (T) at a position from the planet's centre (m), both in the planet's axes.
     pub fn at(&self, position: &Vector) -> Vector {
-        let (v, w) = self.functions(position);
+        let ratio = self.radius / position.norm_squared();
+        let squared = self.radius * ratio;
+        let scaled = [position.x, position.y, position.z].map(|part| part * ratio);
+        let (v, w) = self.functions(scaled, squared, f64::sqrt(squared));
         let mut field = Vector::zeros();
         for ((shares, v), w) in self.shares.iter().zip(&v[2..]).zip(&w[2..]) {
             for ((share, v), w) in shares.iter().zip(v).zip(w) {
@@ -98,26 +103,62 @@ impl SphericalHarmonics {
         field
     }
 
-    /// Returns the functions V and W at a position (m), by degree and order.
-    fn functions(&self, position: &Vector) -> ([[f64; SIZE]; SIZE], [[f64; SIZE]; SIZE]) {
-        let ratio = self.radius / position.norm_squared();
-        let [x, y, z] = [position.x, position.y, position.z].map(|part| part * ratio);
-        let squared = self.radius * ratio;
-        let (mut v, mut w) = ([[0.0; SIZE]; SIZE], [[0.0; SIZE]; SIZE]);
-        v[0][0] = f64::sqrt(squared);
+    /// Returns the field (T) with its first two derivatives in time at a position that moves, from position (m), velocity and
+    /// acceleration, all in the planet's axes.
+    pub fn motion(&self, [position, velocity, acceleration]: [Vector; 3]) -> [Vector; 3] {
+        let axes: [TimeJet; 3] =
+            std::array::from_fn(|axis| TimeJet([position[axis], velocity[axis], acceleration[axis]]));
+        let ratio = (axes[0] * axes[0] + axes[1] * axes[1] + axes[2] * axes[2]).inverse() * self.radius;
+        let squared = ratio * self.radius;
+        let (v, w) = self.functions(axes.map(|part| part * ratio), squared, squared.square_root());
+        let mut motion = [Vector::zeros(); 3];
+        for ((shares, v), w) in self.shares.iter().zip(&v[2..]).zip(&w[2..]) {
+            for ((share, v), w) in shares.iter().zip(v).zip(w) {
+                for (order, part) in motion.iter_mut().enumerate() {
+                    *part += Vector::from(share.v) * v.0[order] + Vector::from(share.w) * w.0[order];
+                }
+            }
+        }
+        motion
+    }
+
+    /// Returns the functions V and W by degree and order, from the position times a/r², from (a/r)² and from a/r.
+    fn functions<T: JetNumber>(
+        &self,
+        [x, y, z]: [T; 3],
+        squared: T,
+        first: T,
+    ) -> ([[T; SIZE]; SIZE], [[T; SIZE]; SIZE]) {
+        let (mut v, mut w) = ([[T::default(); SIZE]; SIZE], [[T::default(); SIZE]; SIZE]);
+        v[0][0] = first;
         for n in 1..=self.degree() + 1 {
             for m in 0..n {
                 let [first, second] = RECURRENCE[n][m];
-                let [first, second] = [first * z, second * squared];
+                let [first, second] = [z * first, squared * second];
                 let before = n.saturating_sub(2);
                 v[n][m] = first * v[n - 1][m] - second * v[before][m];
                 w[n][m] = first * w[n - 1][m] - second * w[before][m];
             }
             let (factor, [cos, sin]) = ((2 * n - 1) as f64, [v[n - 1][n - 1], w[n - 1][n - 1]]);
-            v[n][n] = factor * (x * cos - y * sin);
-            w[n][n] = factor * (x * sin + y * cos);
+            v[n][n] = (x * cos - y * sin) * factor;
+            w[n][n] = (x * sin + y * cos) * factor;
         }
         (v, w)
+    }
+
+    /// Returns an upper bound of the change of the field with the position (T/m) at this distance from the centre (m) and beyond.
+    ///
+    /// Half of the Laplacian of the sum of squares of harmonic functions is that of their gradients: the squares of the derivatives of the
+    /// vector harmonics of degree n add up to (n + 1)(2n + 1)(n + 2)(2n + 3). A symmetric matrix without trace stretches by at
+    /// most sqrt(2/3) of its norm.
+    pub fn gradient_bound(&self, distance: f64) -> f64 {
+        let ratio = self.radius / distance;
+        let mut power = ratio * ratio;
+        let sum = self.bounds.iter().enumerate().fold(0.0, |sum, (index, bound)| {
+            power *= ratio;
+            sum + bound * power * f64::sqrt(((index + 3) * (2 * index + 5)) as f64)
+        });
+        f64::sqrt(2.0 / 3.0) * sum / distance
     }
 
     /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.

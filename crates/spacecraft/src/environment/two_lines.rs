@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
 
-/// Period (min) from which on SGP4 has terms of Sun and Moon (SDP4).
-const DEEP_SPACE: f64 = 225.0;
+/// Range of the mean motion (revolutions a day): that of the Moon's orbit is 0.037.
+const REVOLUTIONS: [f64; 2] = [0.05, 18.0];
 
 /// Length of a line.
 const LENGTH: usize = 69;
@@ -59,16 +59,10 @@ pub(super) fn parse(lines: &[String; 2]) -> Result<MeanElements, ConfigError> {
     };
     let (year, day) = (number(0, [19, 20], "")?, number(0, [21, 32], "")?);
     let revolutions = number(1, [53, 63], "")?;
-    let period = 1440.0 / revolutions;
-    if period.is_nan() || period <= 80.0 {
+    let [least, most] = REVOLUTIONS;
+    if !(least..most).contains(&revolutions) {
         let why = format!(
-            "must have a mean motion of up to 18 revolutions a day in columns 53 to 63, got {revolutions}"
-        );
-        return Err(ConfigError::new("tle[1]", why));
-    }
-    if period >= DEEP_SPACE {
-        let why = format!(
-            "has a period of {period:.1} min: SGP4 has no terms of Sun and Moon, for orbits of up to {DEEP_SPACE} min; give an `ephemeris`"
+            "must have a mean motion from {least} to {most} revolutions a day in columns 53 to 63, got {revolutions}"
         );
         return Err(ConfigError::new("tle[1]", why));
     }
@@ -189,7 +183,7 @@ mod tests {
         assert!(fault(1, "2 28057", "2 28058", true).contains("satellite of line 1"));
         assert!(fault(1, "98.4283", "nan    ", true).contains("columns 9 to 16, got `nan`"));
         assert!(fault(1, "98.4283", "198.283", true).contains("from 0 to 180"));
-        assert!(fault(1, "14.35478080", " 1.00273790", true).contains("period of 1436.1 min"));
+        assert!(fault(1, "14.35478080", " 0.03660000", true).contains("from 0.05 to 18 revolutions"));
         assert!(fault(1, "14.35478080", "94.35478080", true).contains("mean motion"));
         assert!(fault(1, "14.35478080", "-4.35478080", true).contains("mean motion"));
         assert!(fault(0, " 35940-4", " 3594x-4", true).contains("columns 54 to 61"));

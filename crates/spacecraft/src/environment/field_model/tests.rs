@@ -1,5 +1,7 @@
 //! Models of the Earth's field against published values, and properties that follow from theory.
 
+use std::fmt::Write as _;
+
 use super::*;
 use crate::environment::MagneticField;
 use crate::environment::magnetic_field::PlanetField;
@@ -207,14 +209,16 @@ impl Deviation {
 
 #[test]
 fn the_dipole_is_as_wrong_as_the_table_of_the_documentation_has_it() {
-    // Altitude (m): angle rms, median, 95 %, largest (degrees), size rms, least, largest (%), in 2026.9, by other code.
+    // Altitude (m): angle rms, median, 95 %, largest (degrees), size rms, least, largest (%), in 2026.9, by other code. The
+    // 95 % are those of a million points, to which equal-area grids of all kinds converge. A spiral of 4000 points, a tenth of
+    // those here, has 25.5, 24.9 and 22.2: beyond the median few points are left, and a grid decides on the first decimal.
     let truth = FieldModel::Igrf14.harmonics_in(13, 2026.9).expect("a model");
     let dipole = PlanetField::new(&MagneticField::default(), None);
     for (altitude, table, [step, extremes]) in [
-        (400e3, [11.4, 7.5, 25.5, 36.4, 21.7, -29.9, 77.1], [0.1, 0.2]),
-        (500e3, [11.2, 7.4, 24.9, 35.5, 21.2, -29.4, 74.0], [0.1, 0.2]),
-        (1000e3, [10.0, 6.8, 22.2, 31.8, 18.9, -27.3, 61.3], [0.1, 0.2]),
-        (35_786e3, [1.33, 1.18, 2.28, 2.99, 2.79, -4.6, 5.1], [0.011, 0.06]),
+        (400e3, [11.4, 7.5, 25.62, 36.4, 21.7, -29.9, 77.1], [0.1, 0.2]),
+        (500e3, [11.2, 7.4, 24.98, 35.6, 21.2, -29.4, 74.0], [0.1, 0.2]),
+        (1000e3, [10.0, 6.8, 22.15, 31.8, 18.9, -27.3, 61.3], [0.1, 0.2]),
+        (35_786e3, [1.33, 1.174, 2.288, 2.99, 2.79, -4.6, 5.1], [0.011, 0.06]),
     ] {
         let off =
             Deviation::new(altitude, &|position| dipole.at(position, 0.0), &|position| truth.at(position));
@@ -227,11 +231,11 @@ fn the_dipole_is_as_wrong_as_the_table_of_the_documentation_has_it() {
             off.sizes.iter().copied().fold(0.0, f64::min),
             off.sizes.iter().copied().fold(0.0, f64::max),
         ];
-        // Within one unit of the last digit; extremes within what a grid misses, and quantiles within 0.15 degrees, by
-        // which those of coarse grids differ.
+        // Within one unit of the last digit; extremes within what a grid misses, and 95 % within what this one is from a
+        // million points.
         for (index, (found, table)) in found.into_iter().zip(table).enumerate() {
             let step = match index {
-                2 => 0.15,
+                2 => 0.02,
                 3 | 5 | 6 => extremes,
                 _ => step,
             };
@@ -269,7 +273,7 @@ fn a_lower_degree_is_as_wrong_as_the_table_of_the_documentation_has_it() {
 fn models_refuse_dates_that_they_do_not_cover() {
     let ns = |year: f64| Some(((year - 1970.0) * 31_556_952e9) as u64);
     let error = |model: FieldModel, epoch: Option<u64>, days: f64| {
-        model.date_error(epoch, Span::from_seconds(86_400.0 * days)).map(|error| error.to_string())
+        model.date_error(None, epoch, Span::from_seconds(86_400.0 * days)).map(|error| error.to_string())
     };
     assert_eq!(error(FieldModel::Dipole, None, 1.0), None);
     assert_eq!(error(FieldModel::Igrf14, ns(2026.9), 1.0), None);
@@ -281,10 +285,67 @@ fn models_refuse_dates_that_they_do_not_cover() {
             1.0,
             "covers 2000 to 2030 with \"IGRF-14\", and the run is from 1999.50",
         ),
+        (FieldModel::Igrf14, ns(1999.5), 1.0, "use \"dipole\" outside"),
         (FieldModel::Wmm2025, ns(2024.5), 1.0, "covers 2025 to 2030 with \"WMM2025\""),
-        (FieldModel::Wmm2025, ns(2029.9), 100.0, "to 2030.17"),
+        (FieldModel::Wmm2025, ns(2024.5), 1.0, "use \"IGRF-14\", which covers 2000 to 2030"),
+        (FieldModel::Wmm2025, ns(2029.9), 100.0, "to 2030.17: use \"dipole\" outside"),
     ] {
         let found = error(model, epoch, days).expect(expected);
         assert!(found.contains(expected), "{found}");
     }
+}
+
+/// The coefficients of a model as a table give its field, at the reference radius of the table.
+#[test]
+fn a_table_of_a_models_coefficients_is_that_model() {
+    let mut rows = String::new();
+    let mut places = (1..=12).flat_map(|n| (0..=n).map(move |m| (n, m)));
+    for ([g, dg], [h, dh]) in wmm_2025::COEFFICIENTS.map(|[g, h]| (g, h)) {
+        let (n, m) = places.next().expect("a place");
+        let _ = write!(rows, "[{n}, {m}, {g}, {}], ", g + 5.0 * dg);
+        if m > 0 {
+            let _ = write!(rows, "[{n}, -{m}, {h}, {}], ", h + 5.0 * dh);
+        }
+    }
+    let keys = format!("table = {{ years = [2025, 2030], rows = [{rows}] }}\nmeridian = 0.3");
+    // 2026-11-24T00:00:00Z.
+    let date = Some(1_795_478_400_000_000_000);
+    let planet = |keys: &str| {
+        let field: MagneticField = flexsc_formats::document::from_text(keys).expect("a field");
+        assert_eq!(field.run_error(Span::from_seconds(1e4), date), None);
+        PlanetField::new(&field, date)
+    };
+    let (table, model) = (planet(&keys), planet("model = \"WMM2025\"\nmeridian = 0.3"));
+    assert_eq!(table.degree(), 12);
+    for position in [[-4e6, 3e6, 4.5e6], [1e3, -2e3, 6.9e6]] {
+        let position = Vector::from(position);
+        let off = table.at(&position, 600.0) - model.at(&position, 600.0);
+        assert!(off.norm() < 1e-17, "{:e}", off.norm());
+    }
+    // A planet of twice the radius has this field at twice the distance.
+    let wide = planet(&format!("radius = 12742400\n{keys}"));
+    let position = Vector::new(-4e6, 3e6, 4.5e6);
+    let off = wide.at(&(position * 2.0), 0.0) - table.at(&position, 0.0);
+    assert!(off.norm() < 1e-17, "{:e}", off.norm());
+    assert_eq!(planet(&format!("degree = 3\n{keys}")).degree(), 3);
+    for (text, words) in [
+        (format!("degree = 13\n{keys}"), "`degree` must be from 1 to 12 with the model \"table\", got 13"),
+        (
+            format!("model = \"IGRF-14\"\n{keys}"),
+            "`table` is for the model \"table\", and the model is \"IGRF-14\"",
+        ),
+        ("model = \"table\"".to_owned(), "`table` must be given"),
+        (format!("coefficients = [0, 0, 1e-5]\n{keys}"), "`coefficients` is for the model \"dipole\""),
+        (
+            keys.replace("2030", "2026"),
+            "`table` covers 2025 to 2026 with \"table\", and the run is from 2026.90",
+        ),
+    ] {
+        let field: MagneticField = flexsc_formats::document::from_text(&text).expect("a field");
+        let error = field.run_error(Span::from_seconds(1e4), date).expect(words).to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    let field: MagneticField = flexsc_formats::document::from_text(&keys).expect("a field");
+    let error = field.run_error(Span::from_seconds(1e4), None).expect("no date").to_string();
+    assert!(error.contains("`table` depends on the date"), "{error}");
 }
