@@ -67,9 +67,9 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
-    let mut filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
-    filter.elastic = Some(Box::new(ElasticFilterStates::new(Arc::new(known), &filter.covariance)));
-    let mut history = FilterHistory::new(Instant::START, filter, noise, Span::from_seconds(0.5));
+    let filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
+    let modes = ElasticFilterStates::new(Arc::new(known), &filter.covariance);
+    let mut history = FilterHistory::new(Instant::START, filter, Some(modes), noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));
@@ -86,11 +86,11 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
                 gain: None,
                 sensor: 1,
             };
-            nis = history.add_measurement(fix).expect("a correction").nis;
+            nis = history.add_measurement(&fix).expect("a correction").nis;
         }
         let Some(row) = given.next_if(|row| row[0] as usize == k) else { continue };
         let filter = history.latest();
-        let swinging = filter.elastic.as_ref().expect("modes");
+        let swinging = history.modes().expect("modes");
         let q = Quaternion::new(row[1], row[2], row[3], row[4]);
         assert!((filter.attitude - q).norm() < tolerance, "{k} {:e}", (filter.attitude - q).norm());
         assert!((filter.bias - three(&row[5..8])).norm() < 0.1 * tolerance, "{k} {}", filter.bias);
