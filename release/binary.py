@@ -71,9 +71,17 @@ def main() -> None:
     built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "dist" / f"flexsc{suffix}"
     shutil.copyfile(built, binary)
     binary.chmod(0o755)
+    # The library of FMUs, which the build of the command makes: `flexsc export-fmu --library`.
+    system = "windows" if suffix else "darwin" if "darwin" in target else "linux"
+    library = {"windows": "flexsc_fmi.dll", "darwin": "libflexsc_fmi.dylib", "linux": "libflexsc_fmi.so"}[
+        system
+    ]
+    made = DIST / f"{name}-{library}"
+    shutil.copyfile(built.parent / "deps" / library, made)
     (DIST / f"{name}.cdx.json").write_text(json.dumps(materials(target), indent=1), encoding="utf-8")
     digest = hashlib.sha256(binary.read_bytes()).hexdigest()
-    (DIST / f"{name}.sha256").write_text(f"{digest}  {binary.name}\n", encoding="utf-8")
+    sums = f"{digest}  {binary.name}\n{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n"
+    (DIST / f"{name}.sha256").write_text(sums, encoding="utf-8")
     print(f"{binary}\n{digest}")
 
 

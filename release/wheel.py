@@ -17,6 +17,16 @@ ENVIRONMENT = ROOT / "target" / "venv-release"
 MAX_BYTES = 10 * 2**20
 
 
+def add_library(python: Path, target: str) -> None:
+    """Adds the library of FMUs, which was built with the module, to the newest wheel in dist/."""
+    wheel = max((ROOT / "dist").glob("flexsc-*.whl"), key=lambda path: path.stat().st_mtime)
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "dist" / "deps"
+    code = "import sys, pathlib as p, flexsc_backend as b; "
+    code += "b.add_library(p.Path(sys.argv[1]), p.Path(sys.argv[2]) / b.library_name(sys.argv[3]))"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "crates/py/backend")}
+    subprocess.run([python, "-c", code, wheel, built, target], env=environment, check=True)
+
+
 def main() -> None:
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
@@ -35,6 +45,8 @@ def main() -> None:
         if "linux" in target:
             command += ["--zig", "--compatibility", "musllinux_1_2" if "musl" in target else "manylinux_2_17"]
     subprocess.run([str(word) for word in command], cwd=ROOT, env=environment, check=True)
+    if target != "sdist":
+        add_library(scripts / "python", target)
     for made in sorted((ROOT / "dist").glob("flexsc-*")):
         print(f"{made.name}  {made.stat().st_size / 2**20:.1f} MiB")
         if made.suffix == ".whl" and made.stat().st_size > MAX_BYTES:

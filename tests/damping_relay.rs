@@ -1,7 +1,7 @@
 //! The relay of active damping alone, its guards, and bad keys of the relay and of adaptive observers.
 
-use flexsc_core::control::law::{ActiveDamping, ActiveDampingState, Authority, DampingGuards};
-use flexsc_core::control::state_estimate::{ElasticRateEstimate, StateEstimate};
+use flexsc_core::control::law::{ActiveDamping, Authority, DampingGuards};
+use flexsc_flight::active_damping::{DampingLaw, ElasticRateEstimate, RateTolerance};
 
 use crate::study::{close, scenario};
 use crate::util::Dir;
@@ -9,23 +9,23 @@ use crate::util::Dir;
 const ACCELERATIONS: [f64; 2] = [2e-5, 2e-5];
 
 /// A relay with a threshold of 3e-5 rad/s and the station's jets.
-fn relay(spec: &ActiveDamping) -> ActiveDampingState {
-    let jets = scenario("iss-ringdown", &[]).study.authorities[0];
-    let authority = Authority { accelerations: ACCELERATIONS, threshold: 3e-5, ..jets };
-    ActiveDampingState::new(spec, 0.2, &authority)
+fn relay(spec: &ActiveDamping) -> DampingLaw {
+    spec.start(0.2, &authority())
 }
 
-/// Returns the estimate of a mode, trusted or not.
-fn believed(mode: ElasticRateEstimate, trusted: bool) -> StateEstimate {
-    StateEstimate { elastic: vec![mode], elastic_is_trusted: trusted, ..StateEstimate::default() }
+fn authority() -> Authority {
+    let jets = scenario("iss-ringdown", &[]).study.authorities[0];
+    Authority { accelerations: ACCELERATIONS, threshold: 3e-5, ..jets }
 }
+
+const ALLOWED: RateTolerance = RateTolerance { above: 1e-4, below: 1e-4 };
 
 /// Returns the on-time for one mode of 0.2 Hz with this elastic rate, if the rigid rate is off by 9e-5 rad/s and 1e-4
 /// rad/s are allowed.
-fn fired(relay: &mut ActiveDampingState, rate: f64, influence: f64, gates: [bool; 2]) -> f64 {
+fn fired(relay: &mut DampingLaw, rate: f64, influence: f64, gates: [bool; 2]) -> f64 {
     let [free, trusted] = gates;
-    let estimated = believed(ElasticRateEstimate { rate, frequency: 1.256_637, influence }, trusted);
-    relay.decide(&estimated, free, (9e-5, [1e-4; 2])).on
+    let mode = ElasticRateEstimate { rate, frequency: 1.256_637, influence };
+    relay.decide(&[mode], trusted, free, 9e-5, &ALLOWED).on
 }
 
 #[test]
@@ -48,9 +48,9 @@ fn the_relay_keeps_its_rules() {
     // A pulse adds 4e-6 rad/s to the rigid rate, which may then be 1e-4 rad/s off.
     let at = &mut relay(&ActiveDamping::default());
     assert_eq!(fired(at, -5e-5, 0.1, open), 0.2);
-    let estimated = believed(ElasticRateEstimate { rate: -5e-5, frequency: 1.0, influence: 0.1 }, true);
+    let mode = ElasticRateEstimate { rate: -5e-5, frequency: 1.0, influence: 0.1 };
     for (excess, on) in [(9.5e-5, 0.2), (9.7e-5, 0.0), (-9.7e-5, 0.2)] {
-        assert_eq!(at.decide(&estimated, true, (excess, [1e-4; 2])).on, on, "{excess}");
+        assert_eq!(at.decide(&[mode], true, true, excess, &ALLOWED).on, on, "{excess}");
     }
     // Without pulse widths the whole cycle.
     let whole = ActiveDamping { pulse_width: false, ..spec };
@@ -59,12 +59,12 @@ fn the_relay_keeps_its_rules() {
     let late = ActiveDamping { predictor: false, ..ActiveDamping::default() };
     for (hertz, eligible) in [(0.25, true), (0.5, true), (0.6, false), (0.8, false)] {
         let frequency = std::f64::consts::TAU * hertz;
-        let estimated = believed(ElasticRateEstimate { rate: -5e-5, frequency, influence: 0.1 }, true);
-        let damped = relay(&late).decide(&estimated, true, (0.0, [1e-4; 2]));
+        let mode = ElasticRateEstimate { rate: -5e-5, frequency, influence: 0.1 };
+        let damped = relay(&late).decide(&[mode], true, true, 0.0, &ALLOWED);
         assert_eq!(damped.on != 0.0, eligible, "{hertz} Hz");
     }
-    assert_eq!(relay(&late).lead_time(), 0.0);
-    close(relay(&ActiveDamping::default()).lead_time(), 0.3, 1e-12);
+    assert_eq!(late.lead_time(0.2, &authority()), 0.0);
+    close(ActiveDamping::default().lead_time(0.2, &authority()), 0.3, 1e-12);
 }
 
 /// 75 cycles at one rate, then 75 at another: the pause comes if that is more than 0.9 of the first, and lasts 300

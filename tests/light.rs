@@ -15,6 +15,14 @@ fn papers_are_left_out() {
     }
 }
 
+#[cfg(not(feature = "fmu"))]
+#[test]
+fn fmus_are_left_out() {
+    for arguments in ["export-fmu", "export-fmu relay-quiet.toml -o relay.fmu", "export-fmu --help"] {
+        Dir::new().run(arguments).exits(2).says(&["the feature `fmu`", HINT]);
+    }
+}
+
 #[cfg(not(feature = "live"))]
 #[test]
 fn live_runs_are_left_out() {

@@ -108,6 +108,7 @@ mod bad_spatial;
 mod bad_structures;
 mod craft_written;
 mod documented;
+mod flight_code;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;
@@ -149,6 +150,8 @@ mod plot;
 mod report;
 mod reproduce;
 mod requirements;
+mod serve;
+mod serve_clients;
 mod sheets;
 mod stops;
 #[cfg(unix)]
@@ -157,6 +160,8 @@ mod summaries;
 mod wheel_figures;
 
 // Rules of the house: sources, words, habits, and bytes that do not change.
+#[cfg(feature = "fmu")]
+mod export_fmu;
 mod extending;
 mod frozen;
 mod habits;
@@ -168,6 +173,7 @@ mod words;
 mod worst;
 
 // Helpers of the tests.
+mod control_client;
 mod drawing;
 mod study;
 mod traces;

@@ -9,7 +9,8 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 10] = [
+pub const ENGINE: [&str; 13] = [
+    "flight",
     "numerics",
     "dynamics",
     "formats",
@@ -20,6 +21,8 @@ pub const ENGINE: [&str; 10] = [
     "core",
     "view",
     "handover",
+    "export-c",
+    "cosim",
 ];
 
 /// The Rust files under a directory: their paths below the repository, and their texts.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use flexsc_core::control::law::Command;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::{ObservationField, Scenario, Simulation, StopAt};
+use flexsc_core::{ObservationField, Scenario, Simulation, StopAt, TelemetryField};
 
 use crate::study::pairs;
 use crate::util::SCENARIOS;
@@ -76,6 +76,33 @@ fn a_run_in_pieces_comes_to_the_same_as_a_whole_one() {
             assert_eq!(row(&mut cut, &scenario), row(&mut whole, &scenario), "{name} {piece}");
             assert_eq!(rows(pieces), reported, "{name} {piece}");
         }
+    }
+}
+
+#[test]
+fn telemetry_has_the_values_of_its_layout_and_changes_no_controlled_run() {
+    for (name, seconds) in FLOWN {
+        let scenario = flown(name, seconds.min(20.0));
+        let [mut seen, mut unseen] = [0, 1].map(|_| Simulation::new(&scenario, 3));
+        let layout = seen.telemetry_layout(&scenario);
+        let width = |fields: &[TelemetryField]| -> usize { fields.iter().map(TelemetryField::width).sum() };
+        seen.open(&mut ()).expect("a start");
+        while !seen.is_finished() {
+            let telemetry = seen.telemetry(&layout).expect("numbers");
+            assert_eq!(telemetry.law_inputs.len(), width(&layout.law_inputs), "{name}");
+            assert!(telemetry.law_inputs.iter().all(|value| value.is_finite()), "{name}");
+            for (sensor, read) in pairs(layout.sensors.iter(), &telemetry.sensors) {
+                assert_eq!(read.values.len(), width(&sensor.fields), "{name} {}", sensor.group);
+                assert!(read.at.is_none_or(|at| at <= seen.time()), "{name} {}", sensor.group);
+            }
+            let until = seen.time() + Span::from_seconds(0.3);
+            for simulation in [&mut seen, &mut unseen] {
+                simulation.open(&mut ()).expect("a start");
+                simulation.set_external_command([Command::Torque(1e-4); 3]);
+                simulation.run_up_to(until, &mut ()).expect("a piece");
+            }
+        }
+        assert_eq!(row(&mut seen, &scenario), row(&mut unseen, &scenario), "{name}");
     }
 }
 

@@ -173,7 +173,6 @@ pub struct Started {
 
 impl Started {
     /// Returns the next line of stderr that contains a word.
-    #[cfg(feature = "live")]
     pub fn line(&mut self, word: &str) -> String {
         use std::io::Read;
 

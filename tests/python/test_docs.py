@@ -20,14 +20,16 @@ PACKAGE = ROOT / "crates/py/README.md"
 # `flexsc reproduce` runs the commands of papers.md.
 PAGES = [ROOT / "README.md", PACKAGE, *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
 VERBS = (
-    "check|completions|cycle|damping|examples|export|identify|layout|log|map|merge|modes|new|observer|plan|plot|"
-    "schema|simulate|sweep|top|tune"
+    "check|completions|cycle|damping|examples|export|export-fmu|identify|layout|log|map|merge|modes|new|observer|"
+    "plan|plot|schema|simulate|sweep|top|tune"
 )
 ELSEWHERE = re.compile(r"\b[A-Z]{3,}\b|--live|--scheduler|study\.toml|part-0|\.\.\.|/shared")
 BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MULTILINE)
 CODE = re.compile(r"(<!-- not run: .*? -->\n+)?^```python\n((?:.*\n)*?)```", re.MULTILINE)
 # Libraries that a page shows and that the tests do without: a block that needs one is left out.
 OPTIONAL = {"brahe", "cma", "control", "dask", "duckdb", "numba", "pandas", "polars", "ray", "xarray"}
+# The module of the package `bsk`.
+OPTIONAL |= {"Basilisk"}
 RUN = """
 names = {"__name__": "__main__"}
 for block in BLOCKS:

@@ -42,6 +42,12 @@ pub enum CliError {
     #[cfg(feature = "live")]
     #[error("cannot serve at {address}: {source}{}", hint(source))]
     Serve { address: String, source: io::Error },
+    /// Server of a run in lockstep that cannot be reached.
+    #[error("cannot serve at {address}: {source}{}", other_port(source))]
+    Bind { address: String, source: io::Error },
+    /// Run in lockstep that its client ended.
+    #[error("{0}")]
+    Lockstep(String),
     /// Figure that could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
@@ -175,6 +181,15 @@ fn shortened(text: &str) -> String {
 fn hint(error: &io::Error) -> &'static str {
     if error.kind() == io::ErrorKind::AddrInUse {
         "\n\nhint: another run may be live there; --live=127.0.0.1:0 uses any free port"
+    } else {
+        ""
+    }
+}
+
+/// Returns a hint on how to avoid a port that is in use.
+fn other_port(error: &io::Error) -> &'static str {
+    if error.kind() == io::ErrorKind::AddrInUse {
+        "\n\nhint: another run may be served there; --bind 127.0.0.1:0 uses any free port"
     } else {
         ""
     }

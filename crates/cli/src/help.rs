@@ -24,6 +24,19 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "serve",
+                [
+                    (
+                        "flexsc serve earth-observer.toml -o served",
+                        "waits for a control program, and runs with it",
+                    ),
+                    (
+                        "flexsc serve earth-observer.toml --describe > packets.xml",
+                        "its packets in XTCE, for ground systems",
+                    ),
+                ],
+            ),
+            (
                 "sweep",
                 [
                     (
@@ -69,6 +82,36 @@ const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc export relay-adaptive.mcap --topic /command -o command.csv",
                         "one topic as a table",
+                    ),
+                ],
+            ),
+            (
+                "export-c",
+                [
+                    (
+                        "flexsc export-c relay-sampled.toml -o flight",
+                        "the relay as C99 in the directory flight",
+                    ),
+                    (
+                        "flexsc export-c earth-observer.toml -o flight-observer --name aocs --calls 1000",
+                        "names that begin with aocs, and the first 1000 calls of the run",
+                    ),
+                ],
+            ),
+            (
+                "vectors",
+                [
+                    ("flexsc vectors relay-sampled.toml -o vectors.bin", "every call of the relay in a run"),
+                    ("flexsc vectors earth-observer.toml -o first.bin --calls 100", "the first 100 calls"),
+                ],
+            ),
+            (
+                "export-fmu",
+                [
+                    ("flexsc export-fmu relay-fixed.toml -o relay.fmu", "the closed loop as an FMU, FMI 3.0"),
+                    (
+                        "flexsc export-fmu earth-observer.toml --part plant --fmi 2 -o plant.fmu",
+                        "the spacecraft alone, for importers of FMI 2.0",
                     ),
                 ],
             ),

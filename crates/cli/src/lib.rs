@@ -10,6 +10,9 @@ mod damping;
 mod error;
 mod examples;
 mod export;
+mod export_c;
+#[cfg_attr(not(feature = "fmu"), path = "export_fmu/unavailable.rs")]
+mod export_fmu;
 mod figure_files;
 pub mod figures;
 mod files;
@@ -43,6 +46,7 @@ mod runs_table;
 mod sampled_loop;
 mod scenario;
 mod schema;
+mod serve;
 mod simulate;
 mod spectrum;
 mod stop;
@@ -51,7 +55,7 @@ mod sweep;
 mod terminal;
 mod top;
 mod tune;
-#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
+#[cfg(not(all(feature = "fmu", feature = "live", feature = "papers", feature = "png")))]
 mod unavailable;
 mod worst;
 
@@ -79,6 +83,10 @@ struct Cli {
 enum Verb {
     /// Run scenarios, once each or as a Monte Carlo campaign
     Simulate(simulate::SimulateArgs),
+    /// Run a scenario in lockstep with a control program
+    ///
+    /// At each sample of the law, the program gets a packet with the sensors and answers with the commands, over UDP or TCP. The log is that of the same commands in one process, byte for byte.
+    Serve(serve::ServeArgs),
     /// Run a scenario over a grid or a sample of key values
     Sweep(sweep::SweepArgs),
     /// Merge parts of a campaign into one directory
@@ -141,6 +149,18 @@ enum Verb {
     Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
     Export(export::ExportArgs),
+    /// Write the control system of a scenario as C99
+    ///
+    /// Translated from the Rust code that runs call, with a driver, vectors of a run, and a Makefile that compares them by bits: relays, PD, phase-plane and attitude laws.
+    ExportC(export_c::ExportCArgs),
+    /// Record the calls of the control system in a run
+    ///
+    /// Inputs and outputs of each call, which the driver of `flexsc export-c` replays.
+    Vectors(export_c::VectorsArgs),
+    /// Export a scenario as an FMU for other simulators
+    ///
+    /// A Functional Mock-up Unit for co-simulation, FMI 3.0 with exact events or FMI 2.0: the closed loop, or the plant alone with torque commands as inputs.
+    ExportFmu(export_fmu::ExportFmuArgs),
     /// Inspect a log, or recover an incomplete one
     Log(log::LogArgs),
     /// Write a viewer layout for a log or a scenario
@@ -187,6 +207,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
 fn execute(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
+        Verb::Serve(args) => serve::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
         Verb::Merge(args) => merge::run(&args),
         Verb::Top(args) => top::run(&args),
@@ -207,6 +228,9 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Plot(args) => plot::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
+        Verb::ExportC(args) => export_c::run(&args),
+        Verb::Vectors(args) => export_c::run_vectors(&args),
+        Verb::ExportFmu(args) => export_fmu::run(&args),
         Verb::Log(args) => log::run(&args),
         Verb::Layout(args) => layout::run(&args),
         Verb::Check(args) => check::run(&args),

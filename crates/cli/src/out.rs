@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::error::CliError;
 
 /// File extensions that flexsc or other programs write, and with which no directory is expected to be named.
-const ENDINGS: [&str; 26] = [
-    "aem", "bin", "bmp", "csv", "eps", "gif", "glb", "htm", "html", "jpeg", "jpg", "json", "jsonl", "mcap",
-    "md", "oem", "parquet", "partial", "pdf", "png", "ps", "svg", "tif", "tiff", "toml", "webp",
+const ENDINGS: [&str; 27] = [
+    "aem", "bin", "bmp", "csv", "eps", "fmu", "gif", "glb", "htm", "html", "jpeg", "jpg", "json", "jsonl",
+    "mcap", "md", "oem", "parquet", "partial", "pdf", "png", "ps", "svg", "tif", "tiff", "toml", "webp",
 ];
 
 /// Target of results.

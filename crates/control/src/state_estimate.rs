@@ -1,5 +1,8 @@
 //! State estimate of the motion about one axis, the only input of a law, and the estimates that laws need.
 
+pub use flexsc_flight::active_damping::{DampingStatus, ElasticRateEstimate};
+use flexsc_flight::axis_motion::AxisMotion;
+
 /// State estimate about one axis, written by sensor and estimator, and read by the law of the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateEstimate {
@@ -22,15 +25,20 @@ pub struct StateEstimate {
     pub elastic_is_trusted: bool,
 }
 
-/// Estimate of an elastic mode about one axis.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct ElasticRateEstimate {
-    /// Elastic rate (rad/s).
-    pub rate: f64,
-    /// Natural frequency (rad/s).
-    pub frequency: f64,
-    /// Jump of the elastic rate per unit jump of the rigid rate by the actuator of the axis.
-    pub influence: f64,
+impl StateEstimate {
+    /// Returns the estimated motion as flight code has it.
+    #[inline]
+    pub fn flight_motion(&self) -> AxisMotion {
+        AxisMotion {
+            angle: self.angle,
+            total_angle: self.total_angle,
+            rate: self.rate,
+            queued_rate: self.queued_rate,
+            displacement: self.dominant.displacement,
+            displacement_rate: self.dominant.rate,
+            frequency: self.dominant.frequency,
+        }
+    }
 }
 
 /// Mode that a step of the torque excites most, by an estimate.
@@ -64,21 +72,4 @@ impl EstimateNeeds {
     pub fn most(laws: impl Iterator<Item = Self>) -> Self {
         laws.max().unwrap_or(Self::Nothing)
     }
-}
-
-/// Status of active damping about an axis.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct DampingStatus {
-    /// Elastic rate on which damping acts (rad/s).
-    pub rate: f64,
-    /// Threshold (rad/s).
-    pub threshold: f64,
-    /// True if the elastic rate has exceeded the threshold and has not fallen below the release level.
-    pub latched: bool,
-    /// True if the watchdog has paused damping.
-    pub resting: bool,
-    /// Signed on-time of the pulse (s).
-    pub on: f64,
-    /// Change of the rigid rate by the pulse (rad/s).
-    pub change: f64,
 }

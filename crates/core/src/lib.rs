@@ -65,4 +65,7 @@ pub use flexsc_spacecraft as spacecraft;
 
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
-pub use sim::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};
+pub use sim::{
+    ControlCall, ControlDecision, ObservationField, ObservationGroup, SensorSample, SensorTelemetry,
+    Simulation, SimulationError, StopAt, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor,
+};

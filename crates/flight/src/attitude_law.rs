@@ -3,7 +3,9 @@
 //! With e the angle and w the rate relative to the reference, it commands -(wn² (e + z/t) + 2 zeta wn w), with z the
 //! integral of e, applies its filters, and adds the reference's acceleration (\[Wie08\], quaternion feedback).
 
+use crate::axis_motion::{AxisMotion, AxisReference};
 use crate::biquad::{BiquadFilter, filter_in_series};
+use crate::error_measure::ErrorMeasure;
 use crate::maths::clamp;
 
 /// Attitude law about an axis.
@@ -13,6 +15,8 @@ pub struct AttitudeFeedback {
     pub bandwidth: f64,
     /// Damping ratio zeta of the error.
     pub damping: f64,
+    /// Measure of the error.
+    pub measure: ErrorMeasure,
     /// Period of the samples (s).
     pub period: f64,
     /// True if there is a rate limit.
@@ -34,16 +38,16 @@ pub struct AttitudeFeedback {
 }
 
 impl AttitudeFeedback {
-    /// Returns the acceleration (rad/s²) for an error of the angle (rad) and of the rate (rad/s), and the acceleration of the
-    /// reference (rad/s²). The filters, with their states, are those of this axis.
+    /// Returns the acceleration (rad/s²) for the estimated motion. The filters, with their states, are those of this axis.
     #[inline]
-    pub fn acceleration(
+    pub fn step(
         &mut self,
-        error: f64,
-        rate_error: f64,
-        reference: f64,
+        motion: &AxisMotion,
+        reference: &AxisReference,
         filters: &mut [BiquadFilter],
     ) -> f64 {
+        let error: f64 = self.measure.error(motion.angle, motion.total_angle) - reference.angle;
+        let rate_error: f64 = motion.rate - reference.rate;
         let wn: f64 = self.bandwidth;
         let integral_part: f64 = if self.has_integral { self.integral / self.integral_time } else { 0.0 };
         let angle: f64 = error + integral_part;
@@ -58,7 +62,7 @@ impl AttitudeFeedback {
             feedback = -(wn * wn * angle + gain * rate_error);
         }
         let filtered: f64 = filter_in_series(filters, feedback);
-        let acceleration: f64 = filtered + reference;
+        let acceleration: f64 = filtered + reference.acceleration;
         let is_saturated: bool =
             acceleration > self.acceleration_plus || -acceleration > self.acceleration_minus;
         self.integrate(error, is_limited || is_saturated);

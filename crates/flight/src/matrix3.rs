@@ -1,6 +1,6 @@
 //! Matrices of three rows and columns.
 
-use crate::maths::sqrt;
+use crate::square_root::sqrt;
 use crate::vector3::Vector3;
 
 /// Matrix of three rows and three columns.

@@ -6,17 +6,9 @@
 //! the whole cycle if that is longer, until it is within `switch_off` and half of the tolerance.
 
 use crate::active_damping::{DampingLaw, DampingStatus, ElasticRateEstimate, RateTolerance};
+use crate::axis_motion::{AxisMotion, AxisReference};
 use crate::pulse_width::PulseQuantum;
 use crate::switching_lines::SwitchingLines;
-
-/// Motion about an axis relative to the reference.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct PhasePlanePoint {
-    /// Angle error (rad).
-    pub angle: f64,
-    /// Rate error, with commanded changes that are not yet executed (rad/s).
-    pub rate: f64,
-}
 
 /// Phase-plane law about an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -43,21 +35,24 @@ pub struct PhasePlaneLaw {
 
 impl PhasePlaneLaw {
     /// Returns the change of the rate (rad/s) by the pulses of a cycle, for elastic modes that laws may act on if `is_trusted`.
-    pub fn rate_change(
+    pub fn step(
         &mut self,
-        point: &PhasePlanePoint,
+        motion: &AxisMotion,
+        reference: &AxisReference,
         modes: &[ElasticRateEstimate],
         is_trusted: bool,
     ) -> f64 {
-        let excess: f64 = point.rate - self.lines.target_rate(point.angle);
+        let angle: f64 = motion.angle - reference.angle;
+        let rate: f64 = motion.rate - reference.rate + motion.queued_rate;
+        let excess: f64 = rate - self.lines.target_rate(angle);
         // Tolerance on the side of the excess.
-        let side: f64 = if excess < 0.0 { -point.angle } else { point.angle };
+        let side: f64 = if excess < 0.0 { -angle } else { angle };
         let allowed: f64 = self.lines.upper_tolerance(side);
         let mut change: f64 = self.relay(excess, allowed);
         if self.has_damping {
             let tolerance: RateTolerance = RateTolerance {
-                above: self.lines.upper_tolerance(point.angle),
-                below: self.lines.upper_tolerance(-point.angle),
+                above: self.lines.upper_tolerance(angle),
+                below: self.lines.upper_tolerance(-angle),
             };
             let is_free: bool = !self.firing && !tolerance.is_exceeded_by(excess);
             self.damped = self.damping.decide(modes, is_trusted, is_free, excess, &tolerance);

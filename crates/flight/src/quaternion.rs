@@ -1,7 +1,7 @@
 //! Attitudes as unit quaternions: the rotation from body axes to inertial axes.
 
 use crate::inverse_trigonometry::atan2;
-use crate::maths::sqrt;
+use crate::square_root::sqrt;
 use crate::trigonometry::{SinCos, sincos};
 use crate::vector3::Vector3;
 

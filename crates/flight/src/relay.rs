@@ -1,7 +1,7 @@
 //! The relay law with dead zone, hysteresis and a timed brake (\[Silaev\], equation (2), corrected).
 //!
 //! Beyond a boundary of the dead zone a strong torque pushes back until the angle has returned by the
-//! hysteresis; then a strong brake lasts `k_t` times as long as the push; then a weak torque opposes the
+//! hysteresis; then a strong brake lasts `braking_gain` times as long as the push; then a weak torque opposes the
 //! motion that is left, until a boundary is reached again.
 
 use crate::guard::Guard;
@@ -66,7 +66,7 @@ pub struct RelayLaw {
     /// Weak torque in the dead zone (N m; rad/s² on a body without inertia).
     pub weak: f64,
     /// Braking gain: duration of the brake per second of the push.
-    pub k_t: f64,
+    pub braking_gain: f64,
     /// True if both boundaries of the dead zone push back, false if only the right one does.
     pub is_two_sided: bool,
     /// State after the last decision.
@@ -117,8 +117,8 @@ impl RelayLaw {
         let back: f64 = self.dead_zone - self.hysteresis;
         match self.state {
             RelayState::WeakLeft => self.between_boundaries(-self.weak),
-            RelayState::PushFromRight => self.until_guard(-self.strong, Guard::at_most(back)),
-            RelayState::PushFromLeft => self.until_guard(self.strong, Guard::at_least(-back)),
+            RelayState::PushFromRight => Self::until_guard(-self.strong, Guard::at_most(back)),
+            RelayState::PushFromLeft => Self::until_guard(self.strong, Guard::at_least(-back)),
             RelayState::BrakeFromRight => self.until_braked(self.strong, now),
             RelayState::BrakeFromLeft => self.until_braked(-self.strong, now),
             RelayState::Start | RelayState::WeakRight => self.between_boundaries(self.weak),
@@ -133,15 +133,15 @@ impl RelayLaw {
     }
 
     /// Returns a torque (N m) that acts until a guard trips.
-    fn until_guard(&self, torque: f64, guard: Guard) -> RelayCommand {
+    fn until_guard(torque: f64, guard: Guard) -> RelayCommand {
         let until: Ticks = Ticks { whole: 0, part: 0 };
         RelayCommand { torque, has_timeout: false, until, guard_count: 1, guards: [guard, guard] }
     }
 
-    /// Returns a torque (N m) that acts for `k_t` times the length of the push.
+    /// Returns a torque (N m) that acts for `braking_gain` times the length of the push.
     fn until_braked(&self, torque: f64, now: Ticks) -> RelayCommand {
         let push_duration: f64 = now.since(self.pushed_at).seconds();
-        let until: Ticks = now.plus(Ticks::from_seconds(self.k_t * push_duration));
+        let until: Ticks = now.plus(Ticks::from_seconds(self.braking_gain * push_duration));
         RelayCommand { torque, has_timeout: true, until, guard_count: 0, guards: [self.right(), self.left()] }
     }
 

@@ -1,7 +1,7 @@
 //! Stumpff functions c_k(x²) = sum over j of (-x²)^j/(k + 2j)!, by which rotations are exact without division by an
 //! axis (\[Hughes86\] writes them as sines and versines).
 
-use crate::maths::sqrt;
+use crate::square_root::sqrt;
 use crate::trigonometry::sin;
 
 /// Stumpff functions c_1 to c_5 at the square of an angle.

@@ -15,7 +15,8 @@
 //! jets can stop the body before the edge, and none above `switch_on`. If a pulse changes more than `switch_on` or half
 //! of `rate_limit`, these are raised to it. Parabolas are as in \[Wie08\]; the rest is our design.
 
-use crate::maths::{clamp, max, min, sqrt};
+use crate::maths::{clamp, max, min};
+use crate::square_root::sqrt;
 
 /// Switching lines of an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -7,6 +7,9 @@ use crate::vector3::Vector3;
 /// (rad/s), whose rotors store the momentum `stored` (N m s); all in body axes.
 #[inline]
 pub fn torque(inertia: &Matrix3, acceleration: &Vector3, rate: &Vector3, stored: &Vector3) -> Vector3 {
-    let momentum: Vector3 = inertia.times(rate).plus(stored);
-    inertia.times(acceleration).plus(&rate.cross(&momentum))
+    let own: Vector3 = inertia.times(rate);
+    let momentum: Vector3 = own.plus(stored);
+    let change: Vector3 = inertia.times(acceleration);
+    let gyroscopic: Vector3 = rate.cross(&momentum);
+    change.plus(&gyroscopic)
 }

@@ -1,6 +1,6 @@
 //! Vectors along the axes of the body or of inertial space.
 
-use crate::maths::sqrt;
+use crate::square_root::sqrt;
 
 /// Vector of three components.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]

@@ -68,3 +68,14 @@ fn least_largest(wheels: &[AllocatedWheel]) -> f64 {
     }
     best
 }
+
+/// Scales the torques of all wheels down, so that none exceeds a limit (N m) and the whole torque keeps its axis.
+#[inline]
+pub fn limit_torques(wheels: &mut [AllocatedWheel], limit: f64) {
+    let most: f64 = largest(wheels, 0.0);
+    if most > limit {
+        for index in 0..wheels.len() {
+            wheels[index].torque *= limit / most;
+        }
+    }
+}

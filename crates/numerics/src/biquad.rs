@@ -1,18 +1,16 @@
-//! Digital filter of second order.
+//! Design of digital filters of second order.
+
+use flexsc_flight::biquad::BiquadFilter;
 
 /// Biquad y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2, for the samples x and y now, one and two before, in direct form
 /// II transposed.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Biquad {
-    numerator: [f64; 3],
-    denominator: [f64; 2],
-    state: [f64; 2],
-}
+pub struct Biquad(BiquadFilter);
 
 impl Biquad {
     /// Creates the filter with b0, b1, b2 and a1, a2, at rest.
     pub fn new(numerator: [f64; 3], denominator: [f64; 2]) -> Self {
-        Self { numerator, denominator, state: [0.0; 2] }
+        Self(BiquadFilter { numerator, denominator, state: [0.0; 2] })
     }
 
     /// Discretises (n0 + n1 s + n2 s²)/(d0 + d1 s + d2 s²) with a sample period (s): s = K (z - 1)/(z + 1), with the
@@ -29,26 +27,23 @@ impl Biquad {
 
     /// Returns b0, b1, b2 and a1, a2.
     pub fn coefficients(&self) -> ([f64; 3], [f64; 2]) {
-        (self.numerator, self.denominator)
+        (self.0.numerator, self.0.denominator)
     }
 
     /// Returns true if the filter is stable.
     pub fn is_stable(&self) -> bool {
-        let [a1, a2] = self.denominator;
+        let [a1, a2] = self.0.denominator;
         a2.abs() < 1.0 && a1.abs() < 1.0 + a2
     }
 
-    /// Replaces the coefficients by those of another filter, and keeps the state.
-    pub fn retune(&mut self, other: &Self) {
-        *self = Self { state: self.state, ..*other };
+    /// Returns the filter at run time, as flight code has it.
+    pub fn flight(&self) -> BiquadFilter {
+        self.0
     }
 
     /// Filters a sample and returns the output.
     pub fn filter(&mut self, sample: f64) -> f64 {
-        let ([b0, b1, b2], [a1, a2]) = (self.numerator, self.denominator);
-        let output = b0 * sample + self.state[0];
-        self.state = [b1 * sample - a1 * output + self.state[1], b2 * sample - a2 * output];
-        output
+        self.0.filter(sample)
     }
 
     /// Returns gain and phase (rad) at a frequency (rad/s), for a sample period (s).
@@ -59,7 +54,7 @@ impl Biquad {
             [c0 + c1 * cos + c2 * (cos * cos - sin * sin), -c1 * sin - c2 * 2.0 * sin * cos]
         };
         let ([nr, ni], [dr, di]) =
-            (polynomial(self.numerator), polynomial([1.0, self.denominator[0], self.denominator[1]]));
+            (polynomial(self.0.numerator), polynomial([1.0, self.0.denominator[0], self.0.denominator[1]]));
         let phase = libm::atan2(ni * dr - nr * di, nr * dr + ni * di);
         [libm::hypot(nr, ni) / libm::hypot(dr, di), phase]
     }

@@ -3,10 +3,7 @@
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::matrix6::{Matrix6, Matrix6x3};
 use flexsc_flight::quaternion::Quaternion;
-use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
-
-use crate::time::Instant;
 
 /// Converts a vector to that of flight code.
 #[inline]
@@ -51,11 +48,4 @@ pub fn from_matrix6(matrix: &Matrix6) -> nalgebra::Matrix6<f64> {
 /// Converts a matrix of six rows and three columns to that of flight code.
 pub fn to_matrix6x3(matrix: &nalgebra::Matrix6x3<f64>) -> Matrix6x3 {
     Matrix6x3 { rows: std::array::from_fn(|row| [0, 1, 2].map(|column| matrix[(row, column)])) }
-}
-
-/// Converts an instant to that of flight code.
-#[inline]
-pub fn to_ticks(instant: Instant) -> Ticks {
-    let (whole, part) = instant.parts();
-    Ticks { whole: whole as i64, part: part as i64 }
 }

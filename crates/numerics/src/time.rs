@@ -4,15 +4,13 @@ use std::borrow::Cow;
 use std::fmt;
 use std::ops::{Add, AddAssign};
 
+use flexsc_flight::ticks::Ticks;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const FEMTOSECONDS: i64 = 1_000_000_000_000_000;
-const FEMTOSECONDS_F64: f64 = 1e15;
 /// Limit in seconds below which spans fit 64 bits of femtoseconds.
 const SHORT_S: i64 = 9_000;
-/// Limit of any span (s), a thousand times the longest run.
-const FARTHEST_S: f64 = 1e16;
 /// Longest span that a scenario may specify (s): 300 000 years.
 const LONGEST_S: f64 = 1e13;
 
@@ -23,53 +21,6 @@ pub struct Instant(Ticks);
 /// Length of simulated time.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span(Ticks);
-
-/// Whole seconds, plus 0 to 10^15 - 1 femtoseconds: an exact integer whose operations stay within 64 bits.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-struct Ticks {
-    whole: i64,
-    part: i64,
-}
-
-impl Ticks {
-    /// Creates ticks from femtoseconds that fit 64 bits.
-    fn short(femtoseconds: i64) -> Self {
-        Self { whole: femtoseconds.div_euclid(FEMTOSECONDS), part: femtoseconds.rem_euclid(FEMTOSECONDS) }
-    }
-
-    /// Returns the ticks nearest to a number of seconds.
-    fn from_seconds(seconds: f64) -> Self {
-        let nearest = |seconds: f64| Self::short(libm::round(seconds * FEMTOSECONDS_F64) as i64);
-        if seconds.abs() < SHORT_S as f64 {
-            return nearest(seconds);
-        }
-        // Beyond this, sums would overflow.
-        let seconds = seconds.clamp(-FARTHEST_S, FARTHEST_S);
-        let whole = libm::trunc(seconds);
-        let part = nearest(seconds - whole);
-        Self { whole: whole as i64 + part.whole, ..part }
-    }
-
-    fn seconds(self) -> f64 {
-        if self.whole.abs() < SHORT_S {
-            (self.whole * FEMTOSECONDS + self.part) as f64 / FEMTOSECONDS_F64
-        } else {
-            self.whole as f64 + self.part as f64 / FEMTOSECONDS_F64
-        }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        let part = self.part + other.part;
-        let carry = i64::from(part >= FEMTOSECONDS);
-        Self { whole: self.whole + other.whole + carry, part: part - carry * FEMTOSECONDS }
-    }
-
-    fn remaining_after(self, other: Self) -> Self {
-        let part = self.part - other.part;
-        let borrow = i64::from(part < 0);
-        Self { whole: self.whole - other.whole - borrow, part: part + borrow * FEMTOSECONDS }
-    }
-}
 
 impl Instant {
     /// Start of every run.
@@ -92,6 +43,17 @@ impl Instant {
         (self.0.whole as u64, self.0.part as u64)
     }
 
+    /// Creates the instant of a time that flight code counts.
+    pub fn from_ticks(ticks: Ticks) -> Self {
+        Self(ticks)
+    }
+
+    /// Returns the instant as flight code counts it.
+    #[inline]
+    pub fn ticks(self) -> Ticks {
+        self.0
+    }
+
     /// Returns the instant in nanoseconds, rounded down: the time base of logs.
     pub fn nanoseconds(self) -> u64 {
         self.0.whole as u64 * 1_000_000_000 + self.0.part as u64 / 1_000_000
@@ -100,13 +62,13 @@ impl Instant {
     /// Returns the instant a span earlier.
     #[must_use]
     pub fn before(self, span: Span) -> Self {
-        Self(self.0.remaining_after(span.0))
+        Self(self.0.since(span.0))
     }
 
     /// Returns the span since an earlier instant.
     #[inline]
     pub fn since(self, earlier: Self) -> Span {
-        Span(self.0.remaining_after(earlier.0))
+        Span(self.0.since(earlier.0))
     }
 }
 
@@ -120,6 +82,12 @@ impl Span {
     #[inline]
     pub fn from_seconds(seconds: f64) -> Self {
         Self(Ticks::from_seconds(seconds))
+    }
+
+    /// Returns the span as flight code counts it.
+    #[inline]
+    pub fn ticks(self) -> Ticks {
+        self.0
     }
 
     /// Creates a span from femtoseconds.
@@ -137,7 +105,7 @@ impl Span {
     /// Returns the difference of the span and another.
     #[must_use]
     pub fn remaining_after(self, other: Self) -> Self {
-        Self(self.0.remaining_after(other.0))
+        Self(self.0.since(other.0))
     }
 
     /// Returns the span in seconds, rounded to a double.

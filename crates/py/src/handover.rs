@@ -1,9 +1,11 @@
-//! Export of runs in the formats of other programs.
+//! Export of runs and scenarios in the formats of other programs.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::record::{self, Detail, LogBytes, RunEnd, atomic_file};
 use flexsc_core::scenario::date_from_text;
+use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, fmu_bytes};
 use flexsc_handover::{HandoverError, HandoverFormat, HandoverOptions, hand_over, hand_over_run};
 use flexsc_view::scene::Scene;
 use flexsc_view::with_layout;
@@ -87,6 +89,34 @@ pub fn export_run(
     })?;
     let bytes = exported.map_err(|error| error::unwritten(&path, scenario.name(), error))?;
     write(&path, &bytes.map_err(handover_error)?)
+}
+
+/// Exports a scenario as an FMU with this library; returns the size of the file in bytes.
+#[pyfunction]
+pub fn export_fmu(
+    py: Python<'_>,
+    scenario: &Scenario,
+    path: PathBuf,
+    fmi: u8,
+    part: &str,
+    library: PathBuf,
+) -> PyResult<u64> {
+    let wrong = |why: String| PyValueError::new_err(why);
+    let version = match fmi {
+        2 => FmiVersion::V2,
+        3 => FmiVersion::V3,
+        _ => return Err(wrong(format!("fmi must be 2 or 3, got {fmi}"))),
+    };
+    let fmu_error = |failure: CoSimulationError| match failure {
+        CoSimulationError::Scenario(error) => error::scenario_error(error),
+        other => wrong(other.to_string()),
+    };
+    let content = FmuPart::from_name(part).and_then(|part| FmuContent::new(&scenario.inner, part));
+    let content = content.map_err(fmu_error)?;
+    let unread = |error| wrong(format!("cannot read the library of FMUs, {}: {error}", library.display()));
+    let library = fs::read(&library).map_err(unread)?;
+    let bytes = aside(py, move |_| fmu_bytes(&content, &library, version))?.map_err(fmu_error)?;
+    write(&path, &bytes)
 }
 
 fn write(path: &Path, bytes: &[u8]) -> PyResult<u64> {

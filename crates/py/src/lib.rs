@@ -78,7 +78,7 @@ mod _native {
         Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
     };
     #[pymodule_export]
-    use super::handover::{ExportOptions, export_log, export_run};
+    use super::handover::{ExportOptions, export_fmu, export_log, export_run};
     #[pymodule_export]
     use super::instants::MotionSampler;
     #[pymodule_export]

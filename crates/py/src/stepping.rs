@@ -51,11 +51,11 @@ pub fn about_axes(values: &[f64]) -> [f64; 3] {
 
 /// Gives a simulation commands, and keeps them where they are kept.
 pub fn steer(simulation: &mut Simulation, commands: Option<&mut CommandLog>, values: &[f64]) {
-    let values = about_axes(values);
+    let given = about_axes(values).map(Command::Torque);
     if let Some(commands) = commands.filter(|_| !simulation.is_finished()) {
-        commands.push(simulation.time(), values);
+        commands.push(simulation.time(), given);
     }
-    simulation.set_external_command(values.map(Command::Torque));
+    simulation.set_external_command(given);
 }
 
 /// A length of time that Python gave.
@@ -205,6 +205,11 @@ impl Simulator {
         let mut row = vec![0.0; self.fields.iter().map(ObservationField::width).sum()];
         self.simulation.observe(&mut row).map_err(|error| simulation_error(&self.name, error))?;
         Ok(row.into_pyarray(py))
+    }
+
+    /// Returns the attitude (w, x, y, z) by the last estimate; `None` for one axis.
+    fn estimated_attitude(&mut self) -> PyResult<Option<[f64; 4]>> {
+        self.simulation.estimated_attitude().map_err(|error| simulation_error(&self.name, error))
     }
 
     /// Commands from now on; `values` are as many as there are axes, and finite.

@@ -10,9 +10,12 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::message::{Message, MessageEncoder, MessageSink};
 use super::metrics::Metrics;
+use super::provenance_check::COMMANDED;
 use super::row::TopicRow;
 use super::topics::index_of;
-use super::{Attachment, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS};
+use super::{
+    Attachment, COMMANDS, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS,
+};
 use crate::atomic_file::AtomicFile;
 
 /// Number of messages after which a chunk is closed: the largest number lost with a killed run.
@@ -24,6 +27,8 @@ const FROM_START: usize = index_of(Summary::TOPIC.name);
 /// Log of a run, written while it runs.
 struct McapLog<W: Write + Seek> {
     log: MessageEncoder<Channels<W>>,
+    /// External commands of the run, which follow the messages: they may be known only at the end.
+    commands: Option<Attachment>,
 }
 
 impl<W: Write + Seek> McapLog<W> {
@@ -33,9 +38,12 @@ impl<W: Write + Seek> McapLog<W> {
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
         attach(&mut writer, "scenario.toml", "application/toml", from.toml.as_bytes())?;
-        for Attachment { name, media_type, data } in &from.attachments {
+        let (commands, others): (Vec<_>, Vec<_>) =
+            from.attachments.iter().partition(|attachment| attachment.name == COMMANDS);
+        for Attachment { name, media_type, data } in others {
             attach(&mut writer, name, media_type, data)?;
         }
+        let commands = commands.first().copied().cloned();
         let metadata = [
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
             ("scenario", from.scenario.clone()),
@@ -47,11 +55,16 @@ impl<W: Write + Seek> McapLog<W> {
         ];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
-        write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
+        let commanded = commands.is_some().then(|| (COMMANDED.to_owned(), COMMANDS.to_owned()));
+        write_metadata(
+            &mut writer,
+            "flexsc.run",
+            metadata.into_iter().chain(own).chain(commanded).collect(),
+        )?;
         let by_topic = vec![None; TOPICS.len()];
         let channels =
             Channels { writer, by_topic, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
-        Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
+        Ok(Self { log: MessageEncoder::new(channels, from, detail)?, commands })
     }
 
     /// Writes the metrics, the end of the run, and the file's summary.
@@ -59,6 +72,9 @@ impl<W: Write + Seek> McapLog<W> {
         let (mut channels, last) = self.log.finish(metrics, end)?;
         channels.write_from_start()?;
         let mut writer = channels.writer;
+        if let Some(Attachment { name, media_type, data }) = &self.commands {
+            attach(&mut writer, name, media_type, data)?;
+        }
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
@@ -150,6 +166,13 @@ impl LogFile {
     pub fn create(path: &Path, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let file = BufWriter::new(AtomicFile::create(path)?);
         Ok(Self { log: McapLog::new(file, from, detail)? })
+    }
+
+    /// Replaces the external commands of the run, which its provenance announced.
+    pub fn set_commands(&mut self, text: String) {
+        if let Some(commands) = &mut self.log.commands {
+            commands.data = text.into_bytes();
+        }
     }
 
     /// Finishes the log, gives it its final name, and returns its size in bytes. A log that cannot be finished is

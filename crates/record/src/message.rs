@@ -32,10 +32,9 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// Returns the external commands of the run, if there were any.
-    pub fn commands(&self) -> Option<&[u8]> {
-        let commands = self.attachments.iter().find(|attachment| attachment.name == COMMANDS)?;
-        Some(&commands.data)
+    /// Returns true if the run has external commands.
+    pub fn is_commanded(&self) -> bool {
+        self.attachments.iter().any(|attachment| attachment.name == COMMANDS)
     }
 }
 

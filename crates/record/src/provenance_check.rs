@@ -11,12 +11,15 @@ use toml::{Table, Value};
 use super::mcap_reader::LARGEST;
 use super::{COMMANDS, Provenance};
 
+/// Key of the run's metadata that names the attachment with its external commands, if there were any.
+pub(super) const COMMANDED: &str = "commands";
+
 /// Existing file in the place of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ExistingLog {
     /// No file.
     Nothing,
-    /// Log of the same run: of the same scenario, seed, number, commands and version.
+    /// Log of the same run: of the same scenario, seed, number and version, and without external commands.
     Same,
     /// Another file, with its description.
     Other(String),
@@ -35,8 +38,7 @@ pub fn existing_log(path: &Path, run: &Provenance) -> ExistingLog {
         return ExistingLog::Other("is not a log of flexsc".to_owned());
     };
     let own = (env!("CARGO_PKG_VERSION"), run.seed.to_string(), run.run.to_string());
-    let LogOrigin { toml, version, seed, run: number, commands } = origin;
-    let commands = commands.as_deref();
+    let LogOrigin { toml, version, seed, run: number, is_commanded } = origin;
     if version != own.0 {
         ExistingLog::Other(format!("holds a run of flexsc {version}, and this is {}", own.0))
     } else if number != own.2 {
@@ -45,11 +47,11 @@ pub fn existing_log(path: &Path, run: &Provenance) -> ExistingLog {
         ExistingLog::Other(format!("holds a run with other settings{}", difference(&toml, &run.toml)))
     } else if seed != own.1 {
         ExistingLog::Other(format!("holds a run with the seed {seed}, not {}", own.1))
-    } else if commands != run.commands() {
-        ExistingLog::Other(match (commands, run.commands()) {
-            (_, None) => "holds a run that was stepped under commands".to_owned(),
-            (None, _) => "holds a run without commands".to_owned(),
-            _ => "holds a run under other commands".to_owned(),
+    } else if is_commanded || run.is_commanded() {
+        ExistingLog::Other(match (is_commanded, run.is_commanded()) {
+            (_, false) => "holds a run that was stepped under commands".to_owned(),
+            (false, _) => "holds a run without commands".to_owned(),
+            _ => "holds a run under commands, which may be others".to_owned(),
         })
     } else {
         ExistingLog::Same
@@ -101,8 +103,8 @@ struct LogOrigin {
     version: String,
     seed: String,
     run: String,
-    /// External commands, if the run had any.
-    commands: Option<Vec<u8>>,
+    /// True if the run had external commands.
+    is_commanded: bool,
 }
 
 impl LogOrigin {
@@ -110,7 +112,7 @@ impl LogOrigin {
     fn read(mut file: impl Read) -> Option<Self> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let mut reader = LinearReader::new_with_options(options);
-        let (mut toml, mut commands) = (String::new(), None);
+        let (mut toml, mut is_commanded) = (String::new(), false);
         loop {
             match reader.next_event()?.ok()? {
                 LinearReadEvent::ReadRequest(wanted) => {
@@ -121,13 +123,12 @@ impl LogOrigin {
                     McapRecord::Attachment { header, data, .. } if header.name == "scenario.toml" => {
                         toml = String::from_utf8(data.into_owned()).ok()?;
                     }
-                    McapRecord::Attachment { header, data, .. } if header.name == COMMANDS => {
-                        commands = Some(data.into_owned());
-                    }
+                    McapRecord::Attachment { header, .. } if header.name == COMMANDS => is_commanded = true,
                     McapRecord::Metadata(mut metadata) if metadata.name == "flexsc.run" => {
                         let mut entry = |key: &str| metadata.metadata.remove(key).unwrap_or_default();
                         let (version, seed, run) = (entry("version"), entry("seed"), entry("run"));
-                        return Some(Self { toml, version, seed, run, commands });
+                        is_commanded |= metadata.metadata.contains_key(COMMANDED);
+                        return Some(Self { toml, version, seed, run, is_commanded });
                     }
                     McapRecord::Message { .. } | McapRecord::Chunk { .. } | McapRecord::DataEnd(_) => {
                         return None;

@@ -21,7 +21,7 @@ pub struct RunEvents {
     /// End of the run (s).
     pub end: f64,
     /// External commands of the run.
-    pub commanded: CommandLog,
+    commanded: Option<CommandLog>,
     /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -109,8 +109,12 @@ impl RunEvents {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(reported).fold(0.0, f64::max),
         };
-        let commanded = log.commands().map_or(Some(CommandLog::default()), CommandLog::parse);
-        let commanded = commanded.ok_or_else(|| unusable(path, "holds commands that are none".to_owned()))?;
+        let none = || unusable(path, "holds commands that are none".to_owned());
+        let commanded = match log.commands() {
+            Some(text) => Some(CommandLog::parse(text).ok_or_else(none)?),
+            // Commands follow the messages, and a killed run has none of them.
+            None => (!metadata.contains_key("commands")).then(CommandLog::default),
+        };
         Ok(Self {
             scenario,
             run,
@@ -142,7 +146,7 @@ impl RunEvents {
         // The end of a torn log is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
         let mut simulation = Simulation::new(&self.scenario, self.run);
-        self.commanded
+        self.commands(path)?
             .run_until(&mut simulation, Instant::START + end, &mut repeat)
             .map_err(|source| CliError::Run { name: self.scenario.name.clone(), source })?;
         let same = |(a, b): (&f64, &SwitchingEvent)| (a - b.time).abs() <= 1e-6;
@@ -160,6 +164,15 @@ impl RunEvents {
             ));
         }
         Ok(self.smooth(repeat.motion))
+    }
+
+    /// Returns the external commands under which the run is repeated.
+    pub fn commands(&self, path: &Path) -> Result<&CommandLog, CliError> {
+        self.commanded.as_ref().ok_or_else(|| {
+            let why = "its run was killed, and is not repeated without its commands\n\n\
+                       hint: a log made with `--log full` holds most of what figures need";
+            unusable(path, why.to_owned())
+        })
     }
 
     /// Adds points between the rows of the motion under a switching law.

@@ -35,7 +35,7 @@ impl CycleData {
         let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
         let mut simulation = Simulation::new(&story.scenario, story.run);
         story
-            .commanded
+            .commands(path)?
             .run_until(&mut simulation, Instant::START + end, &mut cycles)
             .map_err(|source| CliError::Run { name: story.scenario.name.clone(), source })?;
         let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();

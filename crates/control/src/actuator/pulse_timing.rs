@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use flexsc_flight::pulse_timing::phase_factor;
+
 /// Timing of a relay that reads the elastic rate and fires against it.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PulseTiming {
@@ -28,9 +30,7 @@ impl PulseTiming {
     /// period T: the relay reduces the amplitude by (2 a/pi) E per second. Averaged over the phase of the samples, so
     /// not valid where the mode's period is a small multiple of T. Our derivation.
     pub fn phase_factor(&self, frequency: f64) -> f64 {
-        let half = if self.period > 0.0 { 0.5 * frequency * self.on_time } else { 0.0 };
-        let blur = if half == 0.0 { 1.0 } else { libm::sin(half) / half };
-        self.duty() * libm::cos(frequency * self.mean_delay()) * blur
+        phase_factor(self.period, self.delay, self.on_time, frequency)
     }
 
     /// Returns the natural frequency from which on the relay no longer damps (rad/s), pi/(2 h + tau); infinite without

@@ -1,5 +1,6 @@
 //! Quantisation of pulse lengths of an on-off actuator.
 
+use flexsc_flight::pulse_width::PulseQuantum;
 use flexsc_numerics::quantity::NonNegative;
 
 /// Shortest pulse, and quantum of the pulse length.
@@ -15,18 +16,12 @@ impl PulseWidth {
     /// Returns the executed length of a demanded pulse (s): at most `most`, a multiple of the quantum, and 0 if it
     /// would be shorter than the minimum.
     pub fn on_time(&self, on_time_demand: f64, most: f64) -> f64 {
-        let (minimum, quantum) = (self.minimum.get(), self.quantum.get());
-        let mut on = on_time_demand.min(most);
-        if quantum > 0.0 {
-            on = libm::round(on / quantum) * quantum;
-        }
-        if on > most {
-            most
-        } else if on < minimum {
-            0.0
-        } else {
-            on
-        }
+        self.flight().on_time(on_time_demand, most)
+    }
+
+    /// Returns the quantisation as flight code has it.
+    pub fn flight(&self) -> PulseQuantum {
+        PulseQuantum { minimum: self.minimum.get(), quantum: self.quantum.get() }
     }
 
     /// Returns the shortest executable pulse (s); 0 without a minimum and a quantum.

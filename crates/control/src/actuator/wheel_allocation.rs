@@ -1,6 +1,8 @@
 //! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
+use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::to_vector3;
 use nalgebra::{Cholesky, Matrix3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,8 +23,8 @@ pub enum AllocationCriterion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
     axes: Vec<Vector>,
-    /// Torque of each wheel per unit of the demanded torque about each axis.
-    inverse: Vec<Vector>,
+    /// Share of each wheel, with a torque of 0.
+    wheels: Vec<AllocatedWheel>,
     /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
     null: Option<[f64; 4]>,
     choice: AllocationCriterion,
@@ -37,12 +39,14 @@ impl Allocation {
             return None;
         }
         let solved = Cholesky::new(gram)?.inverse();
-        Some(Self {
-            axes: axes.to_vec(),
-            inverse: axes.iter().map(|axis| solved * axis).collect(),
-            null: null_vector(axes),
-            choice,
-        })
+        let null = null_vector(axes);
+        let wheel = |(index, axis): (usize, &Vector)| AllocatedWheel {
+            share: to_vector3(&(solved * axis)),
+            null: null.map_or(0.0, |null| null[index]),
+            torque: 0.0,
+        };
+        let wheels = axes.iter().enumerate().map(wheel).collect();
+        Some(Self { axes: axes.to_vec(), wheels, null, choice })
     }
 
     /// Returns the wheels' axes.
@@ -57,12 +61,26 @@ impl Allocation {
 
     /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
     pub fn torques(&self, demanded: &Vector) -> Vec<f64> {
-        let mut torques: Vec<f64> = self.inverse.iter().map(|row| row.dot(demanded)).collect();
-        if let (AllocationCriterion::LeastLargest, Some(null)) = (self.choice, &self.null) {
-            let part = least_largest(&torques, null);
-            torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
-        }
-        torques
+        self.limited_torques(demanded, f64::INFINITY)
+    }
+
+    /// Returns the torques of all wheels that give the torque `demanded` about the three axes (N m), or less about the same
+    /// axis if one of them would exceed `limit` (N m).
+    pub fn limited_torques(&self, demanded: &Vector, limit: f64) -> Vec<f64> {
+        let mut wheels = self.wheels.clone();
+        allocate(&mut wheels, &to_vector3(demanded), self.is_least_largest());
+        limit_torques(&mut wheels, limit);
+        wheels.iter().map(|wheel| wheel.torque).collect()
+    }
+
+    /// Returns the wheels as flight code has them.
+    pub fn flight_wheels(&self) -> &[AllocatedWheel] {
+        &self.wheels
+    }
+
+    /// Returns true if the largest torque is minimised, which needs four wheels.
+    pub fn is_least_largest(&self) -> bool {
+        self.choice == AllocationCriterion::LeastLargest && self.null.is_some()
     }
 
     /// Returns the largest torque about a single axis (N m), with `limit` (N m) for each wheel.
@@ -81,31 +99,6 @@ fn null_vector(axes: &[Vector]) -> Option<[f64; 4]> {
     let largest = null.into_iter().map(f64::abs).fold(0.0, f64::max);
     let first = null.into_iter().find(|part| part.abs() > 1e-9 * largest)?;
     Some(null.map(|part| part / libm::copysign(largest, first)))
-}
-
-/// Returns the multiple of a null vector that minimises the largest torque: two of them are equally large there. Of
-/// several such multiples it is the smallest.
-fn least_largest(torques: &[f64], null: &[f64; 4]) -> f64 {
-    let largest = |part: f64| {
-        let sizes = torques.iter().zip(null).map(|(torque, null)| (torque + part * null).abs());
-        sizes.fold(0.0, f64::max)
-    };
-    let mut best = (largest(0.0), 0.0_f64);
-    for (i, (u, n)) in torques.iter().zip(null).enumerate() {
-        for (v, m) in torques.iter().zip(null).take(i) {
-            for part in [(v - u) / (n - m), -(u + v) / (n + m)] {
-                // Parallel lines do not intersect.
-                if !part.is_finite() {
-                    continue;
-                }
-                let found = (largest(part), part);
-                if found.0 < best.0 || (found.0 == best.0 && part.abs() < best.1.abs()) {
-                    best = found;
-                }
-            }
-        }
-    }
-    best.1
 }
 
 #[cfg(test)]

@@ -149,13 +149,7 @@ impl WheelsState {
 
     /// Returns the motor torques that give the body the demanded torque, within the torque limit.
     fn motors(&self, speeds: &[f64]) -> Vec<f64> {
-        let mut torques = self.allocation.torques(&(self.against - self.demanded));
-        let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
-        if largest > self.torque_limit {
-            for torque in &mut torques {
-                *torque *= self.torque_limit / largest;
-            }
-        }
+        let mut torques = self.allocation.limited_torques(&(self.against - self.demanded), self.torque_limit);
         if let (Some(bias), Some(null)) = (self.bias, self.allocation.null_vector()) {
             let square: f64 = null.iter().map(|part| part * part).sum();
             let speed = null.iter().zip(speeds).map(|(part, speed)| part * speed).sum::<f64>() / square;

@@ -1,25 +1,13 @@
-//! Active damping with the phase-plane law: while the rigid motion needs no jets, they fire against the elastic rate.
-//!
-//! In \[Timakov14\] (pages 37 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
-//! Threshold, hysteresis and guards are our design.
+//! Settings of active damping with the phase-plane law, and the default of its threshold.
 
+use flexsc_flight::active_damping::DampingLaw;
 use flexsc_numerics::delay_margin::delay_margin;
 use flexsc_numerics::quantity::{Fraction, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Authority;
-use crate::actuator::PulseTiming;
-use crate::state_estimate::{DampingStatus, ElasticRateEstimate, StateEstimate};
 
-/// Smallest phase factor at which a delayed pulse is worth its propellant.
-const ELIGIBLE: f64 = 0.5;
-/// Number of cycles with a pulse in a window of the watchdog.
-const WINDOW: u32 = 75;
-/// Fraction to which the elastic rate must fall from one window to the next.
-const FALL: f64 = 0.9;
-/// Number of cycles for which the watchdog pauses damping.
-const REST: u32 = 300;
 /// Factors of the default threshold: on the amplitude of the limit cycle, and cycles of elastic acceleration at least.
 const LIMIT_CYCLES: f64 = 1.5;
 const CYCLES: f64 = 2.0;
@@ -86,97 +74,35 @@ impl ActiveDamping {
         let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
         modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, curve_point)
     }
-}
 
-/// Run-time state of active damping about one axis.
-#[derive(Clone, Debug)]
-pub struct ActiveDampingState {
-    spec: ActiveDamping,
-    authority: Authority,
-    period: f64,
-    latched: bool,
-    /// Number of remaining cycles of the watchdog's pause.
-    rest: u32,
-    /// Sum of the absolute elastic rate over the cycles with a pulse (rad/s), their number, and the mean of the window
-    /// before.
-    window: (f64, u32, Option<f64>),
-}
-
-impl ActiveDampingState {
-    /// Creates the state at the start, for cycles of `period` (s).
-    pub fn new(spec: &ActiveDamping, period: f64, authority: &Authority) -> Self {
-        let (spec, authority) = (spec.clone(), *authority);
-        Self { spec, authority, period, latched: false, rest: 0, window: (0.0, 0, None) }
+    /// Returns the lead time after a sample for which the elastic rate is predicted (s), in cycles of `period` (s).
+    pub fn lead_time(&self, period: f64, authority: &Authority) -> f64 {
+        if self.predictor { authority.delay + 0.5 * period } else { 0.0 }
     }
 
-    /// Returns the lead time after a sample for which the elastic rate is predicted (s).
-    pub fn lead_time(&self) -> f64 {
-        if self.spec.predictor { self.authority.delay + 0.5 * self.period } else { 0.0 }
-    }
-
-    fn acts_on(&self, mode: &ElasticRateEstimate) -> bool {
-        let timing = PulseTiming { period: self.period, delay: self.authority.delay, on_time: self.period };
-        let late = !self.spec.predictor && self.spec.guards.eligibility;
-        mode.influence > 0.0 && (!late || timing.phase_factor(mode.frequency) >= ELIGIBLE)
-    }
-
-    /// Decides on the pulse of a cycle. `free` is true if the rigid motion needs no jets; `excess` is the deviation of
-    /// the rigid rate from its target, and `allowed` its largest values above and below (rad/s).
-    pub fn decide(
-        &mut self,
-        state_estimate: &StateEstimate,
-        free: bool,
-        (excess, allowed): (f64, [f64; 2]),
-    ) -> DampingStatus {
-        let StateEstimate { elastic: modes, elastic_is_trusted: trusted, .. } = state_estimate;
-        let threshold = self.authority.threshold;
-        let acted = || modes.iter().filter(|mode| self.acts_on(mode));
-        let (rate, influence) =
-            acted().fold((0.0, 0.0), |(rate, sum), mode| (rate + mode.rate, sum + mode.influence));
-        if rate.abs() > threshold {
-            self.latched = true;
-        } else if rate.abs() < self.spec.release.get() * threshold {
-            self.latched = false;
-        }
-        let resting = self.rest > 0;
-        self.rest = self.rest.saturating_sub(1);
-        let mut damped =
-            DampingStatus { rate, threshold, latched: self.latched, resting, on: 0.0, change: 0.0 };
-        if !free || !self.latched || resting || (self.spec.guards.residual && !*trusted) || influence <= 0.0 {
-            return damped;
-        }
-        let [plus, minus] = self.authority.accelerations;
-        let (sign, acceleration) = if rate > 0.0 { (-1.0, minus) } else { (1.0, plus) };
-        let demanded =
-            if self.spec.pulse_width { rate.abs() / (acceleration * influence) } else { self.period };
-        let on = self.authority.width.on_time(demanded, self.period);
-        let kicked = exceeds(excess + sign * acceleration * on, allowed);
-        if on > 0.0 && !(kicked && self.spec.guards.dead_zone) {
-            damped.on = sign * on;
-            damped.change = sign * acceleration * on;
-            self.watch(rate.abs());
-        }
-        damped
-    }
-
-    /// Records a cycle with a pulse; pauses damping if the mean of the window has not fallen enough.
-    fn watch(&mut self, rate: f64) {
-        let (sum, count, before) = &mut self.window;
-        *sum += rate;
-        *count += 1;
-        if *count < WINDOW {
-            return;
-        }
-        let mean = *sum / f64::from(WINDOW);
-        let has_no_effect = before.is_some_and(|before| mean > FALL * before);
-        self.window = (0.0, 0, (!has_no_effect).then_some(mean));
-        if has_no_effect && self.spec.guards.watchdog {
-            self.rest = REST;
+    /// Returns the law about an axis at the start, in cycles of `period` (s).
+    pub fn start(&self, period: f64, authority: &Authority) -> DampingLaw {
+        let [acceleration_plus, acceleration_minus] = authority.accelerations;
+        DampingLaw {
+            threshold: authority.threshold,
+            release: self.release.get(),
+            period,
+            delay: authority.delay,
+            acceleration_plus,
+            acceleration_minus,
+            quantum: authority.width.flight(),
+            has_pulse_width: self.pulse_width,
+            has_predictor: self.predictor,
+            guards_dead_zone: self.guards.dead_zone,
+            guards_eligibility: self.guards.eligibility,
+            guards_residual: self.guards.residual,
+            has_watchdog: self.guards.watchdog,
+            latched: false,
+            rest: 0,
+            window_sum: 0.0,
+            window_count: 0,
+            has_window_before: false,
+            window_before: 0.0,
         }
     }
-}
-
-/// Returns true if a rate deviates from its target by more than the limits above and below (rad/s).
-pub(super) fn exceeds(excess: f64, [above, below]: [f64; 2]) -> bool {
-    excess > above || -excess > below
 }

@@ -4,9 +4,10 @@
 //! integral of e, applies its filters, and adds the reference's acceleration. The accelerations about three axes are
 //! converted to one torque by the full inertia (\[Wie08\], quaternion feedback).
 
+use flexsc_flight::attitude_law::AttitudeFeedback;
+use flexsc_flight::biquad::BiquadFilter;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{asymmetry, tensor};
-use flexsc_numerics::biquad::Biquad;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
@@ -87,16 +88,10 @@ impl AttitudeLaw {
 
 impl LawSpec for AttitudeLaw {
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
-        let period = self.period.seconds();
         Box::new(AttitudeLawState {
-            filters: self.filters.iter().filter_map(|filter| filter.sampled(period).ok()).collect(),
-            bandwidth: self.bandwidth.get(),
-            damping: self.damping.get(),
-            rate_limit: self.rate_limit.map(Positive::get),
-            time: self.integral.map_or(f64::NAN, |integral| integral.time.get()),
+            law: self.flight_law(authority),
+            filters: self.flight_filters(),
             tuned: f64::NAN,
-            accelerations: authority.accelerations,
-            integral: 0.0,
             spec: self.clone(),
         })
     }
@@ -142,41 +137,45 @@ impl LawSpec for AttitudeLaw {
     }
 }
 
+impl AttitudeLaw {
+    /// Returns the law about an axis at the start, as flight code has it.
+    pub fn flight_law(&self, authority: &Authority) -> AttitudeFeedback {
+        let [acceleration_plus, acceleration_minus] = authority.accelerations;
+        AttitudeFeedback {
+            bandwidth: self.bandwidth.get(),
+            damping: self.damping.get(),
+            measure: self.error.flight(),
+            period: self.period.seconds(),
+            has_rate_limit: self.rate_limit.is_some(),
+            rate_limit: self.rate_limit.map_or(f64::INFINITY, Positive::get),
+            has_integral: self.integral.is_some(),
+            integral_time: self.integral.map_or(1.0, |integral| integral.time.get()),
+            integral_limit: self.integral.map_or(0.0, |integral| integral.limit.get()),
+            acceleration_plus,
+            acceleration_minus,
+            integral: 0.0,
+        }
+    }
+
+    /// Returns the filters at the start, as flight code has them.
+    pub fn flight_filters(&self) -> Vec<BiquadFilter> {
+        let period = self.period.seconds();
+        let filters = self.filters.iter().filter_map(|filter| filter.sampled(period).ok());
+        filters.map(|filter| filter.flight()).collect()
+    }
+}
+
 /// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
 struct AttitudeLawState {
-    spec: AttitudeLaw,
-    bandwidth: f64,
-    damping: f64,
-    rate_limit: Option<f64>,
-    /// Time constant of the integral (s).
-    time: f64,
+    law: AttitudeFeedback,
+    filters: Vec<BiquadFilter>,
     /// Value of the parameter tuned last.
     tuned: f64,
-    filters: Vec<Biquad>,
-    /// Largest accelerations in the positive and the negative direction (rad/s²).
-    accelerations: [f64; 2],
-    /// Integral of the error (rad s).
-    integral: f64,
+    spec: AttitudeLaw,
 }
 
 impl AttitudeLawState {
-    /// Returns the feedback acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and true if the rate
-    /// limit acts.
-    fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
-        let (wn, zeta) = (self.bandwidth, self.damping);
-        let integral_part = self.spec.integral.map_or(0.0, |_| self.integral / self.time);
-        let (angle, gain) = (error + integral_part, 2.0 * zeta * wn);
-        let (feedback, limited) = match self.rate_limit {
-            None => (-(wn * wn * angle + gain * rate), false),
-            Some(limit) => {
-                let target_rate = 0.5 * wn / zeta * angle;
-                (-gain * (rate + target_rate.clamp(-limit, limit)), target_rate.abs() > limit)
-            }
-        };
-        (self.filters.iter_mut().fold(feedback, |sample, filter| filter.filter(sample)), limited)
-    }
-
     /// Changes the frequency of a filter and keeps its state.
     fn retune(&mut self, key: &str, value: f64) {
         let period = self.spec.period.seconds();
@@ -185,17 +184,8 @@ impl AttitudeLawState {
             if numbers.is_some_and(|number| number.key == key)
                 && let Some(Ok(tuned)) = filter.at(value).map(|filter| filter.sampled(period))
             {
-                state.retune(&tuned);
+                *state = BiquadFilter { state: state.state, ..tuned.flight() };
             }
-        }
-    }
-
-    /// Integrates the error over a period, unless a limit acts and the integral would grow.
-    fn integrate(&mut self, error: f64, limited: bool) {
-        let Some(integral) = self.spec.integral else { return };
-        if !(limited && error * self.integral > 0.0) {
-            let limit = integral.limit.get();
-            self.integral = (self.integral + self.spec.period.seconds() * error).clamp(-limit, limit);
         }
     }
 }
@@ -210,12 +200,8 @@ impl Law for AttitudeLawState {
         goal: &Setpoint,
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
-        let (angle, rate) = goal.at(now);
-        let error = self.spec.error.error(state_estimate) - angle;
-        let (feedback, limited) = self.feedback(error, state_estimate.rate - rate);
-        let acceleration = feedback + goal.acceleration;
-        let [above, below] = self.accelerations;
-        self.integrate(error, limited || acceleration > above || -acceleration > below);
+        let (motion, reference) = (state_estimate.flight_motion(), goal.flight_reference(now));
+        let acceleration = self.law.step(&motion, &reference, &mut self.filters);
         ControlOutput {
             command: Command::Acceleration(acceleration),
             until: Some(now + self.spec.period),
@@ -238,10 +224,13 @@ impl Law for AttitudeLawState {
 
     fn tune(&mut self, key: &str, value: f64) {
         match key {
-            "bandwidth" => self.bandwidth = value,
-            "damping" => self.damping = value,
-            "integral.time" => self.time = value,
-            "rate_limit" => self.rate_limit = Some(value),
+            "bandwidth" => self.law.bandwidth = value,
+            "damping" => self.law.damping = value,
+            "integral.time" => self.law.integral_time = value,
+            "rate_limit" => {
+                self.law.has_rate_limit = true;
+                self.law.rate_limit = value;
+            }
             _ => self.retune(key, value),
         }
         self.tuned = value;

@@ -23,6 +23,23 @@ pub struct Controllers {
     until: Option<Instant>,
     /// Commands set from outside, which replace the laws' outputs.
     steered: Option<[Command; 3]>,
+    /// Decisions about single axes, if they are recorded.
+    trace: Option<Vec<AxisDecision>>,
+}
+
+/// Decision of the law about an axis, with what it read.
+#[derive(Clone, Debug)]
+pub struct AxisDecision {
+    /// Axis: 0, or 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
+    /// Cause of the decision.
+    pub cause: DecisionCause,
+    /// Setpoint.
+    pub goal: Setpoint,
+    /// State estimate.
+    pub estimate: StateEstimate,
+    /// Output.
+    pub output: ControlOutput,
 }
 
 impl Part for Controllers {
@@ -87,6 +104,16 @@ impl Controllers {
         }
     }
 
+    /// Begins to record the decisions about single axes.
+    pub fn begin_trace(&mut self) {
+        self.trace = Some(Vec::new());
+    }
+
+    /// Returns the decisions recorded since the last time.
+    pub fn take_trace(&mut self) -> Vec<AxisDecision> {
+        self.trace.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
     /// Sets commands that replace the laws' outputs from now on; the laws no longer decide.
     pub fn set_external(&mut self, commands: [Command; 3]) {
         if self.steered.replace(commands).is_none() {
@@ -137,8 +164,12 @@ impl Controllers {
                 Event::Guard { .. } | Event::Due { sampled: false } => timeout,
             };
             if let Some(cause) = cause {
-                held.hold =
-                    held.law.decide(now, cause, &goal(axis, held.law.reference_needs()), state_estimate);
+                let goal = goal(axis, held.law.reference_needs());
+                held.hold = held.law.decide(now, cause, &goal, state_estimate);
+                if let Some(trace) = &mut self.trace {
+                    let (estimate, output) = (state_estimate.clone(), held.hold);
+                    trace.push(AxisDecision { axis, cause, goal, estimate, output });
+                }
                 first = first.or(Some(cause));
             }
         }

@@ -1,6 +1,8 @@
 //! Conversion of the laws' commands to demands on the actuator: accelerations become torques J a + w x (J w + h).
 
+use flexsc_flight::torque_distribution;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::{to_matrix3, to_vector3};
 use nalgebra::Matrix3;
 
 use super::Command;
@@ -24,6 +26,11 @@ impl TorqueDistribution {
     /// Creates the distribution of a three-axis body with this inertia tensor (kg m²).
     pub fn for_three_axes(inertia: Matrix3<f64>) -> Self {
         Self { inertia }
+    }
+
+    /// Returns the inertia tensor in the model (kg m²).
+    pub fn inertia(&self) -> &Matrix3<f64> {
+        &self.inertia
     }
 
     /// Returns the demand about each axis, for the estimated motion of a body whose rotors store the momentum `stored`
@@ -63,7 +70,9 @@ impl TorqueDistribution {
             commands.map(
                 |command| if let Command::Acceleration(acceleration) = command { acceleration } else { 0.0 },
             );
-        let momentum = self.inertia * rate + Vector::from(stored);
-        (self.inertia * Vector::from(accelerations) + rate.cross(&momentum)).into()
+        let [acceleration, rate, stored] =
+            [Vector::from(accelerations), rate, Vector::from(stored)].map(|v| to_vector3(&v));
+        let torque = torque_distribution::torque(&to_matrix3(&self.inertia), &acceleration, &rate, &stored);
+        [torque.x, torque.y, torque.z]
     }
 }

@@ -1,7 +1,6 @@
 //! Measures of the attitude error: by the vector part of the quaternion, or by Rodrigues parameters.
 
-use std::f64::consts::PI;
-
+use flexsc_flight::error_measure::ErrorMeasure;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,16 +26,15 @@ impl AttitudeErrorMeasure {
 
     /// Returns the error about the axis of a state estimate (rad).
     pub fn error(self, state_estimate: &StateEstimate) -> f64 {
-        // Estimates about single axes may add up to more than half a turn.
-        let angle = state_estimate.total_angle.min(PI);
-        if angle == 0.0 {
-            return state_estimate.angle;
+        self.flight().error(state_estimate.angle, state_estimate.total_angle)
+    }
+
+    /// Returns the measure as flight code has it.
+    pub fn flight(self) -> ErrorMeasure {
+        match self {
+            Self::Quaternion => ErrorMeasure::Quaternion,
+            Self::Rodrigues => ErrorMeasure::Rodrigues,
         }
-        let length = match self {
-            Self::Quaternion => 2.0 * libm::sin(0.5 * angle),
-            Self::Rodrigues => 4.0 * libm::tan(0.25 * angle),
-        };
-        state_estimate.angle * (length / angle)
     }
 }
 

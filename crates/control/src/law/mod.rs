@@ -4,6 +4,7 @@ mod active_damping;
 mod attitude;
 mod attitude_profile;
 mod b_dot;
+mod command;
 mod controllers;
 mod direction_motion;
 mod direction_pair;
@@ -23,6 +24,7 @@ mod phase_plane;
 mod properties;
 mod relay;
 mod requirements;
+mod setpoint;
 mod shaped_slew;
 #[cfg(test)]
 mod slew_tests;
@@ -53,11 +55,12 @@ use flexsc_numerics::time::{Instant, Span};
 
 use crate::state_estimate::{DampingStatus, StateEstimate};
 
-pub use active_damping::{ActiveDamping, ActiveDampingState, DampingGuards};
+pub use active_damping::{ActiveDamping, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
 pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
-pub use controllers::{Controllers, Event};
+pub use command::{Command, CommandQuantity};
+pub use controllers::{AxisDecision, Controllers, Event};
 pub use direction_motion::{DirectionMotion, SkyDirection};
 pub use direction_pair::{DirectionPair, PointedAxis};
 pub use distribution::TorqueDistribution;
@@ -72,10 +75,11 @@ pub use output_quantity::OutputQuantity;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis_laws::PerAxisLaws;
 pub use phase_plane::{AttitudeTarget, PhasePlane};
-pub use relay::{Relay, RelaySides};
+pub use relay::{Relay, RelayRun, RelaySides};
+pub use setpoint::{ErrorBand, Setpoint};
 pub use stages::{Stage, Stages};
 pub use state_space::{StateSpace, TimeDomain};
-pub use switching_lines::{SwitchingLines, error_band};
+pub use switching_lines::{error_band, switching_lines};
 pub use target_frame::TargetFrame;
 pub use three_axis_law::{ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput};
 pub use torque_conditions::TorqueConditions;
@@ -187,7 +191,7 @@ pub trait Law: Part {
     fn enter_mode(&mut self, _mode: usize) {}
 
     /// Returns the relay law, if the law is one.
-    fn as_relay(&mut self) -> Option<&mut Relay> {
+    fn as_relay(&mut self) -> Option<&mut RelayRun> {
         None
     }
 
@@ -285,50 +289,6 @@ impl Default for LawKind {
     }
 }
 
-/// Setpoint of the body: from a time on, this angle, which changes at this rate.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Setpoint {
-    /// Start of the setpoint: the start of the run, or the end of the manoeuvre.
-    pub from: Instant,
-    /// Angle at the start of the setpoint (rad).
-    pub angle: f64,
-    /// Constant rate (rad/s).
-    pub rate: f64,
-    /// Feedforward acceleration (rad/s²), of a moving reference.
-    pub acceleration: f64,
-}
-
-impl Setpoint {
-    /// Returns angle (rad) and rate (rad/s) at an instant.
-    pub fn at(&self, now: Instant) -> (f64, f64) {
-        // Without a rate, the elapsed time has no effect.
-        let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
-        (self.angle + travel, self.rate)
-    }
-}
-
-/// Expected error band of a law about the setpoint.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum ErrorBand {
-    /// No error band.
-    None,
-    /// Half width of the band (rad).
-    Absolute(f64),
-    /// Half width of the band as a fraction of the initial distance from the setpoint.
-    Fraction(f64),
-}
-
-impl ErrorBand {
-    /// Returns the half width of the band (rad) for an initial distance (rad); NaN without a band.
-    pub fn band(self, distance: f64) -> f64 {
-        match self {
-            Self::None => f64::NAN,
-            Self::Absolute(band) => band,
-            Self::Fraction(part) => part * distance,
-        }
-    }
-}
-
 /// Cause of a decision.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum DecisionCause {
@@ -349,19 +309,6 @@ pub struct ControlOutput {
     pub until: Option<Instant>,
     /// Guards, of which any trip causes the next decision.
     pub guards: Guards,
-}
-
-/// Command about one axis.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Command {
-    /// Torque (N m), or reduced moment (rad/s²) on a body without inertia; for a wheel, units of its command.
-    Torque(f64),
-    /// Change of the rigid rate within the law's period (rad/s), which the actuator converts to a pulse.
-    Change(f64),
-    /// Angular acceleration (rad/s²); those about all axes are converted to a torque by the inertia.
-    Acceleration(f64),
-    /// Magnetic moment along the axis (A m²).
-    Moment(f64),
 }
 
 impl ControlOutput {

@@ -3,6 +3,8 @@
 //! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the
 //! dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
+use flexsc_flight::gain_schedule::{SchedulePoint, scheduled_gain};
+use flexsc_flight::pd::{ErrorDerivative, PdLaw};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use flexsc_numerics::time::{Instant, Span};
@@ -11,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable, TunedNumbers,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
@@ -43,14 +45,6 @@ pub struct Pd {
     /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "is_false")]
     pub track: bool,
-    #[serde(skip)]
-    active: bool,
-    /// Numbers as an adaptation has tuned them.
-    #[serde(skip)]
-    tuned: TunedNumbers,
-    /// Error that was fed back at the last sample.
-    #[serde(skip)]
-    last: Option<f64>,
 }
 
 /// How the derivative is taken.
@@ -111,25 +105,59 @@ impl Extra {
         match self {
             Self::Gain(gain) => gain.get(),
             Self::Schedule(points) => {
-                let after = points.partition_point(|point| point.frequency.get() <= frequency);
-                let point = |index: usize| (points[index].frequency.get(), points[index].gain.get());
-                match (after, points.len()) {
-                    (_, 0) => 0.0,
-                    (0, _) => point(0).1,
-                    (after, count) if after == count => point(count - 1).1,
-                    (after, _) => {
-                        let ((low, from), (high, to)) = (point(after - 1), point(after));
-                        from + (to - from) * (frequency - low) / (high - low)
-                    }
-                }
+                let points: Vec<SchedulePoint> = points.iter().map(ScheduledGain::flight).collect();
+                scheduled_gain(&points, frequency)
             }
+        }
+    }
+}
+
+impl ScheduledGain {
+    /// Returns the point as flight code has it.
+    pub fn flight(&self) -> SchedulePoint {
+        SchedulePoint { frequency: self.frequency.get(), gain: self.gain.get() }
+    }
+}
+
+impl Pd {
+    /// Returns the law at the start, as flight code has it.
+    pub fn flight_law(&self) -> PdLaw {
+        PdLaw {
+            k_p: self.k_p.get(),
+            k_d: self.k_d.get(),
+            limit: self.limit.map_or(f64::INFINITY, Positive::get),
+            period: self.period.seconds(),
+            measure: self.error.flight(),
+            derivative: match self.differentiation {
+                Differentiation::Exact => ErrorDerivative::Measured,
+                Differentiation::Difference => ErrorDerivative::Difference,
+                Differentiation::Raw => ErrorDerivative::Raw,
+            },
+            has_last: false,
+            last: 0.0,
+        }
+    }
+
+    /// Returns the points of the gain of the extra loop: one for a constant gain, none without that loop.
+    pub fn schedule(&self) -> Vec<SchedulePoint> {
+        match &self.extra {
+            None => Vec::new(),
+            Some(Extra::Gain(gain)) => vec![SchedulePoint { frequency: 0.0, gain: gain.get() }],
+            Some(Extra::Schedule(points)) => points.iter().map(ScheduledGain::flight).collect(),
         }
     }
 }
 
 impl LawSpec for Pd {
     fn start(&self, _: &Authority) -> Box<dyn Law> {
-        self.copy()
+        Box::new(PdRun {
+            law: self.flight_law(),
+            schedule: self.schedule(),
+            period: self.period,
+            tracks_manoeuvre: self.track,
+            active: false,
+            tuned: f64::NAN,
+        })
     }
 
     fn offers(&self) -> LawOffers {
@@ -165,9 +193,22 @@ impl LawSpec for Pd {
     }
 }
 
-impl Part for Pd {}
+/// PD law in a run.
+#[derive(Clone, Debug)]
+struct PdRun {
+    law: PdLaw,
+    /// Gain of the extra loop over the frequency of the dominant mode.
+    schedule: Vec<SchedulePoint>,
+    period: Span,
+    tracks_manoeuvre: bool,
+    active: bool,
+    /// Value of the parameter tuned last.
+    tuned: f64,
+}
 
-impl Law for Pd {
+impl Part for PdRun {}
+
+impl Law for PdRun {
     fn decide(
         &mut self,
         now: Instant,
@@ -179,33 +220,18 @@ impl Law for Pd {
         if !self.active {
             return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
         }
-        let (angle, rate) = goal.at(now);
-        let gain = self.extra.as_ref().map_or(0.0, |extra| {
-            self.tuned.value_or("extra.gain", extra.gain(state_estimate.dominant.frequency))
-        });
-        let error = self.error.error(state_estimate) - angle + gain * state_estimate.dominant.displacement;
-        let difference = error - self.last.unwrap_or(error);
-        let derivative = match self.differentiation {
-            Differentiation::Exact => state_estimate.rate - rate + gain * state_estimate.dominant.rate,
-            Differentiation::Difference => difference / self.period.seconds(),
-            Differentiation::Raw => difference,
-        };
-        self.last = Some(error);
-        let limit = self.tuned.value_or("limit", self.limit.map_or(f64::INFINITY, Positive::get));
-        let (k_p, k_d) =
-            (self.tuned.value_or("k_p", self.k_p.get()), self.tuned.value_or("k_d", self.k_d.get()));
-        let torque = -k_p * error - k_d * derivative;
-        let command = Command::Torque(torque.clamp(-limit, limit));
-        ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
+        let (motion, reference) = (state_estimate.flight_motion(), goal.flight_reference(now));
+        let torque = self.law.step(&motion, &reference, &self.schedule);
+        let until = Some(now + self.period);
+        ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
     }
 
     fn state(&self) -> LawState<'_> {
-        let phase = if self.active { Phase::Feedback } else { Phase::Open };
-        LawState::with_tuned(phase, self.tuned.last_set().unwrap_or(f64::NAN))
+        LawState::with_tuned(if self.active { Phase::Feedback } else { Phase::Open }, self.tuned)
     }
 
     fn reference_needs(&self) -> ReferenceNeeds {
-        ReferenceNeeds { tracks_manoeuvre: self.track, ..ReferenceNeeds::default() }
+        ReferenceNeeds { tracks_manoeuvre: self.tracks_manoeuvre, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
@@ -213,7 +239,14 @@ impl Law for Pd {
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        self.tuned.set(key, value, &["k_p", "k_d", "extra.gain", "limit"]);
+        match key {
+            "k_p" => self.law.k_p = value,
+            "k_d" => self.law.k_d = value,
+            "limit" => self.law.limit = value,
+            "extra.gain" => self.schedule.iter_mut().for_each(|point| point.gain = value),
+            _ => return,
+        }
+        self.tuned = value;
     }
 }
 

@@ -1,12 +1,9 @@
-//! The phase-plane law: about each axis a relay with hysteresis on the rate, and pulses of computed length.
-//!
-//! In \[Timakov14\] the station's jets follow a relay law with pulse-width modulation in the phase plane; its switching
-//! lines are not known. Here, about each axis, s is the rigid rate, queued changes included, minus the target rate of
-//! the [`SwitchingLines`] at the angle error. If it exceeds their tolerance, the jets fire against s for |s|/m, or for
-//! the whole cycle if that is longer, until it is within `switch_off` and half of the tolerance.
+//! The phase-plane law: settings, target attitudes, and the law in a run, whose arithmetic is that of
+//! [`flexsc_flight::phase_plane`].
 
 use std::f64::consts::TAU;
 
+use flexsc_flight::phase_plane::PhasePlaneLaw;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::from_yaw_pitch_roll;
 use flexsc_numerics::quantity::{Finite, Fraction, Positive, Time};
@@ -16,11 +13,11 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
+use super::active_damping::ActiveDamping;
+use super::switching_lines::switching_lines;
 use super::{
     Authority, Command, ControlOutput, DecisionCause, DirectionPair, EstimateNeeds, Frame, Guards, Law,
-    LawSpec, LawState, Phase, PointedAxis, ReferenceNeeds, Setpoint, SwitchingLines, TargetFrame,
-    TorqueConditions, Tunable,
+    LawSpec, LawState, Phase, PointedAxis, ReferenceNeeds, Setpoint, TargetFrame, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
@@ -232,15 +229,9 @@ impl LawSpec for PhasePlane {
 
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         Box::new(PhasePlaneState {
-            damping: self
-                .damping
-                .as_ref()
-                .map(|damping| ActiveDampingState::new(damping, self.period.seconds(), authority)),
-            lines: SwitchingLines::new(self, authority),
+            law: self.flight_law(authority),
             spec: self.clone(),
             authority: *authority,
-            firing: false,
-            damped: DampingStatus::default(),
             tuned: f64::NAN,
         })
     }
@@ -285,15 +276,31 @@ impl LawSpec for PhasePlane {
     }
 }
 
+impl PhasePlane {
+    /// Returns the law about an axis at the start, as flight code has it.
+    pub fn flight_law(&self, authority: &Authority) -> PhasePlaneLaw {
+        let [acceleration_plus, acceleration_minus] = authority.accelerations;
+        let period = self.period.seconds();
+        PhasePlaneLaw {
+            lines: switching_lines(self, authority),
+            period,
+            acceleration_plus,
+            acceleration_minus,
+            quantum: authority.width.flight(),
+            firing: false,
+            has_damping: self.damping.is_some(),
+            damping: self.damping.clone().unwrap_or_default().start(period, authority),
+            damped: DampingStatus::default(),
+        }
+    }
+}
+
 /// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
 struct PhasePlaneState {
+    law: PhasePlaneLaw,
     spec: PhasePlane,
     authority: Authority,
-    lines: SwitchingLines,
-    firing: bool,
-    damping: Option<ActiveDampingState>,
-    damped: DampingStatus,
     /// Value of the parameter tuned last.
     tuned: f64,
 }
@@ -312,18 +319,9 @@ impl Law for PhasePlaneState {
         if now < goal.from {
             return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
         }
-        let (angle, rate) = goal.at(now);
-        let angle = state_estimate.angle - angle;
-        let excess = state_estimate.rate - rate + state_estimate.queued_rate - self.lines.target_rate(angle);
-        // Tolerance on the side of the excess.
-        let allowed = self.lines.upper_tolerance(if excess < 0.0 { -angle } else { angle });
-        let mut change = self.relay(excess, allowed);
-        if let Some(damping) = &mut self.damping {
-            let allowed = self.lines.rate_tolerance(angle);
-            let free = !self.firing && !exceeds(excess, allowed);
-            self.damped = damping.decide(state_estimate, free, (excess, allowed));
-            change += self.damped.change;
-        }
+        let (motion, reference) = (state_estimate.flight_motion(), goal.flight_reference(now));
+        let (modes, is_trusted) = (&state_estimate.elastic, state_estimate.elastic_is_trusted);
+        let change = self.law.step(&motion, &reference, modes, is_trusted);
         ControlOutput {
             command: Command::Change(change),
             until: Some(now + self.spec.period),
@@ -332,13 +330,15 @@ impl Law for PhasePlaneState {
     }
 
     fn state(&self) -> LawState<'_> {
-        let phase = if self.firing { Phase::Firing } else { Phase::Coasting };
-        let damping = self.damping.as_ref().map(|_| &self.damped);
+        let phase = if self.law.firing { Phase::Firing } else { Phase::Coasting };
+        let damping = self.law.has_damping.then_some(&self.law.damped);
         LawState { phase, tuned: self.tuned, damping }
     }
 
     fn reference_needs(&self) -> ReferenceNeeds {
-        let lead_time = self.damping.as_ref().map_or(0.0, ActiveDampingState::lead_time);
+        let period = self.spec.period.seconds();
+        let damping = self.spec.damping.as_ref();
+        let lead_time = damping.map_or(0.0, |damping| damping.lead_time(period, &self.authority));
         ReferenceNeeds { lead_time, ..ReferenceNeeds::default() }
     }
 
@@ -369,22 +369,6 @@ impl PhasePlaneState {
     /// Recomputes the switching lines after a parameter was tuned.
     fn draw(&mut self, tuned: f64) {
         self.tuned = tuned;
-        self.lines = SwitchingLines::new(&self.spec, &self.authority);
-    }
-
-    fn relay(&mut self, excess: f64, allowed: f64) -> f64 {
-        if excess.abs() > allowed {
-            self.firing = true;
-        } else if excess.abs() < self.lines.release_level(allowed) {
-            self.firing = false;
-        }
-        if !self.firing {
-            return 0.0;
-        }
-        let acceleration = self.authority.accelerations[usize::from(excess > 0.0)];
-        // A change too small for a pulse ends the firing.
-        self.firing =
-            self.authority.width.on_time(excess.abs() / acceleration, self.spec.period.seconds()) > 0.0;
-        if self.firing { -excess } else { 0.0 }
+        self.law.lines = switching_lines(&self.spec, &self.authority);
     }
 }

@@ -1,20 +1,19 @@
-//! The relay law with dead zone, hysteresis and a timed brake (\[Silaev\], equation (2), corrected).
+//! The relay law with dead zone, hysteresis and a timed brake (\[Silaev\], equation (2), corrected): settings, and the law in
+//! a run, whose states and torques are those of [`flexsc_flight::relay`].
 //!
-//! Beyond a boundary of the dead zone a strong torque pushes back until the angle has returned by the
-//! hysteresis; then a strong brake lasts `k_t` times as long as the push; then a weak torque opposes the
-//! motion that is left, until a boundary is reached again. As printed, equation (2) cannot be executed: the
-//! brake's condition has the wrong sign, and its OR and AND clauses are a state machine's memory.
+//! As printed, equation (2) cannot be executed: the brake's condition has the wrong sign, and its OR and AND clauses are a state
+//! machine's memory.
 
-use flexsc_dynamics::guard::Guard;
+use flexsc_flight::relay::{RelayCommand, RelayEvent, RelayLaw, RelayState};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Fraction, NonNegative, Positive};
-use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time::Instant;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
-    LawState, Phase, Setpoint, TorqueConditions, Tunable, TunedNumbers,
+    LawState, Phase, Setpoint, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
@@ -45,13 +44,6 @@ pub struct Relay {
     /// Which boundaries of the dead zone push back.
     #[serde(default)]
     pub sides: RelaySides,
-    #[serde(skip)]
-    phase: Option<Phase>,
-    #[serde(skip)]
-    pushed_at: Instant,
-    /// Numbers as an adaptation has tuned them.
-    #[serde(skip)]
-    tuned: TunedNumbers,
 }
 
 /// Which boundaries of the dead zone push back.
@@ -104,7 +96,7 @@ impl Relay {
 
 impl LawSpec for Relay {
     fn start(&self, _: &Authority) -> Box<dyn Law> {
-        self.copy()
+        Box::new(RelayRun { law: self.flight_law() })
     }
 
     fn offers(&self) -> LawOffers {
@@ -164,9 +156,31 @@ impl LawSpec for Relay {
     }
 }
 
-impl Part for Relay {}
+impl Relay {
+    /// Returns the law at the start, as flight code has it.
+    pub fn flight_law(&self) -> RelayLaw {
+        RelayLaw {
+            dead_zone: self.dead_zone.get(),
+            hysteresis: self.hysteresis.get(),
+            strong: self.strong.get(),
+            weak: self.weak.get(),
+            braking_gain: self.k_t.get(),
+            is_two_sided: self.sides == RelaySides::Two,
+            state: RelayState::Start,
+            pushed_at: Instant::START.ticks(),
+        }
+    }
+}
 
-impl Law for Relay {
+/// Relay law in a run.
+#[derive(Clone, Debug)]
+pub struct RelayRun {
+    law: RelayLaw,
+}
+
+impl Part for RelayRun {}
+
+impl Law for RelayRun {
     fn decide(
         &mut self,
         now: Instant,
@@ -174,97 +188,78 @@ impl Law for Relay {
         _: &Setpoint,
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
-        let phase = self.next(cause, state_estimate);
-        if matches!(phase, Phase::PushFromRight | Phase::PushFromLeft) {
-            self.pushed_at = now;
-        }
-        self.phase = Some(phase);
-        self.hold(phase, now)
+        let event = match cause {
+            DecisionCause::Start => RelayEvent::Start,
+            DecisionCause::Guard(0) => RelayEvent::FirstGuard,
+            DecisionCause::Guard(_) => RelayEvent::SecondGuard,
+            DecisionCause::Timeout => RelayEvent::Timeout,
+        };
+        output(&self.law.decide(now.ticks(), event, state_estimate.angle))
     }
 
     fn state(&self) -> LawState<'_> {
         // Limit cycles are judged by k_t, whatever parameter is tuned.
-        let k_t = self.tuned.value_or("k_t", self.k_t.get());
-        LawState::with_tuned(self.phase.unwrap_or(Phase::Start), k_t)
+        LawState::with_tuned(phase(self.law.state), self.law.braking_gain)
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn as_relay(&mut self) -> Option<&mut Relay> {
+    fn as_relay(&mut self) -> Option<&mut RelayRun> {
         Some(self)
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        self.tuned.set(key, value, &["k_t", "dead_zone", "hysteresis", "strong", "weak"]);
+        match key {
+            "k_t" => self.law.braking_gain = value,
+            "dead_zone" => self.law.dead_zone = value,
+            "hysteresis" => self.law.hysteresis = value,
+            "strong" => self.law.strong = value,
+            "weak" => self.law.weak = value,
+            _ => {}
+        }
     }
 }
 
-impl Relay {
+impl RelayRun {
     /// Starts a state at `now`, after a push that started at `pushed`, and returns its output.
     pub fn set_state(&mut self, phase: Phase, now: Instant, pushed: Instant) -> ControlOutput {
-        (self.phase, self.pushed_at) = (Some(phase), pushed);
-        self.hold(phase, now)
-    }
-
-    /// Returns the state after an event.
-    fn next(&self, cause: DecisionCause, state_estimate: &StateEstimate) -> Phase {
-        match (self.phase.unwrap_or(Phase::Start), cause) {
-            (_, DecisionCause::Start) if self.right().holds(state_estimate.angle) => Phase::PushFromRight,
-            (_, DecisionCause::Start)
-                if self.sides == RelaySides::Two && self.left().holds(state_estimate.angle) =>
-            {
-                Phase::PushFromLeft
-            }
-            (_, DecisionCause::Start) => Phase::Start,
-            (Phase::PushFromRight, _) => Phase::BrakeFromRight,
-            (Phase::BrakeFromRight, _) => Phase::WeakRight,
-            (Phase::PushFromLeft, _) => Phase::BrakeFromLeft,
-            (Phase::BrakeFromLeft, _) => Phase::WeakLeft,
-            // The body leaves the dead zone through the right boundary, guard 0, or the left one.
-            (_, DecisionCause::Guard(0) | DecisionCause::Timeout) => Phase::PushFromRight,
-            (_, DecisionCause::Guard(_)) => Phase::PushFromLeft,
-        }
-    }
-
-    /// Returns the output of a state that starts at `now`.
-    fn hold(&self, phase: Phase, now: Instant) -> ControlOutput {
-        let back = self.zone() - self.tuned.value_or("hysteresis", self.hysteresis.get());
-        let strong = self.tuned.value_or("strong", self.strong.get());
-        let weak = self.tuned.value_or("weak", self.weak.get());
-        let k_t = self.tuned.value_or("k_t", self.k_t.get());
-        let until_guards =
-            |torque, guards| ControlOutput { command: Command::Torque(torque), until: None, guards };
-        let until_braked = |torque| {
-            let push_duration = now.since(self.pushed_at).seconds();
-            let until = Some(now + Span::from_seconds(k_t * push_duration));
-            ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
+        self.law.state = match phase {
+            Phase::PushFromRight => RelayState::PushFromRight,
+            Phase::BrakeFromRight => RelayState::BrakeFromRight,
+            Phase::WeakRight => RelayState::WeakRight,
+            Phase::PushFromLeft => RelayState::PushFromLeft,
+            Phase::BrakeFromLeft => RelayState::BrakeFromLeft,
+            Phase::WeakLeft => RelayState::WeakLeft,
+            _ => RelayState::Start,
         };
-        let boundaries = match self.sides {
-            RelaySides::Two => Guards::two(self.right(), self.left()),
-            RelaySides::One => Guards::one(self.right()),
-        };
-        match phase {
-            Phase::WeakLeft => until_guards(-weak, boundaries),
-            Phase::PushFromRight => until_guards(-strong, Guards::one(Guard::at_most(back))),
-            Phase::PushFromLeft => until_guards(strong, Guards::one(Guard::at_least(-back))),
-            Phase::BrakeFromRight => until_braked(strong),
-            Phase::BrakeFromLeft => until_braked(-strong),
-            // Start, and the state after the right brake.
-            _ => until_guards(weak, boundaries),
-        }
+        self.law.pushed_at = pushed.ticks();
+        output(&self.law.command(now.ticks()))
     }
+}
 
-    fn right(&self) -> Guard {
-        Guard::at_least(self.zone())
+/// Returns the state of a relay as logs name it.
+fn phase(state: RelayState) -> Phase {
+    match state {
+        RelayState::Start => Phase::Start,
+        RelayState::PushFromRight => Phase::PushFromRight,
+        RelayState::BrakeFromRight => Phase::BrakeFromRight,
+        RelayState::WeakRight => Phase::WeakRight,
+        RelayState::PushFromLeft => Phase::PushFromLeft,
+        RelayState::BrakeFromLeft => Phase::BrakeFromLeft,
+        RelayState::WeakLeft => Phase::WeakLeft,
     }
+}
 
-    fn left(&self) -> Guard {
-        Guard::at_most(-self.zone())
-    }
-
-    fn zone(&self) -> f64 {
-        self.tuned.value_or("dead_zone", self.dead_zone.get())
-    }
+/// Returns a command of the relay as the output of a law.
+fn output(command: &RelayCommand) -> ControlOutput {
+    let [first, second] = command.guards;
+    let guards = match command.guard_count {
+        0 => Guards::NONE,
+        1 => Guards::one(first),
+        _ => Guards::two(first, second),
+    };
+    let until = command.has_timeout.then_some(Instant::from_ticks(command.until));
+    ControlOutput { command: Command::Torque(command.torque), until, guards }
 }

@@ -133,7 +133,7 @@ impl SimdTask for BatchLoop<'_> {
             }
             let (mut next, mut due) = ([Instant::START; 16], [false; 16]);
             for (lane, run) in runs.iter().enumerate() {
-                (next[lane], due[lane]) = run.simulation.next_event();
+                (next[lane], due[lane]) = run.simulation.next_stop();
                 if run.continues {
                     spans[lane] = next[lane].since(run.segment_start).seconds();
                 }

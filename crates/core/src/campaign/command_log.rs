@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use flexsc_control::law::Command;
+use flexsc_control::law::{Command, CommandQuantity};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Attachment, COMMANDS, Provenance, Record};
 
@@ -10,18 +10,20 @@ use super::{Campaign, CampaignRun};
 use crate::metrics::{Metrics, MetricsCollector};
 use crate::sim::{Simulation, SimulationError};
 
-const HEADER: &str = "time_whole_s,time_fs,x,y,z";
+/// Columns of commands that are all torques, and of others.
+const TORQUES: &str = "time_whole_s,time_fs,x,y,z";
+const QUANTITIES: &str = "time_whole_s,time_fs,x,y,z,x_quantity,y_quantity,z_quantity";
 
-/// Log of the commands about each axis ([`Command::Torque`]) and of the instants at which they were given, in order.
+/// Log of the commands about each axis and of the instants at which they were given, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct CommandLog(pub(super) Vec<(Instant, [f64; 3])>);
+pub struct CommandLog(pub(super) Vec<(Instant, [Command; 3])>);
 
 impl CommandLog {
     /// Appends a command given at `now`; it replaces one of the same instant, which was never executed.
-    pub fn push(&mut self, now: Instant, values: [f64; 3]) {
+    pub fn push(&mut self, now: Instant, commands: [Command; 3]) {
         match self.0.last_mut() {
-            Some((time, last)) if *time == now => *last = values,
-            _ => self.0.push((now, values)),
+            Some((time, last)) if *time == now => *last = commands,
+            _ => self.0.push((now, commands)),
         }
     }
 
@@ -40,9 +42,9 @@ impl CommandLog {
         until: Instant,
         record: &mut impl Record,
     ) -> Result<(), SimulationError> {
-        for (time, values) in self.0.iter().take_while(|(time, _)| *time <= until) {
+        for (time, commands) in self.0.iter().take_while(|(time, _)| *time <= until) {
             simulation.run_up_to(*time, record)?;
-            simulation.set_external_command(values.map(Command::Torque));
+            simulation.set_external_command(*commands);
         }
         simulation.run_until(until, record)
     }
@@ -77,19 +79,33 @@ impl CommandLog {
     pub fn provenance(&self, run: &CampaignRun) -> Provenance {
         let mut provenance = Campaign::provenance(run);
         if !self.is_empty() {
-            let data = self.to_csv().into_bytes();
-            provenance.attachments.push(Attachment { name: COMMANDS, media_type: "text/csv", data });
+            provenance.attachments.push(self.attachment());
         }
         provenance
     }
 
-    /// Returns the commands as text: whole seconds, femtoseconds past them, and the values about x, y and z.
+    /// Returns the file with the commands within the log of the run.
+    pub fn attachment(&self) -> Attachment {
+        Attachment { name: COMMANDS, media_type: "text/csv", data: self.to_csv().into_bytes() }
+    }
+
+    /// Returns the commands as text: whole seconds, femtoseconds past them, and the values about x, y and z; with their
+    /// quantities, unless all are torques.
     pub fn to_csv(&self) -> String {
-        let mut text = format!("{HEADER}\n");
-        for (time, [x, y, z]) in &self.0 {
+        let all = self.0.iter().flat_map(|(_, commands)| commands);
+        let are_torques = all.map(Command::quantity).all(|quantity| quantity == CommandQuantity::Torque);
+        let mut text = format!("{}\n", if are_torques { TORQUES } else { QUANTITIES });
+        for (time, commands) in &self.0 {
             let (whole, part) = time.parts();
+            let [x, y, z] = commands.map(|command| command.value());
             // Writing to a string cannot fail.
-            let _ = writeln!(text, "{whole},{part},{x:?},{y:?},{z:?}");
+            let _ = write!(text, "{whole},{part},{x:?},{y:?},{z:?}");
+            if !are_torques {
+                for command in commands {
+                    let _ = write!(text, ",{}", command.quantity().label());
+                }
+            }
+            text.push('\n');
         }
         text
     }
@@ -97,9 +113,11 @@ impl CommandLog {
     /// Parses the text of [`Self::to_csv`]; returns `None` if it is not in this form.
     pub fn parse(text: &str) -> Option<Self> {
         let mut lines = text.lines();
-        if lines.next()? != HEADER {
-            return None;
-        }
+        let has_quantities = match lines.next()? {
+            TORQUES => false,
+            QUANTITIES => true,
+            _ => return None,
+        };
         let mut all = Self::default();
         for line in lines {
             let mut cells = line.split(',');
@@ -109,13 +127,19 @@ impl CommandLog {
             for value in &mut values {
                 *value = cells.next()?.parse().ok().filter(|value: &f64| value.is_finite())?;
             }
+            let mut commands = values.map(Command::Torque);
+            if has_quantities {
+                for (command, value) in commands.iter_mut().zip(values) {
+                    *command = CommandQuantity::from_label(cells.next()?)?.command(value);
+                }
+            }
             let time = Instant::from_parts(seconds, part);
             let is_instant = seconds < 1 << 60 && part < 1_000_000_000_000_000;
             let is_later = all.0.last().is_none_or(|(last, _)| *last < time);
             if !is_instant || !is_later || cells.next().is_some() {
                 return None;
             }
-            all.0.push((time, values));
+            all.0.push((time, commands));
         }
         Some(all)
     }
@@ -135,10 +159,10 @@ mod tests {
 
     fn example_log() -> CommandLog {
         let mut log = CommandLog::default();
-        log.push(at(1.0), [9.0, 0.0, 0.0]);
+        log.push(at(1.0), [9.0, 0.0, 0.0].map(Command::Torque));
         // A command that was never executed is not kept.
-        log.push(at(1.0), [0.5, 0.0, 0.0]);
-        log.push(at(3.0), [-0.1, 0.0, 0.0]);
+        log.push(at(1.0), [0.5, 0.0, 0.0].map(Command::Torque));
+        log.push(at(3.0), [-0.1, 0.0, 0.0].map(Command::Torque));
         log
     }
 
@@ -147,13 +171,28 @@ mod tests {
         assert_eq!(CommandLog::parse(&example_log().to_csv()), Some(example_log()));
         assert_eq!(CommandLog::parse(&CommandLog::default().to_csv()), Some(CommandLog::default()));
         for wrong in ["", "1,0,0,0", "1,0,0,0,inf", "2,0,0,0,0\n1,0,0,0,0", "0,1000000000000000,0,0,0"] {
-            assert_eq!(CommandLog::parse(&format!("{HEADER}\n{wrong}x")), None, "{wrong}");
+            assert_eq!(CommandLog::parse(&format!("{TORQUES}\n{wrong}x")), None, "{wrong}");
             assert_eq!(
-                CommandLog::parse(&format!("{HEADER}\n{wrong}")).is_none(),
+                CommandLog::parse(&format!("{TORQUES}\n{wrong}")).is_none(),
                 !wrong.is_empty(),
                 "{wrong}"
             );
         }
+    }
+
+    #[test]
+    fn commands_of_several_quantities_are_read_back() {
+        let mut log = example_log();
+        assert!(!log.to_csv().contains("torque"));
+        let mixed = [Command::Acceleration(1e-3), Command::Change(-2e-4), Command::Moment(5.0)];
+        log.push(at(4.0), mixed);
+        let text = log.to_csv();
+        assert!(
+            text.starts_with(QUANTITIES) && text.contains(",acceleration,rate_change,moment\n"),
+            "{text}"
+        );
+        assert_eq!(CommandLog::parse(&text), Some(log));
+        assert_eq!(CommandLog::parse(&text.replace("moment", "force")), None);
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! Motion of a repeated run at instants chosen by the caller, with snapshots from which later samples go on.
 
-use flexsc_control::law::Command;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 
@@ -39,9 +38,9 @@ impl Snapshot {
         is_due: impl Fn(Instant) -> bool,
         stop: &mut impl Record,
     ) -> Result<(), SimulationError> {
-        while let Some((changed_at, values)) = commands.0.get(self.given).filter(|(at, _)| is_due(*at)) {
+        while let Some((changed_at, given)) = commands.0.get(self.given).filter(|(at, _)| is_due(*at)) {
             self.simulation.run_up_to(*changed_at, stop)?;
-            self.simulation.set_external_command(values.map(Command::Torque));
+            self.simulation.set_external_command(*given);
             self.given += 1;
         }
         Ok(())

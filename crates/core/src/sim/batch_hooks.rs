@@ -26,7 +26,7 @@ impl Simulation {
     }
 
     /// Returns the next instant at which anything is due, at most the end, and whether that is within the run.
-    pub(crate) fn next_event(&self) -> (Instant, bool) {
+    pub(crate) fn next_stop(&self) -> (Instant, bool) {
         let (next, end) = (self.next_due(), self.clock.end());
         (next.min(end), next <= end)
     }

@@ -2,14 +2,16 @@
 
 use flexsc_control::custom::PartError;
 use flexsc_control::estimator::ObjectiveWindow;
-use flexsc_control::law::{Command, Controllers, DecisionCause, Event, Phase, ReferenceNeeds};
+use flexsc_control::law::{AxisDecision, Command, Controllers, DecisionCause, Event, Phase, ReferenceNeeds};
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
 use flexsc_dynamics::guard::GuardCrossing;
+use flexsc_flight::axis_motion::total_angle;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, Report};
 
+use super::control_trace::ControlCall;
 use super::guidance::Guidance;
 use super::loads::Loads;
 use super::objective::AdaptationObjective;
@@ -28,6 +30,8 @@ pub struct ControlLaws {
     pub external_command_pending: bool,
     /// Objective of the adaptation that tunes the laws.
     pub objective: AdaptationObjective,
+    /// Calls of the control system, if they are recorded.
+    pub trace: Option<Vec<ControlCall>>,
 }
 
 /// Decision of the laws at one instant.
@@ -60,7 +64,19 @@ impl ControlLaws {
             pending_event: None,
             external_command_pending: false,
             objective: AdaptationObjective::new(scenario, seed),
+            trace: None,
         }
+    }
+
+    /// Begins to record the calls of the control system.
+    pub fn begin_trace(&mut self) {
+        self.trace = Some(Vec::new());
+        self.laws.begin_trace();
+    }
+
+    /// Returns the decisions about each axis since the last time, if they are recorded.
+    pub fn take_decisions(&mut self) -> Vec<AxisDecision> {
+        self.laws.take_trace()
     }
 
     /// Returns the next instant at which a law decides by itself, a guard trips, or a window of the objective closes.
@@ -100,11 +116,9 @@ impl ControlLaws {
         if self.laws.is_external() {
             return None;
         }
-        if estimates.len() > 1 {
-            let square: f64 = estimates.iter().map(|estimate| estimate.angle * estimate.angle).sum();
-            for estimate in estimates.iter_mut() {
-                estimate.total_angle = f64::sqrt(square);
-            }
+        if let [roll, pitch, yaw] = estimates {
+            let total = total_angle(roll.angle, pitch.angle, yaw.angle);
+            estimates.iter_mut().for_each(|estimate| estimate.total_angle = total);
         }
         let led = guidance.reference_motion(now, estimates);
         let setpoint =

@@ -134,13 +134,26 @@ impl Estimation {
     /// Predicts the estimates from the last sample to `now`, at which a law decides; a continuous sensor gives the true
     /// state.
     pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
+        let mut estimates = std::mem::take(&mut self.estimates);
+        self.predict_into(now, plant, sensors, &mut estimates);
+        self.estimates = estimates;
+    }
+
+    /// Predicts copies of the estimates to `now`, as [`Self::predict`] does.
+    pub fn predict_into(
+        &self,
+        now: Instant,
+        plant: &Plant,
+        sensors: &Sensors,
+        estimates: &mut [StateEstimate],
+    ) {
         if sensors.is_continuous() {
             let (truth, angles) = (plant.truth(), plant.sensed_angles(&self.origin));
-            for (axis, estimate) in self.estimates.iter_mut().enumerate() {
+            for (axis, estimate) in estimates.iter_mut().enumerate() {
                 (estimate.angle, estimate.rate) = (angles[axis], truth.rate[axis]);
             }
         } else {
-            self.estimator.predict(now, &self.origin, &mut self.estimates);
+            self.estimator.predict(now, &self.origin, estimates);
         }
     }
 

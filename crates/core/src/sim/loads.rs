@@ -29,6 +29,8 @@ pub struct Loads {
     /// Next instant at which a load changes without a command.
     pub due: Option<Instant>,
     wrench: Wrench,
+    /// External torque about each axis (N m).
+    external_torque: [f64; 3],
     /// Torques during the current motion segment of a one-axis body.
     pub applied: AppliedTorque,
 }
@@ -59,10 +61,17 @@ impl Loads {
             next_change: None,
             due: None,
             wrench: Wrench::default(),
+            external_torque: [0.0; 3],
             applied: AppliedTorque::default(),
         };
         loads.find_next_change();
         loads
+    }
+
+    /// Sets the external torque about each axis (N m), which acts from `now` on.
+    pub fn set_external_torque(&mut self, now: Instant, torque: [f64; 3]) {
+        self.external_torque = torque;
+        self.due = Some(now);
     }
 
     /// Finds the next instant at which a load changes without a command.
@@ -129,6 +138,12 @@ impl Loads {
     pub fn wrench(&mut self, now: Instant) -> &Wrench {
         self.wrench.clear();
         self.actuator.apply(now, &mut self.wrench);
+        for (hub, external) in self.wrench.hub.iter_mut().zip(self.external_torque) {
+            // Without an external torque the sum keeps its bits, the sign of zero included.
+            if external != 0.0 {
+                *hub += external;
+            }
+        }
         if !self.disturbances.is_empty() {
             for axis in 0..3 {
                 self.wrench.hub[axis] +=
@@ -158,9 +173,10 @@ impl Loads {
         wrench
     }
 
-    /// Returns the torque of all disturbances about an axis (N m).
+    /// Returns the torque of all disturbances about an axis (N m), the external one included.
     pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
-        self.sum_disturbances(|disturbance| disturbance.torque(now, axis))
+        let own = self.sum_disturbances(|disturbance| disturbance.torque(now, axis));
+        if self.external_torque[axis] == 0.0 { own } else { own + self.external_torque[axis] }
     }
 
     fn sum_disturbances(&self, of: impl Fn(&DisturbanceState) -> f64) -> f64 {

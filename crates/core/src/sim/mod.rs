@@ -7,6 +7,7 @@
 mod batch_hooks;
 mod blinding;
 mod clock;
+mod control_trace;
 mod controllers;
 mod error;
 mod estimation;
@@ -25,6 +26,7 @@ mod sensor_schedule;
 mod sensors;
 mod start_finish;
 mod stepping;
+mod telemetry;
 
 use flexsc_control::estimator::AdaptationRun;
 use flexsc_control::law::Event;
@@ -36,10 +38,12 @@ use flexsc_record::Record;
 use crate::relay_setup::{self, RunSetup};
 use crate::scenario::Scenario;
 
+pub use control_trace::{ControlCall, ControlDecision, SensorSample};
 pub use error::SimulationError;
 pub use observation::{ObservationField, ObservationGroup};
 pub(crate) use plant::AppliedTorque;
 pub use stepping::StopAt;
+pub use telemetry::{SensorTelemetry, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor};
 
 use clock::Clock;
 use controllers::ControlLaws;
@@ -216,6 +220,7 @@ impl Simulation {
         let measured = self.sensors.sample(now, &self.plant, self.estimation.origin());
         let lead_time = self.laws.lead_time();
         self.estimation.update(now, measured, &self.sensors, &self.plant, &self.loads, lead_time);
+        self.trace_sample(now);
         let (run, recorder) = self.view();
         Ok(recorder.record_estimates(&run, record)?)
     }
@@ -243,6 +248,7 @@ impl Simulation {
         self.loads.set_magnetic_field(self.clock.now(), self.sensors.magnetic_field(truth));
         let (outputs, estimates) = (self.laws.outputs(), &self.estimation.estimates);
         self.loads.command(self.clock.now(), outputs, estimates, truth.rigid);
+        self.trace_decision(self.clock.now());
     }
 
     /// Begins a motion segment under the loads from the current instant on, and finds its first guard crossing.

@@ -229,6 +229,18 @@ impl Sensors {
         now.since(self.last_readings[sensor])
     }
 
+    /// Returns the last reading of a sensor and the instant at which it became available; a continuous sensor is read at
+    /// `now`, at which the plant has to be evaluated.
+    pub fn latest(&self, index: usize, now: Instant, plant: &Plant) -> Option<(Instant, Reading)> {
+        let due = self.schedules.get(index)?;
+        if due.period.is_none() {
+            let reading = due.sensor.copy().read(now, &plant.truth_at_sensor(index), None)?;
+            return Some((now, reading));
+        }
+        let reading = self.new_readings[index].or(due.last)?;
+        Some((self.last_readings[index], reading))
+    }
+
     /// Returns the last measured magnetic field in body axes (T).
     pub fn measured_field(&self) -> Option<Vector> {
         self.field.map(|(_, field)| field)

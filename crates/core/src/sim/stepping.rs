@@ -18,6 +18,8 @@ pub enum StopAt {
     Switching,
     /// A window of the envelope's mean has ended; the laws have not responded yet.
     Window,
+    /// Any of the events of [`Simulation::next_event`], or a wheel sticks or slips; the laws have not responded yet.
+    Any,
 }
 
 impl Simulation {
@@ -37,6 +39,78 @@ impl Simulation {
     /// ```
     pub fn set_external_command(&mut self, commands: [Command; 3]) {
         self.laws.set_external(commands);
+    }
+
+    /// Sets an external torque about each axis of the body (N m; rad/s² on a body without inertia), which acts in
+    /// addition to all other loads from the current instant until the next call.
+    ///
+    /// ```
+    /// use flexsc_core::{Scenario, Simulation, numerics::time::Instant};
+    /// # use flexsc_core::numerics::time::Span;
+    ///
+    /// let text = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
+    /// let mut simulation = Simulation::new(&Scenario::parse("pushed.toml", text)?, 0);
+    /// simulation.set_external_torque([0.5, 0.0, 0.0]);
+    /// simulation.run_up_to(Instant::START + Span::from_seconds(4.0), &mut ())?;
+    /// assert_eq!(simulation.state().map(|state| state.rigid_rate), Some(1.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn set_external_torque(&mut self, torque: [f64; 3]) {
+        self.loads.set_external_torque(self.clock.now(), torque);
+    }
+
+    /// Returns the torque commanded about each axis by the law or from outside (N m); for a wheel, its gain times the
+    /// command.
+    pub fn commanded_torque(&self) -> [f64; 3] {
+        [0, 1, 2].map(
+            |axis| if axis < self.axis_count() { self.loads.actuator.effort(axis).demanded } else { 0.0 },
+        )
+    }
+
+    /// Returns the number of axes.
+    fn axis_count(&self) -> usize {
+        self.estimation.axis_count()
+    }
+
+    /// Returns the next instant at which a sensor samples, a law decides, a mode of operation is tested, a load changes
+    /// or a window closes, as far as it is known now: a wheel in bearings may stick or slip earlier. Instants at which
+    /// only rows are due are no events.
+    pub fn next_event(&self) -> Option<Instant> {
+        let due = [
+            self.laws.next_event(),
+            self.operation.due(),
+            self.loads.due,
+            self.sensors.next_event(),
+            self.estimation.window_closes(),
+        ];
+        due.into_iter().flatten().min()
+    }
+
+    /// Returns the next instant at which a sensor samples, or an exposure opens or closes; `None` with a continuous sensor.
+    pub fn next_sample(&self) -> Option<Instant> {
+        self.sensors.next_event()
+    }
+
+    /// Returns the end of the run.
+    pub fn end(&self) -> Instant {
+        self.clock.end()
+    }
+
+    /// Completes the instant at which the run was stopped: the response to its event, and everything else that is due.
+    /// Returns true if a law has switched.
+    ///
+    /// # Errors
+    /// Fails like [`Simulation::run_until`].
+    pub fn complete_instant(&mut self, record: &mut dyn Record) -> Result<bool, SimulationError> {
+        self.open(record)?;
+        let (now, axes) = (self.clock.now(), self.axis_count());
+        let before = self.laws.phases(axes);
+        self.resume(None, record)?;
+        while self.advance_to_next(now, record)? {
+            self.process_instant(record)?;
+        }
+        self.finish(record)?;
+        Ok(self.laws.phases(axes) != before)
     }
 
     /// Returns the current instant of the run.
@@ -115,11 +189,13 @@ impl Simulation {
         while !came && self.advance_to_next(until, record)? {
             let now = self.clock.now();
             let closes = self.estimation.window_closes() == Some(now);
+            let is_event = self.next_event() == Some(now) || self.clock.has_bearing_event();
             let event = self.sense(record)?;
             came = match occasion {
                 Some(StopAt::Sample) => event == Event::Due { sampled: true },
                 Some(StopAt::Decision) => self.must_decide(event),
                 Some(StopAt::Window) => closes,
+                Some(StopAt::Any) => is_event,
                 Some(StopAt::Switching) | None => false,
             };
             self.laws.pending_event = Some(event);
@@ -150,7 +226,7 @@ impl Simulation {
         let Some(event) = event.or(is_external.then_some(Event::Due { sampled: false })) else {
             return Ok(false);
         };
-        let before = self.laws.phases(self.estimation.axis_count());
+        let before = self.laws.phases(self.axis_count());
         if event == Event::Start {
             self.begin(record)?;
             return Ok(false);
@@ -160,7 +236,7 @@ impl Simulation {
             self.estimation.update_angle_origin(self.clock.now(), &self.guidance);
         }
         self.respond(event, record)?;
-        let after = self.laws.phases(self.estimation.axis_count());
+        let after = self.laws.phases(self.axis_count());
         Ok(occasion == Some(StopAt::Switching) && after != before)
     }
 }

@@ -5,6 +5,7 @@ import signal
 import sys
 
 from flexsc import _native
+from flexsc._fmi_library import fmi_library
 
 
 def main() -> int:
@@ -17,6 +18,8 @@ def main() -> int:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     # `--scheduler` starts Python again.
     os.environ.setdefault("FLEXSC_PYTHON", sys.executable)
+    # The engine looks beside the program, which is Python here.
+    os.environ.setdefault("FLEXSC_FMI_LIBRARY", str(fmi_library()))
     return _native.main(["flexsc", *sys.argv[1:]])
 
 

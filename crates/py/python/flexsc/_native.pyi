@@ -50,6 +50,7 @@ __all__ = [
     "estimate_json",
     "examples",
     "exponential",
+    "export_fmu",
     "export_log",
     "export_run",
     "gain_regions_json",
@@ -1267,6 +1268,7 @@ class Simulator:
     @property
     def fields(self) -> list[tuple[str, str, str, int | None]]: ...
     def look(self) -> npt.NDArray[np.float64]: ...
+    def estimated_attitude(self) -> list[float] | None: ...
     def steer(self, values: npt.NDArray[np.float64]) -> None: ...
     def step(self, dt: float) -> None: ...
     def run_until(self, time: float) -> None: ...
@@ -1344,6 +1346,13 @@ def campaign_figures(
 def directory_figures(
     path: str | os.PathLike[str], kind: str | None, metrics: list[str]
 ) -> list[tuple[str, Figure]]: ...
+def export_fmu(
+    scenario: Scenario,
+    path: str | os.PathLike[str],
+    fmi: int,
+    part: str,
+    library: str | os.PathLike[str],
+) -> int: ...
 def export_log(log: Log, options: ExportOptions, path: str | os.PathLike[str]) -> int: ...
 def export_run(
     scenario: Scenario,

@@ -15,6 +15,8 @@ from flexsc._scenario_analysis import ScenarioAnalysis
 from flexsc._values import arrays, run_number, toml
 
 if TYPE_CHECKING:
+    import os
+
     from flexsc._part import Part
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
 
@@ -297,6 +299,37 @@ class Scenario(ScenarioAnalysis):
             ValueError: The estimate exceeds these limits, and `yes` is not given.
         """
         return self._simulate(run_number(run), log, yes)
+
+    def export_fmu(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        fmi: Literal[2, 3] = 3,
+        part: Literal["loop", "plant", "controller"] = "loop",
+        library: str | os.PathLike[str] | None = None,
+    ) -> int:
+        """Write the scenario as an FMU, which other simulators import, and return the number of bytes.
+
+        Args:
+            path: The file, which is replaced if it exists.
+            fmi: The version of the standard: 3, with exact events, or 2.
+            part: `loop`, the closed loop; or `plant`, the spacecraft with its sensors and actuators, whose
+                commands are inputs. A `controller` alone is refused.
+            library: The library of FMUs; if omitted, that of this package.
+
+        >>> import flexsc, pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     size = scenario.export_fmu(pathlib.Path(out) / "relay.fmu")
+        ...     size == (pathlib.Path(out) / "relay.fmu").stat().st_size
+        True
+
+        Raises:
+            ValueError: The scenario has parts written in Python, or the library is not there.
+        """
+        from flexsc._fmi_library import fmi_library
+
+        return engine.export_fmu(self._native, path, fmi, part, library or fmi_library())
 
     def _simulate(
         self, run: int, log: Detail, yes: bool, stepped: engine.Commands | None = None, until: float = inf

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, cast
 from flexsc._scenario_file import ScenarioFile
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import numpy.typing as npt
 
     from flexsc._budget import PointingBudget
@@ -265,3 +267,35 @@ class ScenarioAnalysis(ScenarioFile):
         from flexsc._report import report
 
         return report(self._scenario, path, runs, force)
+
+    def export_c(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        name: str | None = None,
+        calls: int = 20_000,
+        force: bool = False,
+    ) -> list[Path]:
+        """Write the control system as C99 for a flight computer, and return its files: `flexsc export-c`.
+
+        The C is translated from the Rust code that runs call. A driver replays the calls of a run and compares
+        their outputs by bits: `make check` in the directory.
+
+        Args:
+            path: The directory.
+            name: Prefix of all names in C; None for the scenario's name.
+            calls: Largest number of calls of the run that are recorded as vectors.
+            force: Whether files of other content are replaced.
+
+        >>> import flexsc, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     files = flexsc.Scenario.example("relay-sampled").export_c(folder, name="relay")
+        ...     [file.name for file in files if file.suffix in (".c", ".h")]
+        ['start.c', 'driver.c', 'relay.c', 'relay.h']
+
+        Raises:
+            ValueError: The law has no code for flight, or a file exists with other content.
+        """
+        from flexsc._flight_code import export_c
+
+        return export_c(self._scenario, path, name, calls, force)

@@ -34,7 +34,7 @@ class Simulators(Copies):
         runs: The number of runs, or the run number of each.
         jobs: Number of threads, at most 1024; 0, or if omitted, one per core.
         seed: Seed that replaces the scenario's.
-        keep_commands: Whether copies keep their commands, 40 bytes each, so that `sims[i].metrics`,
+        keep_commands: Whether copies keep their commands, 64 bytes each, so that `sims[i].metrics`,
             `sims[i].result()` and `sims[i].to_mcap(path)` can repeat their runs.
 
     Raises:

@@ -1,5 +1,6 @@
 //! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
 
+use flexsc_flight::attitude_estimator::{gyro_exposure, observation_exposure};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Instant;
@@ -54,14 +55,7 @@ impl AttitudeFilterRun {
 
     /// Returns the filter's initial state for the true attitude at the start.
     fn prior(&mut self, attitude: &Quaternion<f64>) -> AttitudeFilterState {
-        let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
-        let mut off = [Vector::zeros(); 2];
-        if self.spec.prior == Prior::Drawn {
-            for (off, deviation) in off.iter_mut().zip(deviations) {
-                *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
-            }
-        }
-        AttitudeFilterState::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations)
+        initial_state(&self.spec, &self.setting, &mut self.draws, attitude)
     }
 
     /// Propagates and corrects the filter with the readings of this sample.
@@ -73,9 +67,7 @@ impl AttitudeFilterRun {
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Gyro { .. }))
         {
             if let (Some(rate), SensorRole::Gyro { latency }) = (reading.rate, role) {
-                // Before the first latency has elapsed, the rate is that at the start.
-                let exposed =
-                    if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
+                let exposed = Instant::from_ticks(gyro_exposure(now.ticks(), latency.ticks()));
                 self.rate = rate.into();
                 last = history.add_gyro(exposed, self.rate).or(last);
                 self.since = exposed;
@@ -85,8 +77,7 @@ impl AttitudeFilterRun {
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
-            // A measurement at the start has no latency.
-            let exposed = if now == Instant::START { now } else { now.before(*latency) };
+            let exposed = Instant::from_ticks(observation_exposure(now.ticks(), latency.ticks()));
             let measured = match (reading.sight, reading.at) {
                 (Some(measurement), _) => {
                     AttitudeMeasurement::Vector(self.setting.with_reference(measurement, exposed))
@@ -130,6 +121,23 @@ impl AttitudeFilterRun {
     }
 }
 
+/// Returns the initial state of a filter for the true attitude at the start; `draws` supplies a drawn prior.
+pub fn initial_state(
+    spec: &AttitudeFilter,
+    setting: &FilterSetup,
+    draws: &mut Stream,
+    attitude: &Quaternion<f64>,
+) -> AttitudeFilterState {
+    let deviations = [spec.initial.angle.get(), spec.initial.bias.get()];
+    let mut off = [Vector::zeros(); 2];
+    if spec.prior == Prior::Drawn {
+        for (off, deviation) in off.iter_mut().zip(deviations) {
+            *off = Vector::from_fn(|_, _| deviation * draws.normal());
+        }
+    }
+    AttitudeFilterState::new(attitude * rotation(&off[0]), setting.bias + off[1], deviations)
+}
+
 impl FilterSetup {
     /// Iterates over the readings of the sensors whose role satisfies `wanted`, with their indices.
     fn readings_of_role<'a>(
@@ -144,7 +152,7 @@ impl FilterSetup {
 
     /// Returns a measured vector with the reference of the filter's model at its exposure: a measured magnetic field has
     /// that of the model, other vectors keep theirs.
-    fn with_reference(&self, measurement: VectorMeasurement, exposed: Instant) -> VectorMeasurement {
+    pub fn with_reference(&self, measurement: VectorMeasurement, exposed: Instant) -> VectorMeasurement {
         let model = self.field_model.as_ref().filter(|_| !measurement.is_direction);
         let field = model.and_then(|sky| sky.field_at(exposed.seconds()));
         VectorMeasurement { inertial: field.unwrap_or(measurement.inertial), ..measurement }

@@ -4,7 +4,7 @@ use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::Correction;
 use flexsc_numerics::attitude::{Vector, rotation};
-use flexsc_numerics::flight_types::{from_quaternion, from_vector3, to_ticks, to_vector3};
+use flexsc_numerics::flight_types::{from_quaternion, from_vector3, to_vector3};
 use flexsc_numerics::time::{Instant, Span};
 use nalgebra::Quaternion;
 
@@ -71,8 +71,8 @@ impl FilterHistory {
             return Self::Elastic(ElasticHistory::new(time, ElasticFilter { state, modes }, noise, reach));
         }
         let mut entries = vec![AttitudeHistoryEntry::NONE; 4];
-        let reach = to_ticks(Instant::START + reach);
-        let counts = AttitudeHistory::start(to_ticks(time), state.to_flight(), noise, reach, &mut entries);
+        let reach = (Instant::START + reach).ticks();
+        let counts = AttitudeHistory::start(time.ticks(), state.to_flight(), noise, reach, &mut entries);
         Self::Rigid(RigidHistory { counts, entries, observations: Vec::new() })
     }
 
@@ -128,7 +128,7 @@ impl FilterHistory {
             Self::Rigid(history) => {
                 history.grow();
                 let RigidHistory { counts, entries, observations } = history;
-                valid(counts.add_gyro(to_ticks(now), to_vector3(&reading), entries, observations))
+                valid(counts.add_gyro(now.ticks(), to_vector3(&reading), entries, observations))
             }
             Self::Elastic(history) => history.add_gyro(now, reading),
         }

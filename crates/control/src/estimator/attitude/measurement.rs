@@ -4,7 +4,7 @@ use flexsc_flight::attitude_history::DelayedObservation;
 use flexsc_flight::attitude_observation::{self, AttitudeObservation, ObservationKind};
 use flexsc_flight::matrix6::Matrix6x3 as FlightGain;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::flight_types::{to_matrix3, to_matrix6x3, to_quaternion, to_ticks, to_vector3};
+use flexsc_numerics::flight_types::{to_matrix3, to_matrix6x3, to_quaternion, to_vector3};
 use flexsc_numerics::time::Instant;
 use nalgebra::{Matrix3, Matrix6x3, Quaternion, SMatrix};
 
@@ -46,7 +46,7 @@ impl DelayedMeasurement {
                 observation.inertial = to_vector3(&measurement.inertial);
             }
         }
-        DelayedObservation { exposed: to_ticks(self.exposed), observation }
+        DelayedObservation { exposed: self.exposed.ticks(), observation }
     }
 }
 

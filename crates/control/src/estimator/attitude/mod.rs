@@ -16,7 +16,7 @@ mod tests;
 pub use elastic::{ElasticStates, FilterMode, FilterModes, FrequencyIdentification};
 pub use elastic_states::ElasticFilterStates;
 pub use filter::AttitudeFilterState;
-pub use filter_state::AttitudeFilterRun;
+pub use filter_state::{AttitudeFilterRun, initial_state};
 pub use flexsc_flight::attitude_filter::GyroNoise;
 pub use flexsc_flight::attitude_observation::Correction;
 pub use gains::{Complementary, GainMethod};

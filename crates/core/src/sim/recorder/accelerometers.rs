@@ -9,9 +9,20 @@ use crate::scenario::Scenario;
 use crate::sim::plant::AccelerometerMount;
 use crate::sim::run_view::RunView;
 
-/// Run-time state of the accelerometers, each with its index among the sensors and its mount.
+/// Run-time state of the accelerometers.
 #[derive(Clone, Debug)]
-pub struct Accelerometers(Vec<(usize, AccelerometerMount, AccelerometerState)>);
+pub struct Accelerometers(Vec<MountedAccelerometer>);
+
+/// Accelerometer at its mount.
+#[derive(Clone, Debug)]
+struct MountedAccelerometer {
+    /// Index among the sensors.
+    index: usize,
+    mount: AccelerometerMount,
+    state: AccelerometerState,
+    /// Instant at which the last sample became available, and its measured values (m/s²).
+    latest: Option<(Instant, Vec<f64>)>,
+}
 
 impl Accelerometers {
     /// Creates the accelerometers of a scenario, before its start.
@@ -24,14 +35,21 @@ impl Accelerometers {
                 scenario.model.spacecraft()?.mass,
                 point,
             );
-            Some((index, mount, accelerometer.start(seed, scenario.sensor.index_in_kind(index))))
+            let state = accelerometer.start(seed, scenario.sensor.index_in_kind(index));
+            Some(MountedAccelerometer { index, mount, state, latest: None })
         };
         Self(scenario.sensor.accelerometers().filter_map(of).collect())
     }
 
     /// Returns the next instant at which an accelerometer samples or has a sample ready.
     pub fn due(&self) -> Option<Instant> {
-        self.0.iter().map(|(.., sensor)| sensor.due()).min()
+        self.0.iter().map(|mounted| mounted.state.due()).min()
+    }
+
+    /// Returns the last sample of a sensor (m/s²) and the instant at which it became available.
+    pub fn latest(&self, sensor: usize) -> Option<(Instant, &[f64])> {
+        let mounted = self.0.iter().find(|mounted| mounted.index == sensor)?;
+        mounted.latest.as_ref().map(|(at, values)| (*at, &values[..]))
     }
 
     /// Samples the accelerometers that are due, after all loads have changed, and records the samples whose latency has
@@ -41,11 +59,12 @@ impl Accelerometers {
         if self.due().is_none_or(|due| due > now) {
             return Ok(());
         }
-        for (index, mount, sensor) in &mut self.0 {
-            if sensor.samples_now(now) {
-                sensor.sample(now, &run.plant.specific_force(mount));
+        for MountedAccelerometer { index, mount, state, latest } in &mut self.0 {
+            if state.samples_now(now) {
+                state.sample(now, &run.plant.specific_force(mount));
             }
-            while let Some(felt) = sensor.take_due(now) {
+            while let Some(felt) = state.take_due(now) {
+                *latest = Some((now, felt.iter().map(|sample| sample.measured).collect()));
                 let axes = felt.iter().map(MeasuredAcceleration::row).collect();
                 record.record(now, Sample::Row(&Accelerations { sensor: *index as u64, axes }))?;
             }

@@ -93,6 +93,11 @@ impl Recorder {
         self.motion.period()
     }
 
+    /// Returns the last sample of an accelerometer (m/s²) and the instant at which it became available.
+    pub fn last_accelerations(&self, sensor: usize) -> Option<(Instant, &[f64])> {
+        self.accelerometers.latest(sensor)
+    }
+
     /// Opens the journal once; returns true if this call opened it.
     pub fn open(&mut self, now: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
         self.journal.open(now, record)

@@ -1,0 +1,139 @@
+//! `flexsc export-c` and `flexsc vectors`: the control system of a scenario as C99, and the calls of its run.
+
+use std::path::{Path, PathBuf};
+
+use flexsc_core::formats::document::ConfigError;
+use flexsc_export_c::package::{self, ExportError};
+use flexsc_export_c::vectors::{self, VectorError};
+
+use crate::error::CliError;
+use crate::{files, out, scenario};
+
+/// Largest number of calls in a file of vectors.
+const MOST_CALLS: u64 = 10_000_000;
+/// Longest prefix of names in C.
+const LONGEST_NAME: usize = 32;
+
+#[derive(clap::Args)]
+pub struct ExportCArgs {
+    /// Scenario file
+    scenario: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Directory to write
+    #[arg(short, long, value_name = "DIR")]
+    out: PathBuf,
+    /// Prefix of all names in C [default: the scenario's file name]
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Most calls of the run to export as vectors
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=MOST_CALLS))]
+    calls: u64,
+    /// Replace files of other content in DIR
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(clap::Args)]
+pub struct VectorsArgs {
+    /// Scenario file
+    scenario: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// File to write, such as vectors.bin
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Most calls to record
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=MOST_CALLS))]
+    calls: u64,
+    /// Replace a FILE of other content
+    #[arg(long)]
+    force: bool,
+}
+
+/// Exports the control system of a scenario.
+pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
+    if args.out.exists() && !args.out.is_dir() {
+        let path = args.out.display();
+        return Err(CliError::Arguments(format!("-o {path}: must be a directory, and is a file")));
+    }
+    let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    let origin = args
+        .scenario
+        .file_name()
+        .map_or_else(|| "scenario".to_owned(), |name| name.to_string_lossy().into_owned());
+    let prefix = match &args.name {
+        Some(name) => checked_name(name)?,
+        None => default_name(&args.scenario),
+    };
+    let package = package::export(&scenario, &origin, &prefix, args.calls as usize)
+        .map_err(|error| refused(&args.scenario, error))?;
+    let written: Vec<(PathBuf, Vec<u8>)> =
+        package.files.iter().map(|file| (args.out.join(&file.path), file.bytes.clone())).collect();
+    for (path, bytes) in &written {
+        files::refuse_other(path, bytes, args.force)?;
+    }
+    files::write_within(&written)?;
+    eprintln!(
+        "{}: {prefix}.c with {}; {} calls of the run as vectors",
+        args.out.display(),
+        package.calls.iter().map(|call| format!("{prefix}_{}", call.name)).collect::<Vec<_>>().join(", "),
+        package.vectors
+    );
+    eprintln!("`make -C {} check` compares them by bits", args.out.display());
+    Ok(())
+}
+
+/// Writes the calls of a run.
+pub fn run_vectors(args: &VectorsArgs) -> Result<(), CliError> {
+    out::file(&args.out, &["bin"], &[&args.scenario])?;
+    let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    let vectors = vectors::record(&scenario, args.calls as usize)
+        .map_err(|error| refused(&args.scenario, ExportError::Vectors(error)))?;
+    files::write(&args.out, &vectors::to_bytes(&vectors), args.force)?;
+    eprintln!("{}: {} calls", args.out.display(), vectors.len());
+    Ok(())
+}
+
+/// Returns the error of a scenario that is not exported.
+fn refused(path: &Path, error: ExportError) -> CliError {
+    match error {
+        ExportError::Vectors(VectorError::NotExportable(fault)) => match scenario::document(path) {
+            Ok(document) => document.at_key(&ConfigError::new(fault.key, fault.reason)).into(),
+            Err(error) => error,
+        },
+        ExportError::Vectors(VectorError::Simulation(source)) => {
+            CliError::Run { name: path.display().to_string(), source }
+        }
+        error => CliError::Arguments(format!("{}: {error}", path.display())),
+    }
+}
+
+/// Returns a name that C accepts, or an error.
+fn checked_name(name: &str) -> Result<String, CliError> {
+    let is_valid = name.len() <= LONGEST_NAME
+        && name.starts_with(|first: char| first.is_ascii_lowercase())
+        && name.chars().all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || letter == '_');
+    if is_valid {
+        return Ok(name.to_owned());
+    }
+    Err(CliError::Arguments(format!(
+        "--name {name}: must be 1 to {LONGEST_NAME} lower-case letters, digits and underscores that begin with a letter"
+    )))
+}
+
+/// Returns the prefix that a scenario's file name gives.
+fn default_name(path: &Path) -> String {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let mut name: String = stem
+        .chars()
+        .map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' })
+        .take(LONGEST_NAME)
+        .collect();
+    if !name.starts_with(|first: char| first.is_ascii_lowercase()) {
+        name = format!("control_{name}").chars().take(LONGEST_NAME).collect();
+    }
+    name
+}

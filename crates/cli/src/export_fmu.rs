@@ -1,0 +1,112 @@
+//! `flexsc export-fmu`: a scenario as a Functional Mock-up Unit, which other simulators import.
+
+use std::env;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use flexsc_cosim::{CoSimulationError, FmiVersion, FmuContent, FmuPart, find_library, fmu_bytes};
+
+use crate::error::CliError;
+use crate::{files, out, say, scenario};
+
+/// Environment variable with the path of the library, which the Python package sets.
+const LIBRARY: &str = "FLEXSC_FMI_LIBRARY";
+
+#[derive(clap::Args)]
+pub struct ExportFmuArgs {
+    /// Scenario file
+    scenario: PathBuf,
+    /// Set a key of the scenario, such as law.relay.k_t=0.34
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Mode of operation that acts throughout, of a scenario with several
+    #[arg(long, value_name = "NAME")]
+    mode: Option<String>,
+    /// Version of FMI
+    #[arg(long, value_enum, default_value = "3")]
+    fmi: Fmi,
+    /// Part of the scenario that the FMU simulates
+    #[arg(long, value_enum, default_value = "loop")]
+    part: Part,
+    /// Library of FMUs [default: the one beside this program]
+    #[arg(long, value_name = "FILE")]
+    library: Option<PathBuf>,
+    /// File to write: FILE.fmu
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Replace a FILE of other content
+    #[arg(long)]
+    force: bool,
+}
+
+#[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
+enum Fmi {
+    /// FMI 2.0
+    #[value(name = "2")]
+    V2,
+    /// FMI 3.0
+    #[value(name = "3")]
+    V3,
+}
+
+#[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// The closed loop
+    Loop,
+    /// The spacecraft with its sensors and actuators
+    Plant,
+    /// The laws and estimators
+    Controller,
+}
+
+impl From<CoSimulationError> for CliError {
+    fn from(error: CoSimulationError) -> Self {
+        match error {
+            CoSimulationError::Scenario(error) => Self::Scenario(error),
+            CoSimulationError::Run { name, source } => Self::Run { name, source },
+            CoSimulationError::Refused(why) => Self::Arguments(why),
+        }
+    }
+}
+
+/// Returns the path of the library: as stated, or beside this program.
+fn library(stated: Option<&Path>) -> Result<PathBuf, CliError> {
+    if let Some(path) = stated {
+        return Ok(path.to_owned());
+    }
+    if let Some(path) = env::var_os(LIBRARY).map(PathBuf::from).filter(|path| path.is_file()) {
+        return Ok(path);
+    }
+    let program = env::current_exe().ok();
+    let found = find_library(program.as_deref().and_then(Path::parent));
+    found.map_err(|error| CliError::Arguments(format!("{error} with --library")))
+}
+
+pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
+    out::file(&args.out, &["fmu"], &[&args.scenario])?;
+    let part = FmuPart::from_name(match args.part {
+        Part::Loop => "loop",
+        Part::Plant => "plant",
+        Part::Controller => "controller",
+    })?;
+    let version = match args.fmi {
+        Fmi::V2 => FmiVersion::V2,
+        Fmi::V3 => FmiVersion::V3,
+    };
+    let scenario = scenario::load(&args.scenario, &args.set, None)?;
+    let scenario = match &args.mode {
+        Some(name) => scenario.in_mode(name)?,
+        None => scenario,
+    };
+    let content = FmuContent::new(&scenario, part)?;
+    let path = library(args.library.as_deref())?;
+    let library = fs::read(&path).map_err(|error| {
+        CliError::Arguments(format!("cannot read the library of FMUs, {}: {error}", path.display()))
+    })?;
+    let bytes = fmu_bytes(&content, &library, version)?;
+    files::write(&args.out, &bytes, args.force)?;
+    say!("{}", args.out.display());
+    Ok(())
+}

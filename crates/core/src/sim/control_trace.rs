@@ -1,0 +1,99 @@
+//! Inputs and outputs of the control system at each of its calls, for replays by flight code.
+
+use flexsc_control::law::AxisDecision;
+use flexsc_control::sensor::{Orientation, Reading};
+use flexsc_numerics::attitude::{Vector, rotation};
+use flexsc_numerics::time::Instant;
+use nalgebra::Quaternion;
+
+use super::Simulation;
+
+/// Call of the control system.
+#[derive(Clone, Debug)]
+pub enum ControlCall {
+    /// Sample of the sensors, which the estimator takes.
+    Sample(SensorSample),
+    /// Decision of the laws, whose commands the actuator takes.
+    Decision(ControlDecision),
+}
+
+/// Sample of the sensors.
+#[derive(Clone, Debug)]
+pub struct SensorSample {
+    /// Time of the sample.
+    pub now: Instant,
+    /// Reading of each sensor, in the order of the scenario; `None` of a sensor that is not due or silent.
+    pub readings: Vec<Option<Reading>>,
+    /// True attitude; `None` of a body with one axis.
+    pub attitude: Option<Quaternion<f64>>,
+}
+
+/// Decision of the laws at one instant.
+#[derive(Clone, Debug)]
+pub struct ControlDecision {
+    /// Time of the decision.
+    pub now: Instant,
+    /// Decisions about the axes whose law has decided.
+    pub axes: Vec<AxisDecision>,
+    /// Target attitude from which angles are counted.
+    pub origin: Orientation,
+    /// Momentum stored in the rotors, as available to the drives (N m s).
+    pub stored_momentum: [f64; 3],
+    /// Torque that the actuator is asked for about each axis (N m).
+    pub demanded_torque: [f64; 3],
+    /// Torque of each wheel on its rotor after the command (N m); empty without wheels.
+    pub wheel_torques: Vec<f64>,
+}
+
+impl Simulation {
+    /// Begins to record the calls of the control system. The run then does not use the kernel for relays.
+    pub fn trace_control(&mut self) {
+        self.kernel_setup = None;
+        self.laws.begin_trace();
+    }
+
+    /// Returns the calls recorded since the last time.
+    pub fn take_control_trace(&mut self) -> Vec<ControlCall> {
+        self.laws.trace.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
+    /// Records a sample that was just taken.
+    pub(super) fn trace_sample(&mut self, now: Instant) {
+        let Some(trace) = &mut self.laws.trace else { return };
+        let origin = self.estimation.origin();
+        let attitude = if let Orientation::Attitude(target) = origin {
+            let beyond = |axis: usize| self.plant.about_axis(axis, origin).rigid_angle;
+            Some(target * rotation(&Vector::from([0, 1, 2].map(beyond))))
+        } else {
+            None
+        };
+        let readings = self.sensors.new_readings.clone();
+        trace.push(ControlCall::Sample(SensorSample { now, readings, attitude }));
+    }
+
+    /// Records the decisions that the actuator has just taken.
+    pub(super) fn trace_decision(&mut self, now: Instant) {
+        let axes = self.laws.take_decisions();
+        if axes.is_empty() {
+            return;
+        }
+        let (actuator, rigid) = (&self.loads.actuator, self.plant.truth().rigid);
+        let abilities = actuator.capabilities();
+        let wheels = abilities.momentum.map(|storage| storage.wheels(now, rigid)).unwrap_or_default();
+        let mut demanded_torque = [0.0; 3];
+        for (axis, torque) in demanded_torque.iter_mut().enumerate().take(self.estimation.axis_count()) {
+            *torque = actuator.effort(axis).demanded;
+        }
+        let decision = ControlDecision {
+            now,
+            axes,
+            origin: *self.estimation.origin(),
+            stored_momentum: abilities.stored_momentum(now),
+            demanded_torque,
+            wheel_torques: wheels.iter().map(|wheel| wheel.torque_nm).collect(),
+        };
+        if let Some(trace) = &mut self.laws.trace {
+            trace.push(ControlCall::Decision(decision));
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Archive of an FMU: the model description, the library of the platform, and the scenario, with equal bytes at each export.
+
+use std::io::{Cursor, Write};
+
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use crate::content::{FmuContent, PART, SCENARIO};
+use crate::cosimulation::CoSimulation;
+use crate::description::model_description;
+use crate::error::CoSimulationError;
+use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
+
+/// Returns the bytes of an FMU with this library.
+///
+/// # Errors
+/// Fails for a platform without a name in this version of FMI.
+pub fn fmu_bytes(
+    content: &FmuContent,
+    library: &[u8],
+    version: FmiVersion,
+) -> Result<Vec<u8>, CoSimulationError> {
+    let run = CoSimulation::new(content.clone())?;
+    let description = model_description(run.scenario(), run.table(), &content.token(), version);
+    let binary =
+        format!("binaries/{}/{MODEL_IDENTIFIER}{}", version.platform()?, std::env::consts::DLL_SUFFIX);
+    let files = [
+        ("modelDescription.xml".to_owned(), description.as_bytes()),
+        (binary, library),
+        (format!("resources/{PART}"), content.part.name().as_bytes()),
+        (format!("resources/{SCENARIO}"), content.toml.as_bytes()),
+    ];
+    archive(&files).map_err(|error| CoSimulationError::refused(format!("cannot pack the FMU: {error}")))
+}
+
+/// Packs files with the date 1980-01-01 and the permissions of a library.
+fn archive(files: &[(String, &[u8])]) -> Result<Vec<u8>, ZipError> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .compression_level(Some(6))
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o755);
+    for (name, bytes) in files {
+        zip.start_file(name.as_str(), options)?;
+        zip.write_all(bytes)?;
+    }
+    Ok(zip.finish()?.into_inner())
+}

@@ -1,0 +1,30 @@
+//! Errors of a co-simulation and of the export of an FMU.
+
+use flexsc_core::{ScenarioError, SimulationError};
+use thiserror::Error;
+
+/// Error of a co-simulation.
+#[derive(Debug, Error)]
+pub enum CoSimulationError {
+    /// Invalid scenario, or invalid values of its keys.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Failed run.
+    #[error("{name}: {source}")]
+    Run {
+        /// Name of the scenario.
+        name: String,
+        /// Cause of the failure.
+        source: SimulationError,
+    },
+    /// Request that cannot be met.
+    #[error("{0}")]
+    Refused(String),
+}
+
+impl CoSimulationError {
+    /// Creates the error of a request that cannot be met.
+    pub fn refused(why: impl Into<String>) -> Self {
+        Self::Refused(why.into())
+    }
+}

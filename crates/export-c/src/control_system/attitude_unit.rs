@@ -1,0 +1,233 @@
+//! Attitude filter of a control system: gyro readings and observations in, attitude and rate out.
+
+use flexsc_core::Scenario;
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::estimator::attitude::{FilterSetup, SensorRole};
+use flexsc_core::control::sensor::SensorKind;
+use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
+use flexsc_flight::attitude_estimator::AttitudeEstimator;
+use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
+use flexsc_flight::matrix6::Matrix6x3;
+use flexsc_flight::quaternion::Quaternion;
+use flexsc_flight::ticks::Ticks;
+use flexsc_flight::vector3::Vector3;
+
+use super::{CallLayout, Channel, WordReader};
+
+/// Sensor whose observations correct the filter.
+#[derive(Clone, Debug)]
+pub struct Corrector {
+    /// Index of the sensor in the scenario.
+    pub sensor: usize,
+    /// Name of its members in C.
+    pub name: String,
+    /// Time from exposure to reading.
+    pub latency: Ticks,
+    /// Observation without its numbers: kind, covariance and constant gain.
+    pub observation: AttitudeObservation,
+}
+
+/// Attitude filter with its storage.
+#[derive(Clone, Debug)]
+pub struct AttitudeUnit {
+    /// Estimator.
+    pub estimator: AttitudeEstimator,
+    /// Storage of the recent past.
+    pub entries: Vec<AttitudeHistoryEntry>,
+    /// Storage of observations.
+    pub observations: Vec<DelayedObservation>,
+    /// Noise of the gyro in the filter's model.
+    pub noise: GyroNoise,
+    /// Largest delay of an observation.
+    pub reach: Ticks,
+    /// Standard deviations of attitude (rad) and bias (rad/s) at the start.
+    pub deviations: [f64; 2],
+    /// Index of the gyro, and its latency.
+    pub gyro: (usize, Ticks),
+    /// Sensors that correct the filter.
+    pub correctors: Vec<Corrector>,
+}
+
+impl AttitudeUnit {
+    /// Returns the attitude filter that the laws of a scenario read; `None` if they read something else, or if the filter
+    /// estimates modes too: then the estimates are inputs.
+    pub fn new(scenario: &Scenario) -> Option<Self> {
+        let Some(EstimatorKind::Attitude(spec)) = &scenario.estimator else { return None };
+        let setup = scenario.study.attitude.as_ref()?;
+        if spec.watch_only || spec.elastic.is_some() {
+            return None;
+        }
+        let sensors = &scenario.sensor[..];
+        let (mut gyro, mut correctors) = (None, Vec::new());
+        for (sensor, (role, kind)) in setup.roles.iter().zip(sensors).enumerate() {
+            match role {
+                SensorRole::Gyro { latency } => gyro = Some((sensor, latency.ticks())),
+                SensorRole::Corrects { latency, noise, gain } => {
+                    let same = sensors.iter().filter(|other| other.kind() == kind.kind()).count();
+                    let name =
+                        if same > 1 { format!("{}_{sensor}", kind.kind()) } else { kind.kind().to_owned() };
+                    correctors.push(Corrector {
+                        sensor,
+                        name,
+                        latency: latency.ticks(),
+                        observation: AttitudeObservation {
+                            kind: observation_kind(kind),
+                            noise: to_matrix3(noise),
+                            has_gain: gain.is_some(),
+                            gain: gain.as_deref().map_or(Matrix6x3::ZERO, to_matrix6x3),
+                            ..AttitudeObservation::NONE
+                        },
+                    });
+                }
+                SensorRole::None => {}
+            }
+        }
+        let deviations = [spec.initial.angle.get(), spec.initial.bias.get()];
+        let (entries, observations) = storage(scenario, setup, sensors);
+        Some(Self::started(setup, deviations, gyro?, correctors, entries, observations))
+    }
+
+    /// Returns the filter at the identity, with storage of these sizes.
+    fn started(
+        setup: &FilterSetup,
+        deviations: [f64; 2],
+        gyro: (usize, Ticks),
+        correctors: Vec<Corrector>,
+        entries: usize,
+        observations: usize,
+    ) -> Self {
+        let mut entries = vec![AttitudeHistoryEntry::NONE; entries];
+        let filter =
+            AttitudeBiasFilter::new(Quaternion::IDENTITY, Vector3::ZERO, deviations[0], deviations[1]);
+        let (noise, reach) = (setup.noise, setup.reach.ticks());
+        Self {
+            estimator: AttitudeEstimator::start(filter, noise, reach, &mut entries),
+            entries,
+            observations: vec![DelayedObservation::NONE; observations],
+            noise,
+            reach,
+            deviations,
+            gyro,
+            correctors,
+        }
+    }
+
+    /// Returns the functions: the start of the estimate, and a sample of the sensors.
+    pub(super) fn calls(&self) -> [CallLayout; 2] {
+        let attitude = || Channel::real("attitude", "Estimated attitude: quaternion w, x, y, z", 4, 1.0);
+        let start = CallLayout {
+            name: "start",
+            about: "Starts the attitude filter with an attitude and a gyro bias.",
+            is_start: true,
+            inputs: vec![attitude(), Channel::real("bias", "Estimated gyro bias (rad/s)", 3, 1e-5)],
+            outputs: vec![attitude()],
+        };
+        let mut inputs = vec![
+            Channel::flag("gyro_is_valid", "True if there is a gyro reading", 1),
+            Channel::real("gyro_rate", "Gyro reading (rad/s)", 3, 1e-2),
+        ];
+        for corrector in &self.correctors {
+            let name = &corrector.name;
+            inputs.push(Channel::flag(&format!("{name}_is_valid"), "True if there is a measurement", 1));
+            if corrector.observation.kind == ObservationKind::Attitude {
+                let about = "Measured attitude: quaternion w, x, y, z";
+                inputs.push(Channel::real(&format!("{name}_attitude"), about, 4, 1.0));
+            } else {
+                let about = "Measured vector, body axes";
+                inputs.push(Channel::real(&format!("{name}_vector"), about, 3, 1.0));
+                let about = "Reference of the vector at its exposure, inertial axes";
+                inputs.push(Channel::real(&format!("{name}_reference"), about, 3, 1.0));
+            }
+        }
+        let rate = Channel::real("rate", "Estimated rate (rad/s)", 3, 1.0);
+        let sample = CallLayout {
+            name: "sample",
+            about: "Takes a sample of the sensors.",
+            is_start: false,
+            inputs,
+            outputs: vec![attitude(), rate],
+        };
+        [start, sample]
+    }
+
+    /// Starts the filter, and returns the words of the outputs.
+    pub(super) fn start(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        let mut words = WordReader::new(inputs);
+        let (attitude, bias) = (quaternion(&mut words), vector(&mut words));
+        let filter = AttitudeBiasFilter::new(attitude, bias, self.deviations[0], self.deviations[1]);
+        self.estimator = AttitudeEstimator::start(filter, self.noise, self.reach, &mut self.entries);
+        quaternion_words(&self.estimator.attitude(now, &self.entries)).to_vec()
+    }
+
+    /// Takes a sample, and returns the words of the outputs.
+    pub(super) fn sample(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        let mut words = WordReader::new(inputs);
+        let (is_valid, rate) = (words.flag(), vector(&mut words));
+        let Self { estimator, entries, observations, .. } = self;
+        if is_valid {
+            estimator.take_gyro(now, self.gyro.1, rate, entries, observations);
+        }
+        for corrector in &self.correctors {
+            let is_valid = words.flag();
+            let mut observation = corrector.observation;
+            if observation.kind == ObservationKind::Attitude {
+                observation.attitude = quaternion(&mut words);
+            } else {
+                observation.vector = vector(&mut words);
+                observation.inertial = vector(&mut words);
+            }
+            if is_valid {
+                estimator.take_observation(now, corrector.latency, &observation, entries, observations);
+            }
+        }
+        let (attitude, rate) = (estimator.attitude(now, entries), estimator.rate(entries));
+        let mut outputs = quaternion_words(&attitude).to_vec();
+        outputs.extend([rate.x, rate.y, rate.z].map(f64::to_bits));
+        outputs
+    }
+}
+
+/// Returns the quantity that a sensor measures.
+fn observation_kind(kind: &SensorKind) -> ObservationKind {
+    if kind.measures_field() {
+        ObservationKind::Vector
+    } else if kind.measures_vector() {
+        ObservationKind::Direction
+    } else {
+        ObservationKind::Attitude
+    }
+}
+
+/// Returns the numbers of entries and observations that the recent past may need, twice over, so that it is seldom moved.
+fn storage(scenario: &Scenario, setup: &FilterSetup, sensors: &[SensorKind]) -> (usize, usize) {
+    let cycle = scenario.law.period();
+    let within = |kind: &SensorKind| {
+        let period = kind.period(cycle).map_or(1.0, |period| period.seconds());
+        (setup.reach.seconds() / period).ceil() as usize + 2
+    };
+    let each = setup.roles.iter().zip(sensors);
+    let corrections: usize = each
+        .clone()
+        .filter(|(role, _)| matches!(role, SensorRole::Corrects { .. }))
+        .map(|(_, kind)| within(kind))
+        .sum();
+    let gyro: usize =
+        each.filter(|(role, _)| matches!(role, SensorRole::Gyro { .. })).map(|(_, kind)| within(kind)).sum();
+    (2 * (gyro + corrections + 1), 2 * (corrections + 1))
+}
+
+pub(super) fn quaternion(words: &mut WordReader<'_>) -> Quaternion {
+    let [w, x, y, z] = words.reals();
+    Quaternion { w, x, y, z }
+}
+
+fn vector(words: &mut WordReader<'_>) -> Vector3 {
+    let [x, y, z] = words.reals();
+    Vector3 { x, y, z }
+}
+
+fn quaternion_words(q: &Quaternion) -> [u64; 4] {
+    [q.w, q.x, q.y, q.z].map(f64::to_bits)
+}

@@ -1,0 +1,112 @@
+//! Inputs and outputs of a call of the control system: arrays of numbers with names, as members of a C struct.
+
+/// Type of the numbers of a channel.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum NumberKind {
+    /// Doubles.
+    Real,
+    /// True or false.
+    Flag,
+    /// Integers of 64 bits, from 0 up to the given number, which is excluded; 0 for any.
+    Integer(u64),
+}
+
+/// Array of numbers of one kind, which is a member of the struct of inputs or outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// Name of the member.
+    pub name: String,
+    /// Meaning with its unit.
+    pub about: String,
+    /// Number of elements; a member with one element is no array.
+    pub count: usize,
+    /// Type of the elements.
+    pub kind: NumberKind,
+    /// Typical size of the numbers, for calls with random inputs.
+    pub scale: f64,
+}
+
+impl Channel {
+    /// Creates a channel of doubles of this typical size.
+    pub fn real(name: &str, about: &str, count: usize, scale: f64) -> Self {
+        let (name, about) = (name.to_owned(), about.to_owned());
+        Self { name, about, count, kind: NumberKind::Real, scale }
+    }
+
+    /// Creates a channel of truth values.
+    pub fn flag(name: &str, about: &str, count: usize) -> Self {
+        Self { kind: NumberKind::Flag, ..Self::real(name, about, count, 1.0) }
+    }
+
+    /// Creates a channel of integers below a limit.
+    pub fn integer(name: &str, about: &str, count: usize, below: u64) -> Self {
+        Self { kind: NumberKind::Integer(below), ..Self::real(name, about, count, 1.0) }
+    }
+}
+
+/// Function of the control system, with its inputs and outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CallLayout {
+    /// Name of the function.
+    pub name: &'static str,
+    /// Meaning of the call.
+    pub about: &'static str,
+    /// True if the function is called once, before the others.
+    pub is_start: bool,
+    /// Inputs.
+    pub inputs: Vec<Channel>,
+    /// Outputs.
+    pub outputs: Vec<Channel>,
+}
+
+impl CallLayout {
+    /// Returns the number of words of the inputs.
+    pub fn input_words(&self) -> usize {
+        self.inputs.iter().map(|channel| channel.count).sum()
+    }
+
+    /// Returns the number of words of the outputs.
+    pub fn output_words(&self) -> usize {
+        self.outputs.iter().map(|channel| channel.count).sum()
+    }
+}
+
+/// Reader of words, in the order of the channels.
+#[derive(Debug)]
+pub struct WordReader<'a>(&'a [u64]);
+
+impl<'a> WordReader<'a> {
+    /// Creates a reader of these words.
+    pub fn new(words: &'a [u64]) -> Self {
+        Self(words)
+    }
+
+    /// Returns the next word; 0 after the last one.
+    pub fn word(&mut self) -> u64 {
+        let Some((first, rest)) = self.0.split_first() else { return 0 };
+        self.0 = rest;
+        *first
+    }
+
+    /// Returns the next number.
+    pub fn real(&mut self) -> f64 {
+        f64::from_bits(self.word())
+    }
+
+    /// Returns the next `N` numbers.
+    pub fn reals<const N: usize>(&mut self) -> [f64; N] {
+        let mut numbers = [0.0; N];
+        numbers.iter_mut().for_each(|number| *number = self.real());
+        numbers
+    }
+
+    /// Returns the next `count` numbers.
+    pub fn list(&mut self, count: usize) -> Vec<f64> {
+        (0..count).map(|_| self.real()).collect()
+    }
+
+    /// Returns the next truth value.
+    pub fn flag(&mut self) -> bool {
+        self.word() != 0
+    }
+}

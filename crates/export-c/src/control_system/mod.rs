@@ -1,0 +1,112 @@
+//! Control system of a scenario: its plain laws about each axis, and what distributes their commands.
+
+mod attitude_unit;
+mod channel;
+mod relays;
+mod sampled_laws;
+
+use std::fmt;
+
+use flexsc_core::Scenario;
+use flexsc_core::control::law::LawKind;
+use flexsc_flight::ticks::Ticks;
+
+pub use attitude_unit::{AttitudeUnit, Corrector};
+pub use channel::{CallLayout, Channel, NumberKind, WordReader};
+pub use relays::Relays;
+pub use sampled_laws::{Distribution, LawsOfAxes, SampledLaws};
+
+/// Reason for which a scenario's control system cannot be exported.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NotExportable {
+    /// Key that prevents the export.
+    pub key: String,
+    /// Reason.
+    pub reason: String,
+}
+
+impl fmt::Display for NotExportable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` {}", self.key, self.reason)
+    }
+}
+
+impl std::error::Error for NotExportable {}
+
+impl NotExportable {
+    /// Creates the error of a key and its reason.
+    pub fn new(key: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { key: key.into(), reason: reason.into() }
+    }
+}
+
+/// Control system of a scenario at the start of a run.
+#[derive(Clone, Debug)]
+pub enum ControlSystem {
+    /// Relays, which decide at events.
+    Relays(Relays),
+    /// Laws that decide at their period.
+    Sampled(SampledLaws),
+}
+
+impl ControlSystem {
+    /// Returns the control system of a scenario.
+    ///
+    /// # Errors
+    /// A [`NotExportable`] with the key of a part that has no plain code.
+    pub fn new(scenario: &Scenario) -> Result<Self, NotExportable> {
+        let axes = scenario.study.axes.len();
+        let laws: Vec<&LawKind> = (0..axes).map(|axis| scenario.law.about(axis)).collect();
+        if !scenario.mode.is_empty() {
+            return Err(NotExportable::new("mode", "changes the laws in a run: export the law of one mode"));
+        }
+        if scenario.adaptation.is_some() {
+            let reason = "tunes the law in a run: leave it out, and write the value that it reaches";
+            return Err(NotExportable::new("adaptation", reason));
+        }
+        match laws.first() {
+            Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
+            _ => Ok(Self::Sampled(SampledLaws::new(scenario, &laws)?)),
+        }
+    }
+
+    /// Returns the functions of the control system.
+    pub fn calls(&self) -> Vec<CallLayout> {
+        match self {
+            Self::Relays(relays) => relays.calls(),
+            Self::Sampled(laws) => laws.calls(),
+        }
+    }
+
+    /// Calls the function with this index, and returns the words of its outputs.
+    pub fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        match self {
+            Self::Relays(relays) => relays.call(call, now, inputs),
+            Self::Sampled(laws) => laws.call(call, now, inputs),
+        }
+    }
+
+    /// Returns the time from one call to the next (s): the period of the laws, or 0.1 s for relays.
+    pub fn period(&self) -> f64 {
+        match self {
+            Self::Relays(_) => 0.1,
+            Self::Sampled(laws) => laws.period,
+        }
+    }
+}
+
+/// Returns laws about each axis of one kind.
+///
+/// # Errors
+/// A [`NotExportable`] if an axis has a law of another kind.
+fn all_of_kind<T>(laws: &[&LawKind], each: impl Fn(&LawKind) -> Option<T>) -> Result<Vec<T>, NotExportable> {
+    laws.iter()
+        .map(|law| {
+            each(law).ok_or_else(|| {
+                let reason =
+                    format!("is another kind than `{}` about roll: export axes of one kind", laws[0].kind());
+                NotExportable::new(format!("law.per_axis.{}", law.kind()), reason)
+            })
+        })
+        .collect()
+}

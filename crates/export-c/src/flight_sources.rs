@@ -1,0 +1,59 @@
+//! Source files of the flight code, which are translated.
+
+use crate::translate::SourceFile;
+
+/// Defines the list of files, each with its text.
+macro_rules! sources {
+    ($($module:literal),* $(,)?) => {
+        [$(SourceFile {
+            path: concat!("crates/flight/src/", $module, ".rs"),
+            module: $module,
+            text: include_str!(concat!("../../flight/src/", $module, ".rs")),
+        }),*]
+    };
+}
+
+/// Number of files.
+const COUNT: usize = 36;
+
+/// Returns the source files of the flight code.
+pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
+    sources![
+        "active_damping",
+        "argument_reduction",
+        "attitude_estimator",
+        "attitude_filter",
+        "attitude_history",
+        "attitude_law",
+        "attitude_observation",
+        "axis_motion",
+        "binary64",
+        "biquad",
+        "covariance_propagation",
+        "error_measure",
+        "exponentials",
+        "gain_schedule",
+        "guard",
+        "hypotenuse",
+        "integer_square_root",
+        "inverse_trigonometry",
+        "maths",
+        "matrix3",
+        "matrix6",
+        "payne_hanek",
+        "pd",
+        "phase_plane",
+        "pulse_timing",
+        "pulse_width",
+        "quaternion",
+        "relay",
+        "square_root",
+        "stumpff",
+        "switching_lines",
+        "ticks",
+        "torque_distribution",
+        "trigonometry",
+        "vector3",
+        "wheel_allocation",
+    ]
+}

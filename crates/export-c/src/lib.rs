@@ -1,0 +1,16 @@
+//! Control systems of scenarios as C99 for flight computers, translated from the Rust code that the engine calls.
+//!
+//! - [`control_system`]: the control system of a scenario, of plain laws, as Rust runs it;
+//! - [`mod@translate`]: the subset of Rust in which these laws are written, to C99, evaluated in the same order, so that both return
+//!   equal bits under a compiler that keeps IEEE 754;
+//! - [`package`]: the files that are exported; [`vectors`]: calls of a run, which the exported code replays; [`self_test`]: a hash
+//!   over calls with random and extreme inputs.
+
+pub mod control_system;
+mod flight_sources;
+pub mod package;
+pub mod self_test;
+pub mod translate;
+pub mod vectors;
+
+pub use translate::{SourceFile, Translation, TranslationError, translate};

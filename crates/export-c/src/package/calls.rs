@@ -1,0 +1,305 @@
+//! Functions of an exported control system: their signatures and bodies.
+
+use std::fmt::Write as _;
+
+use flexsc_flight::gain_schedule::SchedulePoint;
+
+use super::initialiser::initialiser;
+use super::{Plan, estimator_calls};
+use crate::control_system::{CallLayout, ControlSystem, LawsOfAxes, Relays, SampledLaws};
+
+/// Names of the axes of a body with three.
+const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
+
+/// Returns the signature of a function.
+pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
+    let (prefix, name) = (plan.prefix, call.name);
+    let now = if has_time(plan) { format!("{prefix}_ticks now, ") } else { String::new() };
+    format!(
+        "void {prefix}_{name}({prefix}_state *state, {now}const {prefix}_{name}_input *input,\n    \
+         {prefix}_{name}_output *output)"
+    )
+}
+
+/// Returns true if the functions read the time.
+pub fn has_time(plan: &Plan<'_>) -> bool {
+    match plan.system {
+        ControlSystem::Relays(_) => true,
+        ControlSystem::Sampled(laws) => laws.estimator.is_some(),
+    }
+}
+
+/// Returns the constants and the functions.
+pub fn functions(plan: &Plan<'_>) -> String {
+    let mut text = String::new();
+    match plan.system {
+        ControlSystem::Relays(relays) => of_relays(plan, relays, &mut text),
+        ControlSystem::Sampled(laws) => of_laws(plan, laws, &mut text),
+    }
+    text
+}
+
+/// Returns a member of the inputs, outputs or state about an axis.
+fn about(name: &str, axis: usize, axes: usize) -> String {
+    if axes == 1 { name.to_owned() } else { format!("{name}[{axis}]") }
+}
+
+/// Writes the functions of relays.
+fn of_relays(plan: &Plan<'_>, relays: &Relays, text: &mut String) {
+    let (prefix, axes) = (plan.prefix, relays.axes.len());
+    let upper = prefix.to_uppercase();
+    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
+    for (axis, relay) in relays.axes.iter().enumerate() {
+        let member = about("relay", axis, axes);
+        let value = initialiser(relay, prefix);
+        let _ = writeln!(text, "    state->{member} = ({prefix}_polled_relay){value};");
+    }
+    let _ = writeln!(text, "}}\n");
+    let pointer = if axes == 1 {
+        "&state->relay".to_owned()
+    } else {
+        format!("&state->relay[input->axis < {axes} && input->axis >= 0 ? input->axis : 0]")
+    };
+    let _ = writeln!(
+        text,
+        "{}\n{{\n    {prefix}_polled_relay *relay = {pointer};\n    {prefix}_relay_event event = {upper}_RELAY_EVENT_TIMEOUT;\n    \
+         if (input->event == 0) {{\n        event = {upper}_RELAY_EVENT_START;\n    }} else if (input->event == 1) {{\n        \
+         event = {upper}_RELAY_EVENT_FIRST_GUARD;\n    }} else if (input->event == 2) {{\n        \
+         event = {upper}_RELAY_EVENT_SECOND_GUARD;\n    }}\n    relay->has_started = true;\n    \
+         relay->command = relay_law_decide(&relay->law, now, event, input->angle);\n    \
+         output->torque = relay->command.torque;\n    output->has_timeout = relay->command.has_timeout;\n    \
+         output->until_whole = relay->command.until.whole;\n    output->until_part = relay->command.until.part;\n    \
+         output->guard_count = (int64_t)relay->command.guard_count;\n    for (size_t guard = 0; guard < 2; ++guard) {{\n        \
+         output->guard_is_lower[guard] = relay->command.guards[guard].side == {upper}_GUARD_DIRECTION_AT_MOST;\n        \
+         output->guard_level[guard] = relay->command.guards[guard].level;\n    }}\n}}\n",
+        signature(plan, &plan.calls[0])
+    );
+    let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[1]));
+    for axis in 0..axes {
+        let [torque, relay, angle] = ["torque", "relay", "angle"].map(|name| about(name, axis, axes));
+        let _ =
+            writeln!(text, "    output->{torque} = polled_relay_step(&state->{relay}, now, input->{angle});");
+    }
+    text.push_str("}\n");
+}
+
+/// Writes the constants and functions of laws that decide at their period.
+fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let (prefix, axes) = (plan.prefix, laws.axis_count());
+    constants(plan, laws, text);
+    if let Some(unit) = &laws.estimator {
+        estimator_calls::start(plan, unit, text);
+    }
+    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
+    if laws.estimator.is_some() {
+        let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
+        let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
+        let _ = writeln!(
+            text,
+            "    memset(state, 0, sizeof *state);\n    start_filter(state, {identity}, {zero});"
+        );
+    }
+    let mut set = |member: String, type_name: &str, value: String| {
+        let _ = writeln!(text, "    state->{member} = ({prefix}_{type_name}){value};");
+    };
+    for axis in 0..axes {
+        let member = about("law", axis, axes);
+        match &laws.laws {
+            LawsOfAxes::Pd(own) => set(member, "pd_law", initialiser(&own[axis].0, prefix)),
+            LawsOfAxes::PhasePlane(own, _) => set(member, "phase_plane_law", initialiser(&own[axis], prefix)),
+            LawsOfAxes::Attitude(own) => {
+                set(member, "attitude_feedback", initialiser(&own[axis].0, prefix));
+                for (index, filter) in own[axis].1.iter().enumerate() {
+                    set(format!("filters[{axis}][{index}]"), "biquad_filter", initialiser(filter, prefix));
+                }
+            }
+        }
+    }
+    for (index, wheel) in laws.wheels.iter().flat_map(|wheels| &wheels.wheels).enumerate() {
+        set(format!("wheels[{index}]"), "allocated_wheel", initialiser(wheel, prefix));
+    }
+    text.push_str("}\n\n");
+    if let Some(unit) = &laws.estimator {
+        estimator_calls::functions(plan, unit, text);
+    }
+    let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
+    if let Some(unit) = &laws.estimator {
+        let _ = writeln!(
+            text,
+            "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
+             const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
+             const {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n    \
+             const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});",
+            entries = unit.entries.len()
+        );
+    }
+    if axes == 3 {
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis| estimate(laws, "angle", axis));
+        let _ =
+            writeln!(text, "    const double total_angle = axis_motion_total_angle({roll}, {pitch}, {yaw});");
+    }
+    let _ = writeln!(text, "    {prefix}_axis_motion motion;\n    {prefix}_axis_reference reference;");
+    if laws.mode_count() > 0 {
+        let _ = writeln!(text, "    {prefix}_elastic_rate_estimate modes[{}];", laws.mode_count());
+    }
+    for axis in 0..axes {
+        step_about(plan, laws, axis, text);
+    }
+    if let LawsOfAxes::Attitude(_) = &laws.laws {
+        torque(plan, laws, text);
+    }
+    wheels(plan, laws, text);
+    text.push_str("}\n");
+}
+
+/// Returns the estimated angle or rate about an axis: a component of the filter's estimate, or an input.
+fn estimate(laws: &SampledLaws, name: &str, axis: usize) -> String {
+    if laws.estimator.is_some() {
+        format!("{name}.{}", ["x", "y", "z"][axis])
+    } else {
+        format!("input->{}", about(name, axis, laws.axis_count()))
+    }
+}
+
+/// Writes the constants: gain schedules, inertia.
+fn constants(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let prefix = plan.prefix;
+    if let LawsOfAxes::Pd(own) = &laws.laws {
+        for (axis, (_, points)) in own.iter().enumerate().filter(|(_, (_, points))| !points.is_empty()) {
+            let values: Vec<String> = points
+                .iter()
+                .map(|point: &SchedulePoint| format!("    {}", initialiser(point, prefix)))
+                .collect();
+            let _ = writeln!(
+                text,
+                "/* Gain of the extra loop over the frequency of the mode. */\nstatic const {prefix}_schedule_point schedule_{axis}[{}] = {{\n{}\n}};\n",
+                points.len(),
+                values.join(",\n")
+            );
+        }
+    }
+    if let LawsOfAxes::Attitude(_) = &laws.laws {
+        let _ = writeln!(
+            text,
+            "/* Inertia tensor (kg m^2). */\nstatic const {prefix}_matrix3 inertia = {};\n",
+            initialiser(&laws.inertia, prefix)
+        );
+    }
+}
+
+/// Writes the step of the law about an axis.
+fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut String) {
+    let (prefix, axes) = (plan.prefix, laws.axis_count());
+    let input = |name: &str| format!("input->{}", about(name, axis, axes));
+    let given = |is_read: bool, name: &str| if is_read { input(name) } else { "0.0".to_owned() };
+    if axes == 3 {
+        let _ = writeln!(text, "\n    /* {} */", AXES[axis]);
+    }
+    let total = if axes == 3 { "total_angle" } else { "0.0" };
+    let (mode, is_phase_plane) = (laws.reads_mode(), matches!(laws.laws, LawsOfAxes::PhasePlane(..)));
+    let _ = writeln!(
+        text,
+        "    motion = ({prefix}_axis_motion){{ .angle = {}, .total_angle = {total}, .rate = {}, .queued_rate = {},\n        \
+         .displacement = {}, .displacement_rate = {}, .frequency = {} }};",
+        estimate(laws, "angle", axis),
+        estimate(laws, "rate", axis),
+        given(is_phase_plane, "queued_rate"),
+        given(mode, "displacement"),
+        given(mode, "displacement_rate"),
+        given(mode, "frequency"),
+    );
+    let is_attitude = matches!(laws.laws, LawsOfAxes::Attitude(_));
+    let _ = writeln!(
+        text,
+        "    reference = ({prefix}_axis_reference){{ .angle = {}, .rate = {}, .acceleration = {} }};",
+        input("reference_angle"),
+        input("reference_rate"),
+        given(is_attitude, "reference_acceleration"),
+    );
+    let law = format!("&state->{}", about("law", axis, axes));
+    match &laws.laws {
+        LawsOfAxes::Pd(own) => {
+            let points = own[axis].1.len();
+            let schedule = if points == 0 { "NULL".to_owned() } else { format!("schedule_{axis}") };
+            let torque = about("torque", axis, axes);
+            let _ = writeln!(
+                text,
+                "    output->{torque} = pd_law_step({law}, &motion, &reference, {schedule}, {points});"
+            );
+        }
+        LawsOfAxes::PhasePlane(_, modes) => {
+            for mode in 0..*modes {
+                let index = axis * modes + mode;
+                let member =
+                    |name: &str| if axes * modes == 1 { name.to_owned() } else { format!("{name}[{index}]") };
+                let _ = writeln!(
+                    text,
+                    "    modes[{mode}] = ({prefix}_elastic_rate_estimate){{ .rate = input->{}, .frequency = input->{}, .influence = input->{} }};",
+                    member("mode_rate"),
+                    member("mode_frequency"),
+                    member("mode_influence"),
+                );
+            }
+            let list = if *modes == 0 {
+                "NULL, 0, false".to_owned()
+            } else {
+                format!("modes, {modes}, {}", input("modes_are_trusted"))
+            };
+            let change = about("rate_change", axis, axes);
+            let _ = writeln!(
+                text,
+                "    output->{change} = phase_plane_law_step({law}, &motion, &reference, {list});"
+            );
+        }
+        LawsOfAxes::Attitude(own) => {
+            let count = own[axis].1.len();
+            let filters =
+                if count == 0 { "NULL, 0".to_owned() } else { format!("state->filters[{axis}], {count}") };
+            let acceleration = about("acceleration", axis, axes);
+            let _ = writeln!(
+                text,
+                "    output->{acceleration} = attitude_feedback_step({law}, &motion, &reference, {filters});"
+            );
+        }
+    }
+}
+
+/// Writes the conversion of accelerations to a torque.
+fn torque(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let (prefix, axes) = (plan.prefix, laws.axis_count());
+    let vector = |member: &dyn Fn(usize) -> String| {
+        let [x, y, z] = [0, 1, 2].map(|axis| if axis < axes { member(axis) } else { "0.0".to_owned() });
+        format!("({prefix}_vector3){{ .x = {x}, .y = {y}, .z = {z} }}")
+    };
+    let rate = if laws.estimator.is_some() {
+        String::new()
+    } else {
+        let rate = vector(&|axis| estimate(laws, "rate", axis));
+        format!("    const {prefix}_vector3 rate = {rate};\n")
+    };
+    let _ = writeln!(
+        text,
+        "\n    /* torque of these accelerations */\n    const {prefix}_vector3 acceleration = {};\n{rate}    const {prefix}_vector3 stored = ({prefix}_vector3){{ .x = input->stored_momentum[0], .y = input->stored_momentum[1], .z = input->stored_momentum[2] }};\n    \
+         const {prefix}_vector3 torque = torque_distribution_torque(&inertia, &acceleration, &rate, &stored);",
+        vector(&|axis| format!("output->{}", about("acceleration", axis, axes))),
+    );
+    for (axis, component) in ["x", "y", "z"].into_iter().enumerate().take(axes) {
+        let _ = writeln!(text, "    output->{} = torque.{component};", about("torque", axis, axes));
+    }
+}
+
+/// Writes the allocation of the torque to the wheels.
+fn wheels(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let (prefix, Some(own)) = (plan.prefix, &laws.wheels) else { return };
+    let count = own.wheels.len();
+    let limit = super::initialiser::initialiser(&own.limit, prefix);
+    let _ = writeln!(
+        text,
+        "\n    /* torques of the wheels, which turn the body the other way */\n    const {prefix}_vector3 demanded = \
+         ({prefix}_vector3){{ .x = 0.0 - output->torque[0], .y = 0.0 - output->torque[1], .z = 0.0 - output->torque[2] }};\n    \
+         wheel_allocation_allocate(state->wheels, {count}, &demanded, {});\n    \
+         wheel_allocation_limit_torques(state->wheels, {count}, {limit});\n    \
+         for (size_t wheel = 0; wheel < {count}; ++wheel) {{\n        output->wheel_torque[wheel] = state->wheels[wheel].torque;\n    }}",
+        own.is_least_largest
+    );
+}

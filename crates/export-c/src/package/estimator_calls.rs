@@ -1,0 +1,90 @@
+//! Functions of an exported attitude filter: its start, and a sample of the sensors.
+
+use std::fmt::Write as _;
+
+use flexsc_flight::attitude_observation::ObservationKind;
+
+use super::initialiser::initialiser;
+use super::{Plan, calls};
+use crate::control_system::AttitudeUnit;
+
+/// Returns the members of the state that the filter needs.
+pub fn members(unit: &AttitudeUnit) -> [(&'static str, &'static str, String); 3] {
+    [
+        ("Attitude filter.", "AttitudeEstimator", "estimator".to_owned()),
+        ("Recent past of the filter.", "AttitudeHistoryEntry", format!("entries[{}]", unit.entries.len())),
+        (
+            "Observations of the recent past.",
+            "DelayedObservation",
+            format!("observations[{}]", unit.observations.len()),
+        ),
+    ]
+}
+
+/// Writes the function that starts the filter with a state, which `init` calls too.
+pub fn start(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
+    let prefix = plan.prefix;
+    let [noise, reach] = [initialiser(&unit.noise, prefix), initialiser(&unit.reach, prefix)];
+    let [angle, bias] = unit.deviations.map(|deviation| initialiser(&deviation, prefix));
+    let _ = writeln!(
+        text,
+        "/* Starts the attitude filter with an attitude and a gyro bias (rad/s). */\nstatic void start_filter({prefix}_state *state, {prefix}_quaternion attitude, {prefix}_vector3 bias)\n{{\n    \
+         const {prefix}_gyro_noise noise = {noise};\n    const {prefix}_ticks reach = {reach};\n    \
+         const {prefix}_attitude_bias_filter filter = attitude_bias_filter_new(attitude, bias, {angle}, {bias});\n\n    \
+         state->estimator = attitude_estimator_start(filter, noise, reach, state->entries, {});\n}}\n",
+        unit.entries.len()
+    );
+}
+
+/// Writes the calls `start` and `sample`.
+pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
+    let (prefix, entries) = (plan.prefix, unit.entries.len());
+    let attitude = |from: &str| {
+        format!("({prefix}_quaternion){{ .w = {from}[0], .x = {from}[1], .y = {from}[2], .z = {from}[3] }}")
+    };
+    let vector =
+        |from: &str| format!("({prefix}_vector3){{ .x = {from}[0], .y = {from}[1], .z = {from}[2] }}");
+    let output = "    output->attitude[0] = attitude.w;\n    output->attitude[1] = attitude.x;\n    output->attitude[2] = attitude.y;\n    \
+                  output->attitude[3] = attitude.z;\n";
+    let _ = writeln!(
+        text,
+        "{}\n{{\n    start_filter(state, {}, {});\n    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n{output}}}\n",
+        calls::signature(plan, &plan.calls[0]),
+        attitude("input->attitude"),
+        vector("input->bias"),
+    );
+    let storage = format!("state->entries, {entries}, state->observations, {}", unit.observations.len());
+    let _ = writeln!(
+        text,
+        "{}\n{{\n    if (input->gyro_is_valid) {{\n        const {prefix}_ticks latency = {};\n        \
+         attitude_estimator_take_gyro(&state->estimator, now, latency, {}, {storage});\n    }}",
+        calls::signature(plan, &plan.calls[1]),
+        initialiser(&unit.gyro.1, prefix),
+        vector("input->gyro_rate"),
+    );
+    for corrector in &unit.correctors {
+        let name = &corrector.name;
+        let numbers = if corrector.observation.kind == ObservationKind::Attitude {
+            format!("        observation.attitude = {};\n", attitude(&format!("input->{name}_attitude")))
+        } else {
+            format!(
+                "        observation.vector = {};\n        observation.inertial = {};\n",
+                vector(&format!("input->{name}_vector")),
+                vector(&format!("input->{name}_reference"))
+            )
+        };
+        let _ = writeln!(
+            text,
+            "    if (input->{name}_is_valid) {{\n        const {prefix}_ticks latency = {};\n        {prefix}_attitude_observation observation = {};\n{numbers}        \
+             attitude_estimator_take_observation(&state->estimator, now, latency, &observation, {storage});\n    }}",
+            initialiser(&corrector.latency, prefix),
+            initialiser(&corrector.observation, prefix),
+        );
+    }
+    let _ = writeln!(
+        text,
+        "    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
+         const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});\n{output}    \
+         output->rate[0] = rate.x;\n    output->rate[1] = rate.y;\n    output->rate[2] = rate.z;\n}}\n"
+    );
+}

@@ -1,0 +1,96 @@
+//! Header of an exported control system: types, structs of inputs and outputs, and the functions.
+
+use std::fmt::Write as _;
+
+use super::{Plan, estimator_calls};
+use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
+use crate::translate::Translation;
+
+/// Returns the header, with the types of the flight code.
+pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
+    let prefix = plan.prefix;
+    let guard = format!("{}_H", prefix.to_uppercase());
+    let mut text = format!(
+        "/* Control system of {}, exported by flexsc {}.\n *\n * The code is translated from the Rust code that flexsc calls in a \
+         run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 doubles, no contraction, no fast-math. \
+         Units are SI.\n */\n#ifndef {guard}\n#define {guard}\n\n",
+        plan.origin,
+        env!("CARGO_PKG_VERSION")
+    );
+    text.push_str(translation.includes.trim());
+    text.push_str("\n\n");
+    text.push_str(translation.declarations.trim());
+    text.push_str("\n\n");
+    state(plan, &mut text);
+    for call in plan.calls {
+        let _ = writeln!(text, "/* Inputs of `{prefix}_{}`. */", call.name);
+        members(&call.inputs, &format!("{prefix}_{}_input", call.name), &mut text);
+        let _ = writeln!(text, "/* Outputs of `{prefix}_{}`. */", call.name);
+        members(&call.outputs, &format!("{prefix}_{}_output", call.name), &mut text);
+    }
+    let _ = writeln!(
+        text,
+        "/* Sets the state before the first call. */\nvoid {prefix}_init({prefix}_state *state);\n"
+    );
+    for call in plan.calls {
+        let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::calls::signature(plan, call));
+    }
+    let _ = writeln!(text, "#endif");
+    text
+}
+
+/// Writes the struct of the state.
+fn state(plan: &Plan<'_>, text: &mut String) {
+    let array = |count: usize| if count == 1 { String::new() } else { format!("[{count}]") };
+    text.push_str("/* State of the control system, which its functions change. */\ntypedef struct {\n");
+    let mut member = |about: &str, type_name: &str, name: &str| {
+        let _ = writeln!(text, "    /* {about} */\n    {} {name};", plan.type_name(type_name));
+    };
+    match plan.system {
+        ControlSystem::Relays(relays) => {
+            member("Relay about each axis.", "PolledRelay", &format!("relay{}", array(relays.axes.len())));
+        }
+        ControlSystem::Sampled(laws) => {
+            let axes = array(laws.axis_count());
+            let (name, filters) = match &laws.laws {
+                LawsOfAxes::Pd(_) => ("PdLaw", 0),
+                LawsOfAxes::PhasePlane(..) => ("PhasePlaneLaw", 0),
+                LawsOfAxes::Attitude(own) => {
+                    ("AttitudeFeedback", own.iter().map(|(_, filters)| filters.len()).max().unwrap_or(0))
+                }
+            };
+            member("Law about each axis.", name, &format!("law{axes}"));
+            if filters > 0 {
+                member(
+                    "Filters of each law.",
+                    "BiquadFilter",
+                    &format!("filters[{}][{filters}]", laws.axis_count()),
+                );
+            }
+            if let Some(unit) = &laws.estimator {
+                for (about, name, declared) in estimator_calls::members(unit) {
+                    member(about, name, &declared);
+                }
+            }
+            if let Some(own) = &laws.wheels {
+                member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));
+            }
+        }
+    }
+    let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
+}
+
+/// Writes a struct with a member for each channel.
+fn members(channels: &[Channel], name: &str, text: &mut String) {
+    text.push_str("typedef struct {\n");
+    for channel in channels {
+        let kind = match channel.kind {
+            NumberKind::Real => "double",
+            NumberKind::Flag => "bool",
+            NumberKind::Integer(_) => "int64_t",
+        };
+        let array = if channel.count == 1 { String::new() } else { format!("[{}]", channel.count) };
+        let _ = writeln!(text, "    /* {}. */\n    {kind} {}{array};", channel.about, channel.name);
+    }
+    let _ = writeln!(text, "}} {name};\n");
+}

@@ -1,0 +1,121 @@
+//! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
+
+mod calls;
+mod driver;
+mod estimator_calls;
+mod header;
+mod initialiser;
+mod source;
+mod static_files;
+
+use flexsc_core::Scenario;
+
+use crate::control_system::{CallLayout, ControlSystem};
+use crate::flight_sources::flight_sources;
+use crate::self_test::self_test;
+use crate::translate::{TranslationError, translate};
+use crate::vectors::{self, Vector, VectorError};
+
+/// Numbers of cycles for which the hash of the self-test is exported.
+pub const HASHED_CYCLES: [u64; 3] = [1000, 20_000, 1_000_000];
+
+/// File of an exported control system.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PackageFile {
+    /// Path within the directory.
+    pub path: String,
+    /// Content.
+    pub bytes: Vec<u8>,
+}
+
+/// Exported control system.
+#[derive(Clone, Debug)]
+pub struct Package {
+    /// Files, in the order of their paths.
+    pub files: Vec<PackageFile>,
+    /// Functions.
+    pub calls: Vec<CallLayout>,
+    /// Number of vectors.
+    pub vectors: usize,
+}
+
+/// Reason for which a control system is not exported.
+#[derive(Debug)]
+pub enum ExportError {
+    /// No vectors, because the control system has no plain code, the run fails, or the laws differ.
+    Vectors(VectorError),
+    /// The plain code is outside the subset that is translated.
+    Translation(TranslationError),
+}
+
+impl std::fmt::Display for ExportError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Vectors(error) => error.fmt(f),
+            Self::Translation(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for ExportError {}
+
+/// Data from which the files are written.
+struct Plan<'a> {
+    /// Prefix of all names in C.
+    prefix: &'a str,
+    /// File name of the scenario.
+    origin: &'a str,
+    system: &'a ControlSystem,
+    calls: &'a [CallLayout],
+}
+
+impl Plan<'_> {
+    /// Returns the name in C of a type of the flight code.
+    fn type_name(&self, name: &str) -> String {
+        format!("{}_{}", self.prefix, snake(name))
+    }
+}
+
+/// Exports the control system of a scenario, with names that begin with `prefix`, and at most `most` vectors of its run.
+///
+/// # Errors
+/// An [`ExportError`] if a part of the control system has no plain code, or if its run fails.
+pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> Result<Package, ExportError> {
+    let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
+    let vectors: Vec<Vector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
+    let calls = system.calls();
+    let plan = Plan { prefix, origin, system: &system, calls: &calls };
+    let functions = calls::functions(&plan);
+    let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
+        .map_err(ExportError::Translation)?;
+    let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
+    let mut files = vec![
+        text(format!("{prefix}.h"), header::header(&plan, &translation)),
+        text(format!("{prefix}.c"), source::source(&plan, &translation, &functions)),
+        text("driver.c".to_owned(), driver::driver(&plan)),
+        text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
+        text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
+        PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
+    ];
+    files
+        .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    let vectors = vectors.len();
+    Ok(Package { files, calls, vectors })
+}
+
+fn text(path: String, content: String) -> PackageFile {
+    PackageFile { path, bytes: content.into_bytes() }
+}
+
+/// Returns a name with underscores between its words, in lower case.
+fn snake(name: &str) -> String {
+    let mut words = String::new();
+    for (index, letter) in name.chars().enumerate() {
+        if letter.is_ascii_uppercase() && index > 0 {
+            words.push('_');
+        }
+        words.push(letter.to_ascii_lowercase());
+    }
+    words
+}

@@ -1,0 +1,61 @@
+//! Source of an exported control system: the translated flight code, and the functions that call it.
+
+use std::fmt::Write as _;
+
+use super::Plan;
+use crate::control_system::{ControlSystem, LawsOfAxes};
+use crate::translate::Translation;
+
+/// Returns the paths of the functions of the flight code that the exported `functions` call.
+pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
+    let mut roots = Vec::new();
+    if functions.contains("binary64_infinity") {
+        roots.push("binary64::infinity");
+    }
+    match system {
+        ControlSystem::Relays(_) => roots.extend(["relay::RelayLaw::decide", "relay::PolledRelay::step"]),
+        ControlSystem::Sampled(laws) => {
+            if laws.axis_count() == 3 {
+                roots.push("axis_motion::total_angle");
+            }
+            match laws.laws {
+                LawsOfAxes::Pd(_) => roots.push("pd::PdLaw::step"),
+                LawsOfAxes::PhasePlane(..) => roots.push("phase_plane::PhasePlaneLaw::step"),
+                LawsOfAxes::Attitude(_) => {
+                    roots.extend(["attitude_law::AttitudeFeedback::step", "torque_distribution::torque"]);
+                }
+            }
+            if laws.estimator.is_some() {
+                roots.extend([
+                    "attitude_estimator::AttitudeEstimator::start",
+                    "attitude_estimator::AttitudeEstimator::take_gyro",
+                    "attitude_estimator::AttitudeEstimator::take_observation",
+                    "attitude_estimator::AttitudeEstimator::attitude",
+                    "attitude_estimator::AttitudeEstimator::rate",
+                    "attitude_filter::AttitudeBiasFilter::new",
+                    "quaternion::Quaternion::rotation_to",
+                ]);
+            }
+            if laws.wheels.is_some() {
+                roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques"]);
+            }
+        }
+    }
+    roots
+}
+
+/// Returns the source: the translated flight code, and the exported functions that call it.
+pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "/* Control system of {}: see {}.h. */\n\n#include \"{}.h\"\n",
+        plan.origin, plan.prefix, plan.prefix
+    );
+    text.push_str(translation.guards.trim());
+    text.push_str("\n\n");
+    text.push_str(translation.definitions.trim());
+    text.push_str("\n\n");
+    text.push_str(functions);
+    text
+}

@@ -1,0 +1,49 @@
+//! Makefile, description and start-up code of boards.
+
+use std::fmt::Write as _;
+
+use super::Plan;
+
+/// Files with which the driver runs on a Cortex-M board.
+pub fn board_files() -> [(&'static str, &'static str); 2] {
+    [("boards/mps2.ld", include_str!("files/mps2.ld")), ("boards/start.c", include_str!("files/start.c"))]
+}
+
+/// Returns the Makefile, with the hashes of the self-test for numbers of cycles.
+pub fn makefile(prefix: &str, hashes: &[(u64, u64)]) -> String {
+    let mut text = include_str!("files/Makefile").replace("NAME", prefix);
+    // The longer names come first.
+    for (cycles, hash) in hashes.iter().rev() {
+        text = text.replace(&format!("HASH_{cycles}\n"), &format!("{hash:016x}\n"));
+    }
+    text
+}
+
+/// Returns the description of the directory.
+pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String {
+    let prefix = plan.prefix;
+    let mut text = format!(
+        "# Control system of {}\n\nExported by flexsc {}. `{prefix}.h` and `{prefix}.c` are the control system: C99, no heap, no library but \
+         `memcpy`. The code is translated from the Rust code that flexsc calls in a run.\n\n```c\n{prefix}_state state;\n{prefix}_init(&state);\n```\n\n\
+         | function | does |\n|---|---|\n",
+        plan.origin,
+        env!("CARGO_PKG_VERSION")
+    );
+    for call in plan.calls {
+        let _ = writeln!(text, "| `{prefix}_{}` | {} |", call.name, call.about);
+    }
+    let _ = write!(
+        text,
+        "\n`make check` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits; \
+         then it calls the functions with random and extreme inputs (zeros, subnormals, infinities, NaN) and compares a hash. \
+         `make check-all` does the same under emulation on AArch64, RISC-V, Cortex-M4F and Cortex-M7.\n\n| cycles | hash |\n|---|---|\n"
+    );
+    for (cycles, hash) in hashes {
+        let _ = writeln!(text, "| {cycles} | {hash:016x} |");
+    }
+    text.push_str(
+        "\nEqual bits need IEEE 754 doubles, round to nearest, subnormal numbers, no fused multiply-add (`-ffp-contract=off`) and no \
+         fast-math. An output must not be compared by bits if it is NaN.\n",
+    );
+    text
+}

@@ -1,0 +1,98 @@
+//! Self-test: a hash over the outputs of many calls with random and extreme inputs, which the exported code repeats.
+
+use flexsc_flight::ticks::Ticks;
+
+use crate::control_system::{CallLayout, Channel, ControlSystem, NumberKind};
+
+/// Cycles after which the state is set again, so that inputs that are not numbers do not stay in it.
+pub const BLOCK: u64 = 256;
+/// Of so many blocks one has extreme inputs.
+pub const EXTREME_BLOCK: u64 = 16;
+/// State of the generator at the start.
+pub const SEED: u64 = 0x9E37_79B9_7F4A_7C15;
+/// Extreme inputs.
+pub const EXTREMES: [u64; 8] = [
+    0x0000_0000_0000_0000,
+    0x8000_0000_0000_0000,
+    0x0000_0000_0000_0001,
+    0x000F_FFFF_FFFF_FFFF,
+    0x7E37_E43C_8800_759C,
+    0x7FF0_0000_0000_0000,
+    0xFFF0_0000_0000_0000,
+    0x7FF8_0000_0000_0000,
+];
+
+/// Generator of inputs: xorshift with 64 bits.
+struct Inputs(u64);
+
+impl Inputs {
+    fn draw(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    /// Returns the next input of a channel.
+    fn word(&mut self, channel: &Channel, is_extreme: bool) -> u64 {
+        let bits = self.draw();
+        match channel.kind {
+            NumberKind::Flag => bits & 1,
+            NumberKind::Integer(below) => bits % below.max(1),
+            NumberKind::Real if is_extreme && bits & 7 == 0 => EXTREMES[(bits >> 3 & 7) as usize],
+            NumberKind::Real => {
+                let size = match bits & 3 {
+                    0 => 1024.0,
+                    1 => 1.0 / 1024.0,
+                    _ => 1.0,
+                };
+                let unit = 2.0 * ((bits >> 11) as f64 / 9_007_199_254_740_992.0) - 1.0;
+                (unit * channel.scale * size).to_bits()
+            }
+        }
+    }
+}
+
+/// Returns the hash (FNV-1a of 64 bits) over the outputs of all functions in so many cycles; all NaN count as one value.
+pub fn self_test(system: &ControlSystem, cycles: u64) -> u64 {
+    let calls = system.calls();
+    let milliseconds = cycle_milliseconds(system);
+    let (mut inputs, mut hash) = (Inputs(SEED), 0xCBF2_9CE4_8422_2325_u64);
+    let mut current = system.clone();
+    for cycle in 0..cycles {
+        if cycle % BLOCK == 0 {
+            current = system.clone();
+        }
+        let is_extreme = cycle / BLOCK % EXTREME_BLOCK == EXTREME_BLOCK - 1;
+        let time = cycle * milliseconds;
+        let now = Ticks { whole: (time / 1000) as i64, part: (time % 1000) as i64 * 1_000_000_000_000 };
+        let due = |call: &CallLayout| !call.is_start || cycle % BLOCK == 0;
+        for (index, call) in calls.iter().enumerate().filter(|(_, call)| due(call)) {
+            let words: Vec<u64> = call
+                .inputs
+                .iter()
+                .flat_map(|channel| std::iter::repeat_n(channel, channel.count))
+                .map(|channel| inputs.word(channel, is_extreme))
+                .collect();
+            let outputs = current.call(index, now, &words);
+            let channels =
+                call.outputs.iter().flat_map(|channel| std::iter::repeat_n(channel.kind, channel.count));
+            for (word, kind) in outputs.into_iter().zip(channels) {
+                for byte in canonical(word, kind).to_le_bytes() {
+                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
+                }
+            }
+        }
+    }
+    hash
+}
+
+/// Returns the milliseconds of a period of the self-test.
+pub fn cycle_milliseconds(system: &ControlSystem) -> u64 {
+    (flexsc_flight::maths::round(system.period() * 1000.0) as u64).max(1)
+}
+
+/// Returns a word with one pattern for all NaN.
+fn canonical(word: u64, kind: NumberKind) -> u64 {
+    if kind == NumberKind::Real && f64::from_bits(word).is_nan() { 0x7FF8_0000_0000_0000 } else { word }
+}

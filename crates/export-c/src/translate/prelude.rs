@@ -1,0 +1,35 @@
+//! Fixed start of the C: headers, and guards that stop the build under compilers that change bits.
+
+/// Headers that the declarations need; a compiler without an operating system has them too, or a `memcpy` of its own.
+pub(super) const INCLUDES: &str = "\
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+";
+
+/// Guards; `PREFIX` stands for the prefix of names.
+pub(super) const GUARDS: &str = r#"/* The results have the same bits everywhere if doubles follow IEEE 754, each operation is rounded once and to a
+ * double, and none is moved, joined or left out. */
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "PREFIX: -ffast-math, -Ofast and -ffinite-math-only change results: build without them"
+#endif
+#if defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || defined(__NO_SIGNED_ZEROS__)
+#error "PREFIX: -fassociative-math, -freciprocal-math and -fno-signed-zeros change results: build without them"
+#endif
+#if !defined(FLT_EVAL_METHOD) || FLT_EVAL_METHOD != 0
+#error "PREFIX: expressions are not evaluated in the precision of their type (x87): build with -msse2 -mfpmath=sse"
+#endif
+#if FLT_RADIX != 2 || DBL_MANT_DIG != 53 || DBL_MAX_EXP != 1024 || DBL_MIN_EXP != -1021
+#error "PREFIX: double is not the 64-bit number of IEEE 754"
+#endif
+/* No multiplication is joined with an addition. The flag -ffp-contract=off says so too. */
+#if defined(__clang__)
+#pragma STDC FP_CONTRACT OFF
+#elif defined(__GNUC__)
+#pragma GCC optimize("fp-contract=off")
+#endif
+typedef char PREFIX_double_has_8_bytes[sizeof(double) == 8 ? 1 : -1];
+typedef char PREFIX_int_has_4_bytes[sizeof(int) >= 4 ? 1 : -1];
+"#;

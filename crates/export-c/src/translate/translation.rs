@@ -1,0 +1,219 @@
+//! Translation of the items that some roots need.
+
+use std::collections::BTreeMap;
+
+use super::comments::comment;
+use super::constants::define_constant;
+use super::error::{Outcome, TranslationError};
+use super::functions::{TranslatedFunction, translate_function};
+use super::items::{ItemContent, Program};
+use super::names::{Names, free_name};
+use super::order::by_module;
+use super::prelude::{GUARDS, INCLUDES};
+use super::reach::{reach, refuse_recursion};
+use super::writer::push;
+
+/// File of Rust.
+#[derive(Debug, Clone, Copy)]
+pub struct SourceFile<'a> {
+    /// Path, for messages.
+    pub path: &'a str,
+    /// Name of the module: the file's name without its extension.
+    pub module: &'a str,
+    /// Text.
+    pub text: &'a str,
+}
+
+/// Translated items in C99, and their names.
+#[derive(Debug, Clone, Default)]
+pub struct Translation {
+    /// Lines `#include <..>` that the other parts need.
+    pub includes: String,
+    /// Guards that stop the build under compilers that change bits, for the top of the .c file.
+    pub guards: String,
+    /// Sizes, enums and structs for the header, in order.
+    pub declarations: String,
+    /// Helpers, constants and static functions for the .c file, in order.
+    pub definitions: String,
+    names: BTreeMap<String, String>,
+}
+
+impl Translation {
+    /// Returns the name in C of a reachable struct or enum `module::Type`.
+    pub fn type_name(&self, path: &str) -> Option<&str> {
+        self.name("type", path)
+    }
+
+    /// Returns the name in C of a reachable function `module::name` or `module::Type::name`.
+    pub fn function_name(&self, path: &str) -> Option<&str> {
+        self.name("function", path)
+    }
+
+    /// Returns the name in C of a reachable constant `module::NAME` or `module::Type::NAME`.
+    pub fn constant_name(&self, path: &str) -> Option<&str> {
+        self.name("constant", path)
+    }
+
+    /// Returns the name in C of a variant `module::Enum::Variant` of a reachable enum.
+    pub fn variant_name(&self, path: &str) -> Option<&str> {
+        self.name("variant", path)
+    }
+
+    /// Returns the name in C of a field `module::Type::field` of a reachable struct.
+    pub fn field_name(&self, path: &str) -> Option<&str> {
+        self.name("field", path)
+    }
+
+    fn name(&self, group: &str, path: &str) -> Option<&str> {
+        self.names.get(&format!("{group} {path}")).map(String::as_str)
+    }
+}
+
+/// Translates the items that some roots need; all items of the files are checked.
+///
+/// A root is the path of a function, type or constant: `relay::Relay::decide`, `maths::sin`.
+pub fn translate(
+    files: &[SourceFile<'_>],
+    roots: &[&str],
+    prefix: &str,
+) -> Result<Translation, TranslationError> {
+    let program = Program::collect(files)?;
+    let names = Names::new(&program, prefix)?;
+    let functions = translate_functions(&program, &names)?;
+    refuse_recursion(&program, &functions)?;
+    let mut indices = Vec::new();
+    for root in roots {
+        let Some(index) = program.find_absolute(root) else {
+            return Err(TranslationError::without_place(
+                format!("the root `{root}`"),
+                "paths `module::name` of items",
+            ));
+        };
+        indices.push(index);
+    }
+    let parts = reach(&program, &functions, &indices)?;
+    let mut translation = Translation {
+        includes: INCLUDES.to_owned(),
+        guards: GUARDS.replace("PREFIX", names.prefix()),
+        ..Translation::default()
+    };
+    for helper in &parts.helpers {
+        translation.definitions += helper.text();
+        translation.definitions.push('\n');
+    }
+    for index in &parts.items {
+        translation.record_names(&program, &names, *index);
+        let text = match &program.items[*index].content {
+            ItemContent::Struct { .. } | ItemContent::Enum { .. } => declare_type(&program, &names, *index)?,
+            ItemContent::Constant { .. } if program.is_size(*index)? => {
+                define_constant(&program, &names, *index)?
+            }
+            _ => continue,
+        };
+        translation.declarations += &text;
+        translation.declarations.push('\n');
+    }
+    let mut module = usize::MAX;
+    let mut headed = Vec::new();
+    for index in by_module(&program, &functions, &parts.items)? {
+        let file = program.items[index].file;
+        if file != module {
+            translation.definitions += &heading(&program, file, headed.contains(&file));
+            headed.push(file);
+            module = file;
+        }
+        translation.definitions += &match &functions[index] {
+            Some(function) => function.text.clone(),
+            None => define_constant(&program, &names, index)?,
+        };
+        translation.definitions.push('\n');
+    }
+    Ok(translation)
+}
+
+fn translate_functions(program: &Program<'_>, names: &Names) -> Outcome<Vec<Option<TranslatedFunction>>> {
+    let lines: Vec<Vec<&str>> = program.files.iter().map(|file| file.text.lines().collect()).collect();
+    let mut functions = Vec::new();
+    for (index, item) in program.items.iter().enumerate() {
+        if let ItemContent::Struct { fields } = &item.content {
+            for field in fields {
+                program.field_kind(index, &field.name)?;
+            }
+        }
+        if matches!(item.content, ItemContent::Constant { .. }) {
+            define_constant(program, names, index)?;
+        }
+        let function = translate_function(program, names, &lines[item.file], index);
+        functions.push(function.map_err(|error| program.placed(error, item.file))?);
+    }
+    Ok(functions)
+}
+
+impl Translation {
+    fn record_names(&mut self, program: &Program<'_>, names: &Names, index: usize) {
+        let path = program.path(index);
+        let mut record = |group: &str, path: &str, name: &str| {
+            self.names.insert(format!("{group} {path}"), name.to_owned());
+        };
+        match &program.items[index].content {
+            ItemContent::Struct { fields } => {
+                record("type", &path, names.item(index));
+                for field in fields {
+                    record("field", &format!("{path}::{}", field.name), &free_name(&field.name));
+                }
+            }
+            ItemContent::Enum { variants } => {
+                record("type", &path, names.item(index));
+                for (variant, _) in variants {
+                    record("variant", &format!("{path}::{variant}"), &names.variant(index, variant));
+                }
+            }
+            ItemContent::Function { .. } => record("function", &path, names.item(index)),
+            ItemContent::Constant { .. } => record("constant", &path, names.item(index)),
+        }
+    }
+}
+
+/// Returns the comment of a module, with its notices of copyright where it comes first.
+fn heading(program: &Program<'_>, module: usize, is_repeated: bool) -> String {
+    let name = program.files[module].module;
+    let lines = match program.module_docs[module].split_first() {
+        Some((first, rest)) if !is_repeated => {
+            let mut lines = vec![format!("Module {name}: {first}")];
+            lines.extend(rest.iter().cloned());
+            lines
+        }
+        _ => vec![format!("Module {name}, continued")],
+    };
+    format!("{}\n", comment(&lines, 0))
+}
+
+fn declare_type(program: &Program<'_>, names: &Names, index: usize) -> Outcome<String> {
+    let item = &program.items[index];
+    let name = names.item(index);
+    let mut text = comment(&item.docs, 0);
+    match &item.content {
+        ItemContent::Struct { fields } => {
+            push(&mut text, format_args!("typedef struct {name} {{\n"));
+            for field in fields {
+                text += &comment(&field.docs, 4);
+                if let Some(kind) = program.field_kind(index, &field.name)? {
+                    push(
+                        &mut text,
+                        format_args!("    {};\n", names.declaration(&kind, &free_name(&field.name))),
+                    );
+                }
+            }
+        }
+        ItemContent::Enum { variants } => {
+            push(&mut text, format_args!("typedef enum {name} {{\n"));
+            for (variant, docs) in variants {
+                text += &comment(docs, 4);
+                push(&mut text, format_args!("    {},\n", names.variant(index, variant)));
+            }
+            // C99 allows the last comma.
+        }
+        _ => {}
+    }
+    Ok(format!("{text}}} {name};\n"))
+}

@@ -1,0 +1,172 @@
+//! Exported control systems: the same bits as the engine's in every home that the machine has, and what is refused.
+
+use std::collections::BTreeMap;
+use std::process::{Command, Output};
+
+use flexsc_core::Scenario;
+use flexsc_export_c::control_system::ControlSystem;
+use flexsc_export_c::{self_test, vectors};
+
+use crate::util::Dir;
+
+/// A relay at samples, a PD law with a gain schedule, phase planes with active damping, and attitude laws with wheels.
+const EXPORTED: [&str; 4] = ["relay-sampled", "wheel-scheduled-gain", "iss-ringdown", "earth-observer"];
+
+/// Returns a shipped scenario.
+fn shipped(name: &str) -> Scenario {
+    let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    Scenario::load(path.as_ref()).expect("a shipped scenario")
+}
+
+/// True if a command is installed; else it says aloud what is skipped.
+fn is_installed(command: &str) -> bool {
+    let is_there = Command::new(command).arg("--version").output().is_ok_and(|out| out.status.success());
+    if !is_there {
+        eprintln!("skipped: {command} is not installed");
+    }
+    is_there
+}
+
+fn make(dir: &Dir, within: &str, arguments: &[&str]) -> Output {
+    Command::new("make").arg("-C").arg(dir.path(within)).args(arguments).output().expect("make runs")
+}
+
+fn text(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Returns the hashes in the description of an exported control system.
+fn hashes(dir: &Dir, within: &str) -> BTreeMap<u64, String> {
+    let readme = dir.text(&format!("{within}/README.md"));
+    let rows =
+        readme.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |")?.split_once(" | "));
+    rows.filter_map(|(cycles, hash)| Some((cycles.parse().ok()?, hash.to_owned()))).collect()
+}
+
+#[test]
+fn the_plain_laws_give_the_commands_of_every_exportable_scenario() {
+    let directory = format!("{}/../../scenarios", env!("CARGO_MANIFEST_DIR"));
+    let (mut exported, mut refused) = (Vec::new(), Vec::new());
+    let mut names: Vec<String> = std::fs::read_dir(directory)
+        .expect("the scenarios")
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
+        .collect();
+    names.sort();
+    for name in names {
+        let scenario = shipped(&name);
+        match ControlSystem::new(&scenario) {
+            Ok(_) => match vectors::record(&scenario, 1000) {
+                Ok(calls) => exported.push(format!("{name}: {} calls", calls.len())),
+                Err(error) => panic!("{name}: {error}"),
+            },
+            Err(error) => refused.push(format!("{name}: {error}")),
+        }
+    }
+    insta::assert_snapshot!(format!("{}\n\nrefused\n{}", exported.join("\n"), refused.join("\n")));
+}
+
+#[test]
+fn exported_laws_have_equal_bits_in_every_home() {
+    if !is_installed("make") {
+        return;
+    }
+    for name in EXPORTED {
+        let dir = Dir::with(&[name]);
+        dir.run(&format!("export-c {name}.toml -o out --calls 2000"))
+            .exits(0)
+            .says(&["calls of the run as vectors"]);
+        let hash = &hashes(&dir, "out")[&20_000];
+        let output = make(&dir, "out", &["check-all", "CYCLES=20000", &format!("HASH={hash}")]);
+        let said = text(&output);
+        assert!(output.status.success(), "{name}: {said}");
+        said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
+        if is_installed("gcc") {
+            assert!(
+                said.contains("gcc -O0: 20000 cycles") && said.contains("gcc -O3: 20000 cycles"),
+                "{said}"
+            );
+        }
+    }
+}
+
+/// A self-test that never differs would prove nothing.
+#[test]
+fn contraction_and_fast_mathematics_are_found() {
+    if !is_installed("make") || !is_installed("gcc") {
+        return;
+    }
+    let dir = Dir::with(&["earth-observer"]);
+    dir.run("export-c earth-observer.toml -o out --calls 10").exits(0);
+    let has_fma = std::fs::read_to_string("/proc/cpuinfo").is_ok_and(|text| text.contains(" fma "));
+    if has_fma {
+        let output = make(&dir, "out", &["check-contraction"]);
+        assert!(text(&output).contains("contraction: differs, as it must"), "{}", text(&output));
+    } else {
+        eprintln!("skipped: the processor has no fused multiply-add");
+    }
+    let output = make(&dir, "out", &["driver", "CFLAGS=-O2 -ffast-math"]);
+    assert!(!output.status.success() && text(&output).contains("#error"), "{}", text(&output));
+    // A changed gain differs from the vectors.
+    let source =
+        dir.text("out/earth_observer.c").replace("total_angle = axis", "total_angle = 1.0000001 * axis");
+    dir.write("out/earth_observer.c", source);
+    let output = make(&dir, "out", &["check"]);
+    assert!(!output.status.success() && text(&output).contains("call "), "{}", text(&output));
+}
+
+#[test]
+fn the_self_test_reaches_limits_and_not_a_number() {
+    for name in EXPORTED {
+        let system = ControlSystem::new(&shipped(name)).expect("an exportable scenario");
+        // One block of 16 is extreme: the hash of 15 blocks has no such input.
+        let hashes = [100, 256 * 15, 256 * 16].map(|cycles| self_test::self_test(&system, cycles));
+        assert!(hashes[0] != hashes[1] && hashes[1] != hashes[2], "{name}: {hashes:x?}");
+        assert_eq!(hashes[0], self_test::self_test(&system, 100), "{name}");
+    }
+}
+
+#[test]
+fn scenarios_without_plain_laws_are_refused_at_their_key() {
+    let dir = Dir::with(&["slew-wheel-lqg", "safe-mode", "relay-sampled"]);
+    for (command, words) in [
+        (
+            "export-c slew-wheel-lqg.toml -o out",
+            ["slew-wheel-lqg.toml:", "`law.state_space`", "has no code for flight"],
+        ),
+        ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "export the law of one mode"]),
+        (
+            "vectors slew-wheel-lqg.toml -o out.bin",
+            ["slew-wheel-lqg.toml:", "`law.state_space`", "`relay`, `pd`"],
+        ),
+        (
+            "export-c relay-sampled.toml -o out --name 9",
+            ["--name 9", "lower-case letters", "begin with a letter"],
+        ),
+        (
+            "export-c relay-sampled.toml -o relay-sampled.toml",
+            ["relay-sampled.toml", "must be a directory", "is a file"],
+        ),
+        ("vectors relay-sampled.toml -o out.txt", ["out.txt", "must end in", ".bin"]),
+        ("export-c relay-sampled.toml -o out --calls 0", ["--calls", "0", "1..="]),
+    ] {
+        dir.run(command).exits(2).says(&words);
+        assert!(!dir.has("out") && !dir.has("out.bin"), "{command}");
+    }
+}
+
+#[test]
+fn an_export_is_written_again_and_does_not_replace_other_files() {
+    let dir = Dir::with(&["relay-sampled"]);
+    dir.run("export-c relay-sampled.toml -o out").exits(0);
+    let first = dir.read("out/relay_sampled.c");
+    dir.run("export-c relay-sampled.toml -o out").exits(0);
+    assert_eq!(dir.read("out/relay_sampled.c"), first);
+    dir.write("out/relay_sampled.c", "changed");
+    dir.run("export-c relay-sampled.toml -o out")
+        .exits(2)
+        .says(&["already exists, with other content", "--force"]);
+    dir.run("export-c relay-sampled.toml -o out --force").exits(0);
+    assert_eq!(dir.read("out/relay_sampled.c"), first);
+    dir.run("vectors relay-sampled.toml -o all.bin --calls 20000").exits(0).says(&["calls"]);
+    assert_eq!(dir.read("all.bin"), dir.read("out/vectors.bin"));
+}

@@ -1,0 +1,134 @@
+"""FMUs: read, checked and run by FMPy, an importer of others, and equal to the native run."""
+
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Any, Literal
+
+import flexsc
+import numpy as np
+import pytest
+from conftest import shipped
+
+fmpy = pytest.importorskip("fmpy", reason="FMPy imports FMUs: pip install fmpy")
+
+SCENARIOS = ["relay-fixed", "wheel-fixed-gain", "earth-observer", "station-keeping"]
+PARTS: list[Literal["loop", "plant"]] = ["loop", "plant"]
+
+
+def exported(
+    tmp_path: Path, name: str, fmi: Literal[2, 3] = 3, part: Literal["loop", "plant"] = "loop", **keys: Any
+) -> str:
+    """The FMU of a shipped scenario."""
+    path = tmp_path / f"{name}-{fmi}-{part}.fmu"
+    shipped(name).with_(keys).export_fmu(path, fmi=fmi, part=part)
+    return str(path)
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("part", PARTS)
+def test_descriptions_are_valid(
+    tmp_path: Path, name: str, fmi: Literal[2, 3], part: Literal["loop", "plant"]
+) -> None:
+    from fmpy.validation import validate_fmu
+
+    path = exported(tmp_path, name, fmi, part)
+    assert validate_fmu(path) == []
+    described = fmpy.read_model_description(path)
+    names = {variable.name for variable in described.modelVariables}
+    assert {"time", "events", "seed", "snap_ns"} < names
+    assert described.coSimulation.canGetAndSetFMUstate if fmi == 2 else described.coSimulation.hasEventMode
+    for variable in described.modelVariables:
+        assert variable.description
+
+
+def test_units_have_exponents_of_base_units(tmp_path: Path) -> None:
+    described = fmpy.read_model_description(exported(tmp_path, "earth-observer"))
+    units = {unit.name: unit.baseUnit for unit in described.unitDefinitions}
+    torque = units["N m"]
+    assert (torque.kg, torque.m, torque.s, torque.rad) == (1, 2, -2, 0)
+    assert (units["rad/s"].rad, units["rad/s"].s) == (1, -1)
+    assert units["m sqrt(kg)"] is None
+
+
+def test_a_relay_has_the_switchings_of_the_native_run(tmp_path: Path) -> None:
+    path = exported(tmp_path, "relay-fixed", duration=400.0)
+    rows = shipped("relay-fixed").with_("duration", 400.0).simulate(log="events")["command"]
+    expected = list(zip(rows["time_whole_s"], rows["time_fs"], rows["torque_nm"], strict=True))
+    for size in [0.1, 0.37, 1 / 3, 400.0]:
+        result = fmpy.simulate_fmu(
+            path,
+            stop_time=400.0,
+            output_interval=size,
+            use_event_mode=True,
+            early_return_allowed=True,
+            output=["switchings", "event_whole_s", "event_fs", "command"],
+        )
+        # The first row of each number of switchings is that of the event.
+        _, first = np.unique(result["switchings"], return_index=True)
+        found = [(row["event_whole_s"], row["event_fs"], row["command"]) for row in result[first[1:]]]
+        assert found == expected, size
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_both_versions_and_the_event_mode_have_equal_points(tmp_path: Path, name: str) -> None:
+    state = "state.angle" if shipped(name).get("body.planar") else "state.error[1]"
+    outputs = [state, "events"]
+
+    def run(fmi: Literal[2, 3], **options: Any) -> dict[float, tuple[float, ...]]:
+        path = exported(tmp_path, name, fmi, duration=20.0)
+        result = fmpy.simulate_fmu(path, stop_time=20.0, output_interval=0.25, output=outputs, **options)
+        return {row["time"]: tuple(row[output] for output in outputs) for row in result}
+
+    second, third = run(2), run(3)
+    events = run(3, use_event_mode=True, early_return_allowed=True)
+    assert second == third
+    assert len(third) == 81
+    assert all(events[time] == values for time, values in third.items())
+
+
+def test_a_plant_takes_commands(tmp_path: Path) -> None:
+    path = exported(tmp_path, "wheel-fixed-gain", 3, "plant", duration=20.0)
+    dtype = [("time", float), ("disturbance_torque", float)]
+    pushed = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 1e-3), (20.0, 1e-3)], dtype=dtype)
+    result = fmpy.simulate_fmu(path, stop_time=20.0, input=pushed, output=["state.rate"], output_interval=1.0)
+    free = fmpy.simulate_fmu(path, stop_time=20.0, output=["state.rate"], output_interval=1.0)
+    same = result["state.rate"] == free["state.rate"]
+    assert same[:6].all()
+    assert not same[7:].any()
+
+
+def test_two_exports_have_equal_bytes(tmp_path: Path) -> None:
+    (tmp_path / "again").mkdir()
+    for fmi in (2, 3):
+        first, second = (exported(path, "relay-fixed", fmi) for path in (tmp_path, tmp_path / "again"))
+        assert Path(first).read_bytes() == Path(second).read_bytes()
+        with zipfile.ZipFile(first) as archive:
+            assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("text", [b"", b"duration = ", b"\xff\x00", None])
+def test_damaged_resources_are_refused(tmp_path: Path, fmi: Literal[2, 3], text: bytes | None) -> None:
+    unpacked = fmpy.extract(exported(tmp_path, "relay-fixed", fmi))
+    resource = Path(unpacked) / "resources" / "scenario.toml"
+    if text is None:
+        resource.unlink()
+    else:
+        resource.write_bytes(text)
+    told: list[bytes] = []
+    with pytest.raises(Exception, match=r"[Ii]nstanti"):
+        fmpy.simulate_fmu(unpacked, stop_time=1.0, logger=lambda *values: told.append(values[-1]))
+    assert len(told) == 1
+    shutil.rmtree(unpacked)
+
+
+def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.fmu"
+    scenario = flexsc.Scenario.example("relay-fixed")
+    with pytest.raises(ValueError, match="controller"):
+        scenario.export_fmu(path, part="controller")
+    with pytest.raises(ValueError, match="library"):
+        scenario.export_fmu(path, library=tmp_path / "absent.so")
+    assert not path.exists()
