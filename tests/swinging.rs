@@ -69,8 +69,7 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
     let filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
     let modes = ElasticFilterStates::new(Arc::new(known), &filter.covariance);
-    let reach = Span::from_seconds(0.5);
-    let mut history = FilterHistory::new(Instant::START, filter, Some(modes), noise, reach);
+    let mut history = FilterHistory::new(Instant::START, filter, Some(modes), noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));

@@ -5,18 +5,16 @@ use flexsc_flight::matrix6::{Matrix6, Matrix6x3};
 use flexsc_flight::quaternion::Quaternion;
 use flexsc_flight::vector3::Vector3;
 
-use crate::attitude::Vector;
-
 /// Converts a vector to that of flight code.
 #[inline]
-pub fn to_vector3(v: &Vector) -> Vector3 {
+pub fn to_vector3(v: &nalgebra::Vector3<f64>) -> Vector3 {
     Vector3 { x: v.x, y: v.y, z: v.z }
 }
 
 /// Converts a vector of flight code.
 #[inline]
-pub fn from_vector3(v: &Vector3) -> Vector {
-    Vector::new(v.x, v.y, v.z)
+pub fn from_vector3(v: &Vector3) -> nalgebra::Vector3<f64> {
+    nalgebra::Vector3::new(v.x, v.y, v.z)
 }
 
 /// Converts a quaternion to that of flight code.
