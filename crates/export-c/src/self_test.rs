@@ -6,7 +6,7 @@ use crate::control_system::{CallLayout, Channel, ControlSystem, NumberKind};
 
 /// Cycles after which the state is set again, so that inputs that are not numbers do not stay in it.
 pub const BLOCK: u64 = 256;
-/// Of so many blocks one has extreme inputs.
+/// Number of blocks, of which the last has extreme inputs.
 pub const EXTREME_BLOCK: u64 = 16;
 /// State of the generator at the start.
 pub const SEED: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -39,7 +39,7 @@ impl Inputs {
         match channel.kind {
             NumberKind::Flag => bits & 1,
             NumberKind::Integer(below) => bits % below.max(1),
-            NumberKind::Real if is_extreme && bits & 7 == 0 => EXTREMES[(bits >> 3 & 7) as usize],
+            NumberKind::Real if is_extreme && bits.is_multiple_of(8) => EXTREMES[(bits >> 3 & 7) as usize],
             NumberKind::Real => {
                 let size = match bits & 3 {
                     0 => 1024.0,
@@ -53,7 +53,7 @@ impl Inputs {
     }
 }
 
-/// Returns the hash (FNV-1a of 64 bits) over the outputs of all functions in so many cycles; all NaN count as one value.
+/// Returns the hash (FNV-1a of 64 bits) over the outputs of all functions in a number of cycles; all NaN count as one value.
 pub fn self_test(system: &ControlSystem, cycles: u64) -> u64 {
     let calls = system.calls();
     let milliseconds = cycle_milliseconds(system);

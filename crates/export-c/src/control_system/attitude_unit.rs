@@ -5,6 +5,7 @@ use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::estimator::attitude::{FilterSetup, SensorRole};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
+use flexsc_core::numerics::time::Span;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
 use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
@@ -204,7 +205,7 @@ fn observation_kind(kind: &SensorKind) -> ObservationKind {
 fn storage(scenario: &Scenario, setup: &FilterSetup, sensors: &[SensorKind]) -> (usize, usize) {
     let cycle = scenario.law.period();
     let within = |kind: &SensorKind| {
-        let period = kind.period(cycle).map_or(1.0, |period| period.seconds());
+        let period = kind.period(cycle).map_or(1.0, Span::seconds);
         (setup.reach.seconds() / period).ceil() as usize + 2
     };
     let each = setup.roles.iter().zip(sensors);

@@ -96,7 +96,9 @@ impl<'a> WordReader<'a> {
     /// Returns the next `N` numbers.
     pub fn reals<const N: usize>(&mut self) -> [f64; N] {
         let mut numbers = [0.0; N];
-        numbers.iter_mut().for_each(|number| *number = self.real());
+        for number in &mut numbers {
+            *number = self.real();
+        }
         numbers
     }
 

@@ -46,7 +46,7 @@ pub enum ControlSystem {
     /// Relays, which decide at events.
     Relays(Relays),
     /// Laws that decide at their period.
-    Sampled(SampledLaws),
+    Sampled(Box<SampledLaws>),
 }
 
 impl ControlSystem {
@@ -69,7 +69,7 @@ impl ControlSystem {
         }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
-            _ => Ok(Self::Sampled(SampledLaws::new(scenario, &laws)?)),
+            _ => Ok(Self::Sampled(Box::new(SampledLaws::new(scenario, &laws)?))),
         }
     }
 

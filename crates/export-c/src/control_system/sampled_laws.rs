@@ -5,6 +5,7 @@ use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::law::{Authority, LawKind};
 use flexsc_core::numerics::flight_types::to_matrix3;
 use flexsc_core::numerics::quantity::Positive;
+use flexsc_core::numerics::time::Span;
 use flexsc_flight::active_damping::ElasticRateEstimate;
 use flexsc_flight::attitude_law::AttitudeFeedback;
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
@@ -63,8 +64,7 @@ impl SampledLaws {
     pub(super) fn new(scenario: &Scenario, laws: &[&LawKind]) -> Result<Self, NotExportable> {
         let authorities = &scenario.study.authorities;
         let of_axes = laws_of_axes(laws, authorities, scenario)?;
-        let periods: Vec<f64> =
-            laws.iter().filter_map(|law| law.period()).map(|period| period.seconds()).collect();
+        let periods: Vec<f64> = laws.iter().filter_map(|law| law.period()).map(Span::seconds).collect();
         let Some(period) = periods.first().copied() else {
             return Err(NotExportable::new("law", "has no period"));
         };
@@ -208,7 +208,9 @@ impl SampledLaws {
         }
         if let [roll, pitch, yaw] = &motions[..] {
             let total = total_angle(roll.angle, pitch.angle, yaw.angle);
-            motions.iter_mut().for_each(|motion| motion.total_angle = total);
+            for motion in &mut motions {
+                motion.total_angle = total;
+            }
         }
         if reads_mode {
             set(words.list(axes), &mut motions, |motion| &mut motion.displacement);

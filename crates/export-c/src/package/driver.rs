@@ -131,7 +131,7 @@ fn call(plan: &Plan<'_>, text: &mut String) {
 }
 
 fn member(channel: &Channel, element: usize) -> String {
-    if channel.count == 1 { channel.name.to_owned() } else { format!("{}[{element}]", channel.name) }
+    if channel.count == 1 { channel.name.clone() } else { format!("{}[{element}]", channel.name) }
 }
 
 const WORDS: &str = "/* Kind of a word: R double, F truth value, I integer below a limit. */

@@ -189,7 +189,7 @@ fn step_inputs(laws: &SampledLaws, decision: &ControlDecision) -> Vec<u64> {
             "reference_angle" => words.extend(references.iter().map(|reference| reference.angle)),
             "reference_rate" => words.extend(references.iter().map(|reference| reference.rate)),
             "reference_acceleration" => {
-                words.extend(references.iter().map(|reference| reference.acceleration))
+                words.extend(references.iter().map(|reference| reference.acceleration));
             }
             "stored_momentum" => words.extend(decision.stored_momentum),
             "mode_rate" | "mode_frequency" | "mode_influence" => {
