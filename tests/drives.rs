@@ -123,13 +123,6 @@ fn what_does_not_go_with_drives_is_refused() {
             ),
             "cannot be used with appendages that turn",
         ),
-        (
-            (
-                "[law.open]",
-                "[environment]\nsolar_pressure = { force = [1e-4, 0, 0], at = [0, 0, 1] }\n[law.open]",
-            ),
-            "`environment.solar_pressure` acts at an arm",
-        ),
     ] {
         let error = refused(&[change]);
         assert!(error.contains(words), "{error}");

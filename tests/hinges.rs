@@ -181,11 +181,6 @@ fn what_does_not_go_with_hinges_is_refused() {
             "torque = 0.1\nfriction = { coulomb = 0.01 }\n",
             "`actuator.wheels.friction` needs",
         ),
-        (
-            "[law.open]",
-            "[environment]\nsolar_pressure = { force = [1e-4, 0, 0], at = [0, 0, 1] }\n[law.open]",
-            "`environment.solar_pressure` acts at an arm",
-        ),
         ("inertia = [[14.0, 0.2, 0.0], [0.2, 2.5, -0.1], [0.0, -0.1, 16.0]]\n", "", ""),
     ] {
         if words.is_empty() {

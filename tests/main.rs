@@ -144,6 +144,7 @@ mod parts_killed;
 mod places;
 mod plan;
 mod plan_figures;
+mod plates;
 mod plot;
 #[cfg(feature = "full")]
 mod report;

@@ -278,7 +278,7 @@ impl ScenarioSpec {
 impl Scenario {
     /// Returns the error of a part that is incompatible with drives and hinges.
     pub(super) fn validate_drives(&self, offers: &Offers, unmet: &Requirements) -> Option<ConfigError> {
-        let driven = &self.study.drives.as_ref()?.driven;
+        self.study.drives.as_ref()?;
         if let Some(fault) = unmet.first(Rule::FixedSensors) {
             return Some(fault);
         }
@@ -287,15 +287,7 @@ impl Scenario {
         if let Some(index) = moving.position(|is_moving| is_moving) {
             return Some(ConfigError::new(format!("disturbance[{index}].point"), OFF_HUB));
         }
-        if let Some(fault) = unmet.first_of(Rule::FixedJets..=Rule::FixedBearings) {
-            return Some(fault);
-        }
-        let around = self.environment.as_ref().filter(|_| driven.moves_centre())?;
-        let pressure = around.solar_pressure.is_some().then_some("solar_pressure");
-        let key = pressure.or(around.drag.is_some().then_some("drag"))?;
-        let why = "acts at an arm that is known where drives and hinges do not move the centre of mass: put the axis of the drive \
-                   through that of the appendage, or write the hinge as a mode";
-        Some(ConfigError::new(format!("environment.{key}"), why))
+        unmet.first_of(Rule::FixedJets..=Rule::FixedBearings)
     }
 }
 

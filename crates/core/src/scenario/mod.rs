@@ -25,6 +25,7 @@ mod meant;
 mod mode_checks;
 mod one_mode;
 mod pace;
+mod plate_mounts;
 mod reference_values;
 mod remarks;
 mod requirement;

@@ -22,7 +22,7 @@ use flexsc_spacecraft::body::{BodyAxes, BodyModel};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
-use super::{AppendageDrives, AssessedRequirement, Scenario, ScenarioSpec};
+use super::{AppendageDrives, AssessedRequirement, Scenario, ScenarioSpec, plate_mounts};
 
 /// Period of the cycles if neither law nor sensors have a period (s).
 const DEFAULT_CYCLE: f64 = 1.0;
@@ -350,8 +350,10 @@ fn surroundings(
     };
     let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
     let centre = model.spacecraft().map_or_else(Vector::zeros, |craft| craft.centre);
-    let around =
-        SurroundingsState::new(environment, written.orbit_environment(), [body.inertia, spinning], &centre);
+    let mounts = plate_mounts::mounts(written, body.articulation.as_deref())
+        .map_err(|fault| fault.within("environment"))?;
+    let sky = written.orbit_environment();
+    let around = SurroundingsState::new(environment, sky, [body.inertia, spinning], &centre, mounts);
     Ok(Some(around.with_thermal_bending(bendings)))
 }
 

@@ -76,6 +76,9 @@ pub struct BodyView {
     pub inertia: Option<Matrix3<f64>>,
     /// Angle (rad) and rate (rad/s) of each hinge.
     pub hinges: Vec<[f64; 2]>,
+    /// Centre of mass (m) from the body's origin, and rotation from the axes of each appendage to the body's, for a body with
+    /// articulated appendages.
+    pub panels: (Vector, Vec<Matrix3<f64>>),
 }
 
 impl BodyView {
@@ -98,6 +101,7 @@ impl BodyView {
             shift: None,
             inertia: None,
             hinges: Vec::new(),
+            panels: (zero, Vec::new()),
         }
     }
 

@@ -10,6 +10,11 @@ pub trait Surroundings {
     /// the present inertia of the body (kg m²).
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
 
+    /// Returns the part of the torque (N m) that depends on where appendages that turn are, in addition to `torque`.
+    fn panel_torque(&self, _t: f64, _attitude: &Quaternion<f64>, _panels: &PanelPlaces<'_>) -> Vector {
+        Vector::zeros()
+    }
+
     /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
     /// to the force on the mode; `None` without such a force.
     fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
@@ -35,6 +40,15 @@ pub trait Surroundings {
     fn frequency_at(&self, _t: f64) -> f64 {
         self.frequency()
     }
+}
+
+/// Places of the appendages of a body at an instant, where drives or hinges turn any of them.
+#[derive(Copy, Clone, Debug)]
+pub struct PanelPlaces<'a> {
+    /// Centre of mass of the body from its origin, in the body's axes (m).
+    pub centre: Vector,
+    /// Rotation from the axes of each appendage to the body's.
+    pub axes: &'a [Matrix3<f64>],
 }
 
 /// Environment, and the time of the start of a segment or step since the start of the run (s).

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use flexsc_formats::density_table::DensityTable;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::density::LOWEST;
 use super::orbit::to_body;
+use super::plate_mount::{PlateMounts, PlatePlaces};
 use super::{DensityModel, OrbitKind, OrbitPath, OrbitPosition, density, ground_site};
 
 /// Drag of the atmosphere.
@@ -54,7 +55,7 @@ pub struct Drag {
 }
 
 /// A plate; drag acts on one side of it.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Plate")]
 pub struct DragPlate {
@@ -64,6 +65,10 @@ pub struct DragPlate {
     pub normal: [Finite; 3],
     /// Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     pub at: [Finite; 3],
+    /// Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its axes, from its root;
+    /// default: the hub.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub appendage: Option<String>,
 }
 
 fn coefficient() -> Positive {
@@ -209,24 +214,28 @@ impl Drag {
         density: f64,
         place: &OrbitPosition,
         attitude: &Quaternion<f64>,
-        centre: &Vector,
+        (centre, places): (&Vector, PlatePlaces<'_>),
     ) -> Vector {
         let carried = Vector::z().cross(&place.position) * self.rotation.get();
         let flow = to_body(attitude, &(place.velocity - carried));
         let factor = -0.5 * self.coefficient.get() * density;
-        self.plates.iter().fold(Vector::zeros(), |sum, plate| {
-            let projected_area = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
-            sum + (vector(&plate.at) - centre).cross(&flow) * (factor * projected_area)
+        self.plates.iter().enumerate().fold(Vector::zeros(), |sum, (index, plate)| {
+            let [normal, at] = places.place(index, &plate.normal, &plate.at);
+            let projected_area = normal.dot(&flow).max(0.0) * plate.area.get();
+            sum + (at - centre).cross(&flow) * (factor * projected_area)
         })
     }
 
     /// Returns an upper bound of the torque (N m).
-    pub(super) fn bound(&self, orbit: &OrbitPath, centre: &Vector) -> f64 {
+    pub(super) fn bound(&self, orbit: &OrbitPath, centre: &Vector, mounts: &PlateMounts) -> f64 {
         let nearest = orbit.nearest();
         let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
         let factor = 0.5 * self.coefficient.get() * self.density_bound(orbit) * speed * speed;
-        let arm = |plate: &DragPlate| plate.area.get() * (vector(&plate.at) - centre).norm();
-        factor * self.plates.iter().map(arm).sum::<f64>()
+        let places = PlatePlaces { mounts: &mounts.braked, axes: None };
+        let arm = |(index, plate): (usize, &DragPlate)| {
+            plate.area.get() * (places.arm(index, &plate.at, centre) + mounts.centre_shift)
+        };
+        factor * self.plates.iter().enumerate().map(arm).sum::<f64>()
     }
 }
 
@@ -254,12 +263,17 @@ mod tests {
         // At the start the body is on the inertial x axis and moves along y.
         let place = orbit.at(0.0);
         let centre = Vector::new(0.1, 0.0, 0.0);
+        let hub = PlatePlaces { mounts: &[], axes: None };
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
-        let torque =
-            |by: Vector| drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), &centre);
+        let torque = |by: Vector| {
+            drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), (&centre, hub))
+        };
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
-        assert!(torque(Vector::zeros()).norm() <= drag.bound(&orbit, &centre) * (1.0 + 1e-12));
+        assert!(
+            torque(Vector::zeros()).norm()
+                <= drag.bound(&orbit, &centre, &PlateMounts::default()) * (1.0 + 1e-12)
+        );
         // Turned by 60 degrees about z the plate meets half of the flow; by more than 90 degrees, none.
         let third = torque(Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_3));
         assert!((third.norm() - 0.25 * force).abs() < 1e-12 * force, "{third}");
@@ -267,7 +281,12 @@ mod tests {
         // An atmosphere that turns with the planet changes the relative flow.
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
         let slower = carried
-            .torque(carried.density_at(&place, &orbit, None), &place, &turned(&Vector::zeros()), &centre)
+            .torque(
+                carried.density_at(&place, &orbit, None),
+                &place,
+                &turned(&Vector::zeros()),
+                (&centre, hub),
+            )
             .x
             / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");

@@ -14,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::to_body;
+use super::plate_mount::{PlateMounts, PlatePlaces};
 use super::sun::Sunlight;
 
 /// Pressure of sunlight: one `force` at a point, or `plates`.
@@ -39,7 +40,7 @@ pub struct SolarPressure {
 }
 
 /// A plate; sunlight presses on one side of it.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "LitPlate")]
 pub struct SolarPlate {
@@ -49,6 +50,10 @@ pub struct SolarPlate {
     pub normal: [Finite; 3],
     /// Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     pub at: [Finite; 3],
+    /// Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its axes, from its root;
+    /// default: the hub.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub appendage: Option<String>,
     /// The part of the light that it reflects like a mirror.
     #[serde(default)]
     pub specular: NonNegative,
@@ -110,6 +115,7 @@ impl SolarPressure {
         attitude: &Quaternion<f64>,
         light: Option<Sunlight>,
         centre: &Vector,
+        places: PlatePlaces<'_>,
     ) -> Vector {
         if let (Some(force), Some(position)) = (&self.force, &self.at) {
             return (vector(position) - centre).cross(&to_body(attitude, &vector(force)));
@@ -117,21 +123,24 @@ impl SolarPressure {
         let Some(light) = light else { return Vector::zeros() };
         let sun = to_body(attitude, &light.direction);
         let pressure = self.pressure() * light.pressure;
-        self.plates.iter().fold(Vector::zeros(), |sum, plate| {
-            sum + (vector(&plate.at) - centre).cross(&(plate.force(&sun) * pressure))
+        self.plates.iter().enumerate().fold(Vector::zeros(), |sum, (index, plate)| {
+            let [normal, at] = places.place(index, &plate.normal, &plate.at);
+            sum + (at - centre).cross(&(plate.force(&normal, &sun) * pressure))
         })
     }
 
     /// Returns an upper bound of the torque (N m); `nearest` is the largest pressure relative to that at 1 au.
-    pub(super) fn bound(&self, centre: &Vector, nearest: f64) -> f64 {
+    pub(super) fn bound(&self, centre: &Vector, nearest: f64, mounts: &PlateMounts) -> f64 {
+        let shift = mounts.centre_shift;
         if let (Some(force), Some(position)) = (&self.force, &self.at) {
-            return vector(force).norm() * (vector(position) - centre).norm();
+            return vector(force).norm() * ((vector(position) - centre).norm() + shift);
         }
-        let most = |plate: &SolarPlate| {
+        let places = PlatePlaces { mounts: &mounts.lit, axes: None };
+        let most = |(index, plate): (usize, &SolarPlate)| {
             let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();
-            part * plate.area.get() * (vector(&plate.at) - centre).norm()
+            part * plate.area.get() * (places.arm(index, &plate.at, centre) + shift)
         };
-        self.pressure() * nearest * self.plates.iter().map(most).sum::<f64>()
+        self.pressure() * nearest * self.plates.iter().enumerate().map(most).sum::<f64>()
     }
 
     fn pressure(&self) -> f64 {
@@ -152,9 +161,8 @@ impl SolarPlate {
         (reflected > 1.0).then(|| ConfigError::new(format!("plates[{index}].specular"), why()))
     }
 
-    /// Returns the force per unit of pressure (m²); `sun` is the direction to the Sun in the body's axes.
-    fn force(&self, sun: &Vector) -> Vector {
-        let normal = vector(&self.normal).normalize();
+    /// Returns the force per unit of pressure (m²) for the unit normal and the direction to the Sun in the body's axes.
+    fn force(&self, normal: &Vector, sun: &Vector) -> Vector {
         let faced = normal.dot(sun).max(0.0);
         let (specular, diffuse) = (self.specular.get(), self.diffuse.get());
         (sun * (1.0 - specular) + normal * (2.0 * (specular * faced + diffuse / 3.0)))
@@ -181,12 +189,13 @@ mod tests {
         let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
         let light = Sunlight { direction: sun, pressure: 1.0 };
         let centre = Vector::new(0.1, 0.0, 0.0);
+        let hub = PlatePlaces { mounts: &[], axes: None };
         let torque = |parts: &str, by: Vector| {
             let keys = format!("plates = [{{ area = 2, normal = [0, 0, 4], at = [0.6, 0, 0] {parts} }}]");
             let pressure = pressed(&keys);
             assert_eq!(pressure.fault(true), None);
-            let found = pressure.torque(&rotation(&by), Some(light), &centre);
-            assert!(found.norm() <= pressure.bound(&centre, 1.0));
+            let found = pressure.torque(&rotation(&by), Some(light), &centre, hub);
+            assert!(found.norm() <= pressure.bound(&centre, 1.0, &PlateMounts::default()));
             found / (4.539_807_335_646_65e-6 * 2.0 * 0.5)
         };
         let arm = Vector::new(0.5, 0.0, 0.0);

@@ -1,15 +1,17 @@
 //! Run-time state of the environment of one body.
 
-use flexsc_dynamics::three_axis::{Surroundings, ThermalForces};
+use flexsc_dynamics::three_axis::{PanelPlaces, Surroundings, ThermalForces};
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::time::Instant;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::AxialDipole;
 use super::orbit::to_body;
+use super::plate_mount::{PlateMounts, PlatePlaces};
 use super::thermal_response::ThermalResponse;
 use super::{
-    Environment, EnvironmentObservation, GravityGradient, OrbitEnvironment, OrbitPath, SolarPressure, SunPath,
+    Environment, EnvironmentObservation, GravityGradient, OrbitEnvironment, OrbitPath, OrbitPosition,
+    SolarPressure, SunPath,
 };
 use crate::body::craft::Bending;
 
@@ -24,6 +26,7 @@ pub struct SurroundingsState {
     spinning: Matrix3<f64>,
     /// Centre of mass from the origin of positions (m).
     centre: Vector,
+    mounts: PlateMounts,
     /// Torque that is constant in inertial axes (N m).
     torque: Vector,
     /// Thermal bending of the appendages, and their levels over time.
@@ -36,7 +39,7 @@ pub struct SurroundingsState {
 }
 
 impl SurroundingsState {
-    /// Creates the environment of a body under `sky`. The inertia tensors (kg m²) are those of the body without the
+    /// Creates the environment of a body under `sky`, with the appendages of its plates. The inertia tensors (kg m²) are those of the body without the
     /// rotors' axial inertia, and of the rotors about their axes; `centre` is the centre of mass from the origin of
     /// positions (m).
     pub fn new(
@@ -44,16 +47,19 @@ impl SurroundingsState {
         sky: OrbitEnvironment,
         [inertia, spinning]: [Matrix3<f64>; 2],
         centre: &Vector,
+        mounts: PlateMounts,
     ) -> Self {
         let nearest = sky.sun().map_or(1.0, SunPath::most_pressure);
-        let pressed =
-            environment.solar_pressure.as_ref().map_or(0.0, |pressure| pressure.bound(centre, nearest));
+        let pressed = environment
+            .solar_pressure
+            .as_ref()
+            .map_or(0.0, |pressure| pressure.bound(centre, nearest, &mounts));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
         let push = dipole.map_or(0.0, |dipole| dipole.bound(sky.field_bound()));
         let drag = environment.drag.as_ref().zip(sky.orbit());
-        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
+        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre, &mounts));
         let axial = dipole.and_then(super::Dipole::own_field);
         let own =
             gradient.and_then(|gradient| gradient.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
@@ -64,6 +70,7 @@ impl SurroundingsState {
             axial,
             spinning,
             centre: *centre,
+            mounts,
             bound: torque.norm() + pressed + pull + push + braked,
             // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle; a field of
             // degree n is of order n + 1.
@@ -109,6 +116,32 @@ impl SurroundingsState {
         self.sky.observation(t)
     }
 
+    /// Adds the torques of sunlight and drag (N m) at a time (s) and an attitude, about the centre of mass (m) and with the rotations
+    /// of the appendages.
+    fn add_plate_torques(
+        &self,
+        torque: &mut Vector,
+        (t, attitude): (f64, &Quaternion<f64>),
+        place: Option<&OrbitPosition>,
+        (centre, axes): (&Vector, Option<&[Matrix3<f64>]>),
+    ) {
+        let Environment { solar_pressure, drag, .. } = &self.environment;
+        if let Some(pressure) = solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t)) {
+            let part = self.sky.part_in_view(t);
+            if part > 0.0 {
+                let light = self.sky.sun().map(|sun| sun.light(t));
+                let places = PlatePlaces { mounts: &self.mounts.lit, axes };
+                *torque += pressure.torque(attitude, light, centre, places) * part;
+            }
+        }
+        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), place) {
+            let sun = self.sky.sun().map(|sun| sun.direction(t));
+            let density = drag.density_at(place, orbit, sun.as_ref());
+            let places = PlatePlaces { mounts: &self.mounts.braked, axes };
+            *torque += drag.torque(density, place, attitude, (centre, places));
+        }
+    }
+
     /// Returns true if sunlight acts on the body.
     fn depends_on_light(&self) -> bool {
         self.environment.solar_pressure.is_some() || !self.heated.is_empty()
@@ -123,24 +156,15 @@ impl SurroundingsState {
 
 impl Surroundings for SurroundingsState {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let Environment { gravity_gradient, solar_pressure, dipole, drag, .. } = &self.environment;
+        let Environment { gravity_gradient, dipole, .. } = &self.environment;
         let mut torque = to_body(attitude, &self.torque);
         let place = self.sky.position(t);
         if let Some(gradient) = gravity_gradient {
             let pull = gradient.direction_and_strength(t, attitude, place.as_ref());
             torque += GravityGradient::torque(pull, &(inertia + self.spinning));
         }
-        if let Some(pressure) = solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t)) {
-            let part = self.sky.part_in_view(t);
-            if part > 0.0 {
-                let light = self.sky.sun().map(|sun| sun.light(t));
-                torque += pressure.torque(attitude, light, &self.centre) * part;
-            }
-        }
-        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
-            let sun = self.sky.sun().map(|sun| sun.direction(t));
-            let density = drag.density_at(place, orbit, sun.as_ref());
-            torque += drag.torque(density, place, attitude, &self.centre);
+        if !self.mounts.turn {
+            self.add_plate_torques(&mut torque, (t, attitude), place.as_ref(), (&self.centre, None));
         }
         let is_held = self.held != Vector::zeros();
         let magnetic = place.filter(|_| is_held || dipole.is_some());
@@ -151,6 +175,20 @@ impl Surroundings for SurroundingsState {
         }
         if let Some(field) = field.filter(|_| is_held) {
             torque += self.held.cross(&to_body(attitude, &field));
+        }
+        torque
+    }
+
+    fn panel_torque(&self, t: f64, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
+        let mut torque = Vector::zeros();
+        if self.mounts.turn {
+            let place = self.sky.position(t);
+            self.add_plate_torques(
+                &mut torque,
+                (t, attitude),
+                place.as_ref(),
+                (&panels.centre, Some(panels.axes)),
+            );
         }
         torque
     }

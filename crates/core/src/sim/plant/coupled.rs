@@ -8,8 +8,8 @@ use flexsc_dynamics::flow::{ElasticModes, RigidBody, ThreeAxisState};
 use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::three_axis::{
-    ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, RotorObservation, SegmentLoads, SharedSteps,
-    SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
+    ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, PanelPlaces, RotorObservation, SegmentLoads,
+    SharedSteps, SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_dynamics::wrench::Wrench;
@@ -97,6 +97,11 @@ impl Surroundings for ExternalTorques {
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
         let all = self.surrounding(t, attitude, inertia);
         self.sines.iter().fold(all, |sum, (axis, sine)| sum + axis * sine.at(t))
+    }
+
+    fn panel_torque(&self, t: f64, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
+        let around = self.around.as_ref();
+        around.map_or_else(Vector::zeros, |around| around.panel_torque(t, attitude, panels))
     }
 
     fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
@@ -273,7 +278,14 @@ impl CoupledMotion {
     /// (N m); `None` if there is neither.
     pub fn environment_torque(&self, t: f64) -> Option<Vector> {
         let acts = self.outside.around.is_some() || self.outside.own.is_some();
-        acts.then(|| self.outside.surrounding(t, self.attitude(), &self.motion.inertia()))
+        let (centre, axes) = &self.motion.view().panels;
+        acts.then(|| {
+            let rest = self.outside.surrounding(t, self.attitude(), &self.motion.inertia());
+            if axes.is_empty() {
+                return rest;
+            }
+            rest + self.outside.panel_torque(t, self.attitude(), &PanelPlaces { centre: *centre, axes })
+        })
     }
 
     /// Returns the environment of the body; `None` without one.

@@ -12,6 +12,8 @@ use crate::three_axis::free_modes::{ClampedModes, FreeModes};
 pub struct Configuration {
     /// Centre of mass c (m).
     pub centre: Vector,
+    /// Rotation from the axes of each appendage to the body's.
+    pub panel_axes: Vec<Matrix3<f64>>,
     /// Inertia J (kg m²).
     pub inertia: Matrix3<f64>,
     /// Participation t of each mode in translation (sqrt(kg)).
@@ -101,8 +103,11 @@ impl ArticulatedBody {
             modal_forces,
             panel_momentum_per_mode,
             hinges,
+            panel_axes,
             ..
         } = configuration;
+        panel_axes.clear();
+        panel_axes.extend(states.iter().map(|(axes, ..)| axes));
         for list in [&mut *translations, rotations, momenta, panel_momentum_per_mode] {
             list.clear();
         }

@@ -89,6 +89,7 @@ impl ArticulatedMotion {
         view.rigid_angle = state.rigid_angle + self.mean_axes_rotation(state) - elastic_rotation;
         view.com = state.com;
         view.frequencies = free.frequencies;
+        view.panels = (configuration.centre, configuration.panel_axes.clone());
         view.shift = Some([self.centre_shift(&configuration, &eta), -panel_momentum / configuration.mass]);
         view.inertia = Some(configuration.inertia + configuration.inertia_change(&eta));
     }

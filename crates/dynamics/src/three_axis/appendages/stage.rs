@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 
 use super::ArticulatedMotion;
 use super::configuration::Configuration;
-use crate::three_axis::surroundings::TimedSurroundings;
+use crate::three_axis::surroundings::{PanelPlaces, TimedSurroundings};
 
 /// Working memory of the steps of an articulated body.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +43,14 @@ pub struct StageForces<'a> {
     pub tide: Option<Matrix3<f64>>,
     /// Acceleration of the centre of mass (m/s²).
     pub com_acceleration: Option<Vector>,
+}
+
+impl StageScratch {
+    /// Returns the places of the appendages at a stage.
+    pub fn panel_places(&self, stage: usize) -> PanelPlaces<'_> {
+        let configuration = &self.configuration[stage];
+        PanelPlaces { centre: configuration.centre, axes: &configuration.panel_axes }
+    }
 }
 
 impl ArticulatedMotion {

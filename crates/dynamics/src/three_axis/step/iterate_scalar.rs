@@ -209,6 +209,10 @@ impl IntegrationStep<'_> {
         if let Some((surroundings, since)) = self.surroundings {
             let hub = attitude * rotation(&deformation.elastic_rotation);
             torque += surroundings.torque(since + t, &hub, &inertia);
+            if self.appendages.is_some() {
+                torque +=
+                    surroundings.panel_torque(since + t, &hub, &optional.appendages.panel_places(stage));
+            }
             tide = if model.changes_inertia || self.appendages.is_some() {
                 surroundings.tidal_tensor(since + t, &hub)
             } else {
