@@ -24,10 +24,20 @@ fn upright() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector::new(1100.0, 1400.0, 500.0))
 }
 
+/// Returns the environment of a body without plates on appendages.
+fn surroundings_of(
+    environment: &Environment,
+    sky: OrbitEnvironment,
+    inertias: [Matrix3<f64>; 2],
+    centre: &Vector,
+) -> SurroundingsState {
+    SurroundingsState::new(environment, sky, inertias, centre, super::PlateMounts::default())
+}
+
 fn surroundings_from(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e5), None);
-    SurroundingsState::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
+    surroundings_of(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
 
 /// Rigid body in an environment, whose motion is restarted every 20 s as in a plant.
@@ -325,7 +335,7 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(100.0), None);
-    let surroundings = SurroundingsState::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
+    let surroundings = surroundings_of(&environment, sky, [upright(), Matrix3::zeros()], &centre);
     let torque_at = |t: f64| surroundings.torque(t, &Quaternion::identity(), &upright());
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);
     assert!((torque_at(0.0) - pushed).norm() < 1e-19 && (torque_at(20.0) - pushed).norm() < 1e-19);
@@ -346,8 +356,7 @@ fn sunlight_presses_by_the_square_of_the_distance_of_the_sun() {
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let duration = Span::from_seconds(2e7);
     let sky = OrbitEnvironment::new(&environment, duration, Some(PERIHELION));
-    let state =
-        SurroundingsState::new(&environment, sky.clone(), [upright(), Matrix3::zeros()], &Vector::zeros());
+    let state = surroundings_of(&environment, sky.clone(), [upright(), Matrix3::zeros()], &Vector::zeros());
     // Half a year apart, at distances of 0.98333 and 1.01667 au, the plate faces the Sun.
     for (t, distance) in [(0.0, 0.983_334), (1.577e7, 1.016_6)] {
         let sun = sky.sun().expect("a Sun").direction(t);
@@ -372,12 +381,8 @@ fn a_field_model_varies_as_its_degree_allows() {
         let environment: Environment = flexsc_formats::document::from_text(&text).expect("an environment");
         let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e4), Some(PERIHELION));
         let orbit_rate = sky.orbit().expect("an orbit").fastest();
-        let mut state = SurroundingsState::new(
-            &environment,
-            sky.clone(),
-            [upright(), Matrix3::zeros()],
-            &Vector::zeros(),
-        );
+        let mut state =
+            surroundings_of(&environment, sky.clone(), [upright(), Matrix3::zeros()], &Vector::zeros());
         state.set_magnetic_moment(Vector::new(3.0, -4.0, 12.0));
         let (bound, frequency) = (sky.field_bound(), state.frequency());
         assert!((frequency / (f64::from(degree + 1) * (orbit_rate + 7.292_115e-5)) - 1.0).abs() < 1e-14);
