@@ -127,16 +127,16 @@ fn the_self_test_reaches_limits_and_not_a_number() {
 
 #[test]
 fn scenarios_without_plain_laws_are_refused_at_their_key() {
-    let dir = Dir::with(&["slew-wheel-lqg", "safe-mode", "relay-sampled"]);
+    let dir = Dir::with(&["earth-observer-lqg", "safe-mode", "relay-sampled"]);
     for (command, words) in [
         (
-            "export-c slew-wheel-lqg.toml -o out",
-            ["slew-wheel-lqg.toml:", "`law.state_space`", "has no code for flight"],
+            "export-c earth-observer-lqg.toml -o out",
+            ["earth-observer-lqg.toml:", "`law.state_space`", "has no code for flight"],
         ),
         ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "choose one with `--mode NAME`"]),
         (
-            "vectors slew-wheel-lqg.toml -o out.bin",
-            ["slew-wheel-lqg.toml:", "`law.state_space`", "`relay`, `pd`"],
+            "vectors earth-observer-lqg.toml -o out.bin",
+            ["earth-observer-lqg.toml:", "`law.state_space`", "`relay`, `pd`"],
         ),
         (
             "export-c relay-sampled.toml -o out --name 9",

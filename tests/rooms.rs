@@ -9,7 +9,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 13] = [
+pub const ENGINE: [&str; 12] = [
     "flight",
     "numerics",
     "dynamics",
@@ -21,7 +21,6 @@ pub const ENGINE: [&str; 13] = [
     "core",
     "view",
     "handover",
-    "export-c",
     "cosim",
 ];
 

@@ -14,7 +14,7 @@ use flexsc_flight::ticks::Ticks;
 pub use attitude_unit::{AttitudeUnit, Corrector};
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use relays::Relays;
-pub use sampled_laws::{Distribution, LawsOfAxes, SampledLaws};
+pub use sampled_laws::{LawsOfAxes, SampledLaws, WheelDistribution};
 
 /// Reason for which a scenario's control system cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]

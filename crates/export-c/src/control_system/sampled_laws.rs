@@ -33,9 +33,9 @@ pub enum LawsOfAxes {
     Attitude(Vec<(AttitudeFeedback, Vec<BiquadFilter>)>),
 }
 
-/// Distribution of torques to reaction wheels.
+/// WheelDistribution of torques to reaction wheels.
 #[derive(Clone, Debug)]
-pub struct Distribution {
+pub struct WheelDistribution {
     /// Wheels.
     pub wheels: Vec<AllocatedWheel>,
     /// Largest torque of a wheel (N m).
@@ -54,7 +54,7 @@ pub struct SampledLaws {
     /// Inertia tensor by which commanded accelerations become torques (kg m²).
     pub inertia: Matrix3,
     /// Wheels that give the torque about three axes, if the actuator consists of them.
-    pub wheels: Option<Distribution>,
+    pub wheels: Option<WheelDistribution>,
     /// Attitude filter that the laws read; without one the estimates are inputs.
     pub estimator: Option<AttitudeUnit>,
 }
@@ -320,13 +320,13 @@ fn laws_of_axes(
 
 /// Returns the distribution of torques to the wheels of a scenario; `None` if other actuators act too, or if the drives add
 /// torques of their own.
-fn wheels(scenario: &Scenario) -> Option<Distribution> {
+fn wheels(scenario: &Scenario) -> Option<WheelDistribution> {
     let ActuatorKind::Wheels(wheels) = scenario.actuator.only_actuator()? else { return None };
     let allocation = scenario.study.wheels.as_ref()?;
     if wheels.speed_bias.is_some() || wheels.compensation.is_some() || wheels.unloading.is_some() {
         return None;
     }
-    Some(Distribution {
+    Some(WheelDistribution {
         wheels: allocation.flight_wheels().to_vec(),
         limit: wheels.torque.map_or(f64::INFINITY, Positive::get),
         is_least_largest: allocation.is_least_largest(),

@@ -14,7 +14,7 @@ use crate::control_system::{CallLayout, ControlSystem};
 use crate::flight_sources::flight_sources;
 use crate::self_test::self_test;
 use crate::translate::{TranslationError, translate};
-use crate::vectors::{self, Vector, VectorError};
+use crate::vectors::{self, CallVector, VectorError};
 
 /// Numbers of cycles for which the hash of the self-test is exported.
 pub const HASHED_CYCLES: [u64; 3] = [1000, 20_000, 1_000_000];
@@ -82,7 +82,7 @@ impl Plan<'_> {
 /// An [`ExportError`] if a part of the control system has no plain code, or if its run fails.
 pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> Result<Package, ExportError> {
     let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
-    let vectors: Vec<Vector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
+    let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
     let plan = Plan { prefix, origin, system: &system, calls: &calls };
     let functions = calls::functions(&plan);

@@ -21,7 +21,7 @@ const PIECE: f64 = 100.0;
 
 /// Call of a function of the control system, with the outputs that it must have.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Vector {
+pub struct CallVector {
     /// Index of the function.
     pub call: usize,
     /// Time of the call.
@@ -85,7 +85,7 @@ impl From<SimulationError> for VectorError {
 ///
 /// # Errors
 /// A [`VectorError`] if the control system has no plain code, if the run fails, or if the plain laws give another command.
-pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<Vector>, VectorError> {
+pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<CallVector>, VectorError> {
     let mut system = ControlSystem::new(scenario)?;
     let mut simulation = Simulation::new(scenario, 0);
     simulation.trace_control();
@@ -114,7 +114,7 @@ pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<Vector>, VectorErr
 fn replay(
     system: &mut ControlSystem,
     decision: &ControlDecision,
-    vectors: &mut Vec<Vector>,
+    vectors: &mut Vec<CallVector>,
 ) -> Result<(), VectorError> {
     let now = decision.now.ticks();
     if let ControlSystem::Relays(_) = system {
@@ -138,7 +138,7 @@ fn replay(
                     f64::from_bits(outputs[7 + guard]),
                 )?;
             }
-            vectors.push(Vector { call: 0, now, inputs, outputs });
+            vectors.push(CallVector { call: 0, now, inputs, outputs });
         }
         return Ok(());
     }
@@ -164,7 +164,7 @@ fn replay(
             Command::Moment(_) => {}
         }
     }
-    vectors.push(Vector { call, now, inputs, outputs });
+    vectors.push(CallVector { call, now, inputs, outputs });
     Ok(())
 }
 
@@ -224,7 +224,7 @@ fn compare(call: usize, quantity: &str, engine: f64, plain: f64) -> Result<(), V
 
 /// Returns vectors as the bytes of a file: words of 64 bits, little endian; for each call its index, whole seconds,
 /// femtoseconds, inputs and outputs.
-pub fn to_bytes(vectors: &[Vector]) -> Vec<u8> {
+pub fn to_bytes(vectors: &[CallVector]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut word = |word: u64| bytes.extend_from_slice(&word.to_le_bytes());
     word(MAGIC);

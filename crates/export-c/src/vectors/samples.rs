@@ -9,7 +9,7 @@ use flexsc_core::{Scenario, SensorSample};
 use flexsc_flight::attitude_estimator::observation_exposure;
 use flexsc_flight::attitude_observation::ObservationKind;
 
-use super::Vector;
+use super::CallVector;
 use crate::control_system::{AttitudeUnit, ControlSystem};
 
 /// Calls the attitude filter with the readings of a sample, and adds the calls; at the first sample the filter is started as in
@@ -18,7 +18,7 @@ pub(super) fn replay(
     system: &mut ControlSystem,
     scenario: &Scenario,
     sample: &SensorSample,
-    vectors: &mut Vec<Vector>,
+    vectors: &mut Vec<CallVector>,
 ) {
     let ControlSystem::Sampled(laws) = &*system else { return };
     let Some(unit) = &laws.estimator else { return };
@@ -27,10 +27,10 @@ pub(super) fn replay(
     let inputs = sample_inputs(unit, scenario, sample);
     if let Some(inputs) = start {
         let outputs = system.call(0, now, &inputs);
-        vectors.push(Vector { call: 0, now, inputs, outputs });
+        vectors.push(CallVector { call: 0, now, inputs, outputs });
     }
     let outputs = system.call(1, now, &inputs);
-    vectors.push(Vector { call: 1, now, inputs, outputs });
+    vectors.push(CallVector { call: 1, now, inputs, outputs });
 }
 
 /// Returns the words of the attitude and the bias with which the filter starts in the run.
