@@ -7,6 +7,7 @@ use flexsc_core::Scenario;
 use flexsc_export_c::control_system::ControlSystem;
 use flexsc_export_c::{self_test, vectors};
 
+use crate::frozen::is_frozen;
 use crate::util::Dir;
 
 /// A relay at samples, a PD law with a gain schedule, phase planes with active damping, and attitude laws with wheels.
@@ -62,7 +63,7 @@ fn the_plain_laws_give_the_commands_of_every_exportable_scenario() {
             Err(error) => refused.push(format!("{name}: {error}")),
         }
     }
-    insta::assert_snapshot!(format!("{}\n\nrefused\n{}", exported.join("\n"), refused.join("\n")));
+    is_frozen("flight_code", &format!("{}\n\nrefused\n{}", exported.join("\n"), refused.join("\n")));
 }
 
 #[test]

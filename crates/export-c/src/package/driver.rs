@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, calls};
+use super::Plan;
+use super::signature::has_time;
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::self_test::{BLOCK, EXTREME_BLOCK, EXTREMES, SEED, cycle_milliseconds};
 
@@ -78,13 +79,13 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
 /// Writes the function that calls a function of the control system with words.
 fn call(plan: &Plan<'_>, text: &mut String) {
     let prefix = plan.prefix;
-    let now = if calls::has_time(plan) { "now, " } else { "" };
+    let now = if has_time(plan) { "now, " } else { "" };
     let _ = writeln!(
         text,
         "/* Calls the function with this index with the words of its inputs, and writes the words of its outputs. */\n\
          static void call(size_t index, {prefix}_state *state, const uint64_t *time, const uint64_t *in, uint64_t *out)\n{{"
     );
-    if calls::has_time(plan) {
+    if has_time(plan) {
         let _ = writeln!(
             text,
             "    const {prefix}_ticks now = {{ .whole = (int64_t)time[0], .part = (int64_t)time[1] }};\n"

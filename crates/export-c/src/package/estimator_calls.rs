@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use flexsc_flight::attitude_observation::ObservationKind;
 
+use super::Plan;
 use super::initialiser::initialiser;
-use super::{Plan, calls};
+use super::signature::signature;
 use crate::control_system::AttitudeUnit;
 
 /// Returns the members of the state that the filter needs.
@@ -49,7 +50,7 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     let _ = writeln!(
         text,
         "{}\n{{\n    start_filter(state, {}, {});\n    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n{output}}}\n",
-        calls::signature(plan, &plan.calls[0]),
+        signature(plan, &plan.calls[0]),
         attitude("input->attitude"),
         vector("input->bias"),
     );
@@ -58,7 +59,7 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         text,
         "{}\n{{\n    if (input->gyro_is_valid) {{\n        const {prefix}_ticks latency = {};\n        \
          attitude_estimator_take_gyro(&state->estimator, now, latency, {}, {storage});\n    }}",
-        calls::signature(plan, &plan.calls[1]),
+        signature(plan, &plan.calls[1]),
         initialiser(&unit.gyro.1, prefix),
         vector("input->gyro_rate"),
     );

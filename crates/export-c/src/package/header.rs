@@ -33,7 +33,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
         "/* Sets the state before the first call. */\nvoid {prefix}_init({prefix}_state *state);\n"
     );
     for call in plan.calls {
-        let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::calls::signature(plan, call));
+        let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::signature::signature(plan, call));
     }
     let _ = writeln!(text, "#endif");
     text

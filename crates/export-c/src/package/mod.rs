@@ -5,6 +5,7 @@ mod driver;
 mod estimator_calls;
 mod header;
 mod initialiser;
+mod signature;
 mod source;
 mod static_files;
 

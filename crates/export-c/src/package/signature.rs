@@ -1,0 +1,22 @@
+//! Signatures of the exported functions.
+
+use super::Plan;
+use crate::control_system::{CallLayout, ControlSystem};
+
+/// Returns the signature of a function.
+pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
+    let (prefix, name) = (plan.prefix, call.name);
+    let now = if has_time(plan) { format!("{prefix}_ticks now, ") } else { String::new() };
+    format!(
+        "void {prefix}_{name}({prefix}_state *state, {now}const {prefix}_{name}_input *input,\n    \
+         {prefix}_{name}_output *output)"
+    )
+}
+
+/// Returns true if the functions read the time.
+pub fn has_time(plan: &Plan<'_>) -> bool {
+    match plan.system {
+        ControlSystem::Relays(_) => true,
+        ControlSystem::Sampled(laws) => laws.estimator.is_some(),
+    }
+}
