@@ -115,6 +115,40 @@ fn contraction_and_fast_mathematics_are_found() {
     assert!(!output.status.success() && text(&output).contains("call "), "{}", text(&output));
 }
 
+/// Returns bytes of code and the largest stack frame on each board, as `make size` prints them.
+fn sizes(printed: &str) -> Vec<u64> {
+    let mut sizes = Vec::new();
+    for board in printed.split("-mcpu=").skip(1) {
+        let row = board.lines().find(|line| line.ends_with("-size.o")).expect("a row of sizes");
+        let bytes = row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("bytes of code");
+        let frames = board.lines().filter_map(|line| line.strip_suffix("\tstatic")?.rsplit_once('\t'));
+        let frame = frames.filter_map(|(_, bytes)| bytes.parse().ok()).max().expect("stack frames");
+        sizes.extend([bytes, frame]);
+    }
+    sizes
+}
+
+#[test]
+fn sizes_are_those_of_the_document_but_for_a_tenth() {
+    if !is_installed("make") || !is_installed("arm-none-eabi-gcc") {
+        return;
+    }
+    let path = format!("{}/../../docs/flight-code.md", env!("CARGO_MANIFEST_DIR"));
+    let document = std::fs::read_to_string(path).expect("the document");
+    for name in EXPORTED {
+        let dir = Dir::with(&[name]);
+        dir.run(&format!("export-c {name}.toml -o out --calls 1")).exits(0);
+        let found = sizes(&text(&make(&dir, "out", &["size"])));
+        let row = document.lines().find_map(|line| line.strip_prefix(&format!("| `{name}` | ")));
+        let cells = row.expect("a row of the table").trim_end_matches(" |").split(" | ");
+        let told: Vec<u64> = cells.map(|cell| cell.parse().expect("a number")).collect();
+        assert_eq!(found.len(), told.len());
+        for (found, told) in found.iter().zip(&told) {
+            assert!(found * 10 <= told * 11 && told * 10 <= found * 11, "{name}: {found} and {told} bytes");
+        }
+    }
+}
+
 #[test]
 fn the_self_test_reaches_limits_and_not_a_number() {
     for name in EXPORTED {
