@@ -120,7 +120,8 @@ fn sizes(printed: &str) -> Vec<u64> {
     let mut sizes = Vec::new();
     for board in printed.split("-mcpu=").skip(1) {
         let row = board.lines().find(|line| line.ends_with("-size.o")).expect("a row of sizes");
-        let bytes = row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("bytes of code");
+        let bytes: u64 =
+            row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("bytes of code");
         let frames = board.lines().filter_map(|line| line.strip_suffix("\tstatic")?.rsplit_once('\t'));
         let frame = frames.filter_map(|(_, bytes)| bytes.parse().ok()).max().expect("stack frames");
         sizes.extend([bytes, frame]);
