@@ -3,9 +3,10 @@
     pip install mpmath
     python3 tests/golden/field_references.py
 
-The field is summed in spherical coordinates from the potential, V = a sum (a/r)^(n+1) (g cos + h sin) P, and differentiated
-numerically; the attitude is differentiated numerically in time. Coefficients: IGRF-14 of 2025, read from the table in
-crates/spacecraft. Orbit, Sun and angle of Greenwich are those of the unit tests in crates/control/src/law/direction_pair.rs.
+The field is summed in spherical coordinates from the potential, V = a sum (a/r)^(n+1) (g cos + h sin) P, and
+differentiated numerically; the attitude is differentiated numerically in time. Coefficients: IGRF-14 of 2025,
+read from the table in crates/spacecraft. Orbit, Sun and angle of Greenwich are those of the unit tests in
+crates/control/src/law/direction_pair.rs.
 """
 
 import re
@@ -17,7 +18,9 @@ mp.dps = 40
 TABLE = Path(__file__).parents[2] / "crates/spacecraft/src/environment/igrf_14.rs"
 NUMBERS = re.findall(r"\[\[([^\]]*)\], \[([^\]]*)\]\]", TABLE.read_text())
 PAIRS = [[mpf(row.split(",")[5].strip().replace("_", "")) for row in pair] for pair in NUMBERS]
-MU, A, E, I, NODE, PERIGEE, M0 = [mpf(x) for x in ("3.986004418e14", "6.978e6", ".01", "1.7", ".4", ".3", ".2")]
+MU, A, E, INCLINATION, NODE, PERIGEE, M0 = [
+    mpf(x) for x in ("3.986004418e14", "6.978e6", ".01", "1.7", ".4", ".3", ".2")
+]
 
 
 def legendre(n, m, x):
@@ -39,7 +42,9 @@ def potential(x, y, z, degree):
     for n in range(1, degree + 1):
         for m in range(n + 1):
             g, h = next(rows)
-            total += (a / r) ** (n + 1) * (g * cos(m * longitude) + h * sin(m * longitude)) * legendre(n, m, up)
+            total += (
+                (a / r) ** (n + 1) * (g * cos(m * longitude) + h * sin(m * longitude)) * legendre(n, m, up)
+            )
     return a * total
 
 
@@ -49,7 +54,11 @@ def position(t):
     e = findroot(lambda e: e - E * sin(e) - mean, mean)
     x, y = A * (cos(e) - E), A * sqrt(1 - E * E) * sin(e)
     u, v = x * cos(PERIGEE) - y * sin(PERIGEE), x * sin(PERIGEE) + y * cos(PERIGEE)
-    return [u * cos(NODE) - v * cos(I) * sin(NODE), u * sin(NODE) + v * cos(I) * cos(NODE), v * sin(I)]
+    return [
+        u * cos(NODE) - v * cos(INCLINATION) * sin(NODE),
+        u * sin(NODE) + v * cos(INCLINATION) * cos(NODE),
+        v * sin(INCLINATION),
+    ]
 
 
 def cross(a, b):
@@ -66,7 +75,7 @@ def nadir(t):
 
 
 def normal(_):
-    return [sin(NODE) * sin(I), -cos(NODE) * sin(I), cos(I)]
+    return [sin(NODE) * sin(INCLINATION), -cos(NODE) * sin(INCLINATION), cos(INCLINATION)]
 
 
 def sun(_):
@@ -79,7 +88,9 @@ def orbit(direction):
     def at(t):
         z, y = nadir(t), [-x for x in normal(t)]
         x = cross(y, z)
-        return unit([sum(d * axis[k] for d, axis in zip(direction, (x, y, z), strict=True)) for k in range(3)])
+        return unit(
+            [sum(d * axis[k] for d, axis in zip(direction, (x, y, z), strict=True)) for k in range(3)]
+        )
 
     return at
 
@@ -91,8 +102,13 @@ def field(degree):
         turn = mpf("1.1") + mpf("7.292115e-5") * t
         x, y, z = position(t)
         place = (cos(turn) * x + sin(turn) * y, cos(turn) * y - sin(turn) * x, z)
-        own = [-diff(lambda *p: potential(*p, degree), place, order) for order in ((1, 0, 0), (0, 1, 0), (0, 0, 1))]
-        return unit([cos(turn) * own[0] - sin(turn) * own[1], sin(turn) * own[0] + cos(turn) * own[1], own[2]])
+        own = [
+            -diff(lambda *p: potential(*p, degree), place, order)
+            for order in ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+        ]
+        return unit(
+            [cos(turn) * own[0] - sin(turn) * own[1], sin(turn) * own[0] + cos(turn) * own[1], own[2]]
+        )
 
     return at
 
@@ -148,7 +164,10 @@ def main():
     pairs = {
         "field and Sun": ((z, field(13)), (x, sun)),
         "nadir and field of degree 1": ((z, nadir), (x, field(1))),
-        "orbit [0.3, 0.1, 1] and field of degree 4": ((z, orbit([mpf(".3"), mpf(".1"), mpf(1)])), (x, field(4))),
+        "orbit [0.3, 0.1, 1] and field of degree 4": (
+            (z, orbit([mpf(".3"), mpf(".1"), mpf(1)])),
+            (x, field(4)),
+        ),
     }
     for name, pair in pairs.items():
         for t in (600, 1500):

@@ -6,9 +6,8 @@ import shutil
 import subprocess
 from pathlib import Path
 
-import pytest
-
 import flexsc
+import pytest
 
 
 def test_the_control_system_is_exported_and_replays_the_run(tmp_path: Path) -> None:
@@ -18,7 +17,14 @@ def test_the_control_system_is_exported_and_replays_the_run(tmp_path: Path) -> N
     if shutil.which("make") is None or shutil.which("gcc") is None:
         pytest.skip("make and gcc are not installed")
     done = subprocess.run(
-        ["make", "-C", str(tmp_path / "flight"), "check", "CYCLES=1000", f"HASH={hash_of(tmp_path / 'flight')}"],
+        [
+            "make",
+            "-C",
+            str(tmp_path / "flight"),
+            "check",
+            "CYCLES=1000",
+            f"HASH={hash_of(tmp_path / 'flight')}",
+        ],
         capture_output=True,
         text=True,
         check=False,

@@ -34,8 +34,8 @@ class Exportable:
     ) -> int:
         """Write the run in a format of other programs, and return the number of bytes.
 
-        A log must have the motion (`log="full"` or `"scene"`). A run in memory is simulated again with its motion
-        and its scene, whatever the detail of the result.
+        A log must have the motion (`log="full"` or `"scene"`). A run in memory is simulated again with its
+        motion and its scene, whatever the detail of the result.
 
         Args:
             path: The file, which is replaced if it exists.

@@ -278,8 +278,8 @@ class ScenarioAnalysis(ScenarioFile):
     ) -> list[Path]:
         """Write the control system as C99 for a flight computer, and return its files: `flexsc export-c`.
 
-        The C is translated from the Rust code that runs call. A driver replays the calls of a run and compares
-        their outputs by bits: `make check` in the directory.
+        The C is translated from the Rust code that runs call. A driver replays the calls of a run and
+        compares their outputs by bits: `make check` in the directory.
 
         Args:
             path: The directory.

@@ -127,6 +127,7 @@ __all__ = [
     "ObserverFormKind",
     "Open",
     "OperatingMode",
+    "Orbit",
     "Output",
     "Pair",
     "Panels",
@@ -1183,6 +1184,8 @@ class DragPlate(Part):
         normal: Outward normal in the body's axes, of any length.
         at: Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a
             spatial body.
+        appendage: Name of the appendage on which the plate is, with which it turns; `normal` and `at` are
+            then in its axes, from its root; default: the hub.
     """
 
     area: float
@@ -1192,6 +1195,10 @@ class DragPlate(Part):
     at: Vector
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
+    """
+    appendage: str | None = None
+    """Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its
+    axes, from its root; default: the hub.
     """
 
 
@@ -2039,6 +2046,8 @@ class LitPlate(Part):
         normal: Outward normal in the body's axes, of any length.
         at: Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a
             spatial body.
+        appendage: Name of the appendage on which the plate is, with which it turns; `normal` and `at` are
+            then in its axes, from its root; default: the hub.
         specular: The part of the light that it reflects like a mirror. Default: 0.0.
         diffuse: The part that it reflects diffusely. Default: 0.0.
     """
@@ -2050,6 +2059,10 @@ class LitPlate(Part):
     at: Vector
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
+    """
+    appendage: str | None = None
+    """Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its
+    axes, from its root; default: the hub.
     """
     specular: float | None = None
     """The part of the light that it reflects like a mirror. Default: 0.0."""
@@ -2103,35 +2116,38 @@ class MagneticField(Part):
     r - g) with r the direction from the planet's centre and g, which points south.
 
     Args:
-        model: Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless
-            `coefficients` or `radius` differ from their defaults.
+        model: Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario
+            with an `epoch` unless `coefficients` or `radius` differ from their defaults.
+        table: Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model.
         degree: Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's
-            highest, 13 of IGRF-14 and 12 of WMM2025.
+            highest, 13 of IGRF-14, 12 of WMM2025, and up to 13 of a table.
         coefficients: Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the
             planet: z along its axis, x through its prime meridian; default: the Earth's from IGRF-13 for
             2020.
-        radius: Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius.
-            Default: 6371200.0.
+        radius: Reference radius a of the coefficients of a dipole or a table (m); default: the Earth's mean
+            radius. Default: 6371200.0.
         rotation: Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
         meridian: Angle from the inertial x to the prime meridian at the start (rad); default: that of
             Greenwich at the scenario's `epoch`, 0 without one.
     """
 
-    model: Literal["dipole", "IGRF-14", "WMM2025"] | None = None
-    """Model of the field; default: the dipole, and IGRF-14 in a scenario with an `epoch` unless
-    `coefficients` or `radius` differ from their defaults.
+    model: Literal["dipole", "IGRF-14", "WMM2025", "table"] | None = None
+    """Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an
+    `epoch` unless `coefficients` or `radius` differ from their defaults.
     """
+    table: Mapping[str, object] | str | None = None
+    """Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model."""
     degree: int | None = None
     """Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest,
-    13 of IGRF-14 and 12 of WMM2025.
+    13 of IGRF-14, 12 of WMM2025, and up to 13 of a table.
     """
     coefficients: Vector | None = None
     """Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the planet: z along
     its axis, x through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     """
     radius: float | None = None
-    """Reference radius a of the dipole's coefficients (m); default: the Earth's mean radius. Default:
-    6371200.0.
+    """Reference radius a of the coefficients of a dipole or a table (m); default: the Earth's mean radius.
+    Default: 6371200.0.
     """
     rotation: float | None = None
     """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
@@ -2351,6 +2367,8 @@ class ModeExit(Part):
     Args:
         to: Name of the mode that follows.
         when: Condition, such as `"rate < 2e-3 and time > 60"`.
+        numbers: Numbers of the condition by name, such as `{ slow = 2e-3 }` for `"rate < slow"`, in SI
+            units: keys for campaigns and searches.
         for_: Time for which the condition has to hold without a break (s).
     """
 
@@ -2358,6 +2376,10 @@ class ModeExit(Part):
     """Name of the mode that follows."""
     when: str
     """Condition, such as `"rate < 2e-3 and time > 60"`."""
+    numbers: Mapping[str, float] | None = None
+    """Numbers of the condition by name, such as `{ slow = 2e-3 }` for `"rate < slow"`, in SI units: keys
+    for campaigns and searches.
+    """
     for_: float | None = None
     """Time for which the condition has to hold without a break (s)."""
 
@@ -2374,10 +2396,12 @@ class ModeTarget(Part):
         roll: Roll (rad). Default: 0.0.
         pitch: Pitch (rad). Default: 0.0.
         yaw: Yaw (rad). Default: 0.0.
-        acceleration: Largest acceleration of the slew about one axis to it (rad/s²), from where the
-            reference is; default: the reference jumps.
+        acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
+            jumps.
         rate_limit: Largest rate of the slew (rad/s); no limit by default.
         profile: How the rate of the slew rises and falls.
+        slew_from: Start of the slew; default: the estimated attitude after a law that does not control the
+            attitude, else the reference.
     """
 
     frame: Literal["inertial", "nadir", "sun"] | None = None
@@ -2395,13 +2419,15 @@ class ModeTarget(Part):
     yaw: float | None = None
     """Yaw (rad). Default: 0.0."""
     acceleration: float | None = None
-    """Largest acceleration of the slew about one axis to it (rad/s²), from where the reference is; default:
-    the reference jumps.
-    """
+    """Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps."""
     rate_limit: float | None = None
     """Largest rate of the slew (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
     """How the rate of the slew rises and falls."""
+    slew_from: Literal["reference", "estimate"] | None = None
+    """Start of the slew; default: the estimated attitude after a law that does not control the attitude,
+    else the reference.
+    """
 
 
 class NamedPoint(Part):
@@ -2519,6 +2545,16 @@ class OperatingMode(Part):
     """
     leave: Sequence[ModeExit] | None = None
     """Ends of the mode: the first whose condition is met ends it."""
+
+
+class Orbit(Part, kw_only=False):
+    """Direction of any length, constant in the local axes of the orbit: x ahead, y against the normal, z to
+    the planet's centre.
+    """
+
+    _tag: ClassVar[str | None] = "orbit"
+
+    value: Vector
 
 
 class Output(Part):
@@ -2775,7 +2811,7 @@ class PointedAxis(Part):
 
     body: Vector
     """Axis in the body's axes, of any length."""
-    along: SkyDirectionKind | Literal["nadir", "sun", "velocity", "orbit_normal"]
+    along: SkyDirectionKind | Literal["nadir", "sun", "velocity", "orbit_normal", "field"]
     """Direction."""
 
 
@@ -4435,7 +4471,7 @@ SensorKind: TypeAlias = (
 """The kinds of sensor."""
 ShaperKind: TypeAlias = Zv | Zvd | Zvdd | Ei
 """The kinds of shaper."""
-SkyDirectionKind: TypeAlias = Inertial | Site
+SkyDirectionKind: TypeAlias = Orbit | Inertial | Site
 """Direction in the sky."""
 
 
