@@ -27,9 +27,19 @@ ELSEWHERE = re.compile(r"\b[A-Z]{3,}\b|--live|--scheduler|study\.toml|part-0|\.\
 BLOCK = re.compile(r"(?:^ {4}.*\n)+|^```(?:sh|text|bash)?\n(?:.*\n)*?```", re.MULTILINE)
 CODE = re.compile(r"(<!-- not run: .*? -->\n+)?^```python\n((?:.*\n)*?)```", re.MULTILINE)
 # Libraries that a page shows and that the tests do without: a block that needs one is left out.
-OPTIONAL = {"brahe", "cma", "control", "dask", "duckdb", "numba", "pandas", "polars", "ray", "xarray"}
-# The module of the package `bsk`.
-OPTIONAL |= {"Basilisk"}
+OPTIONAL = {
+    "Basilisk",
+    "brahe",
+    "cma",
+    "control",
+    "dask",
+    "duckdb",
+    "numba",
+    "pandas",
+    "polars",
+    "ray",
+    "xarray",
+}
 RUN = """
 names = {"__name__": "__main__"}
 for block in BLOCKS:

@@ -290,8 +290,8 @@ class ScenarioAnalysis(ScenarioFile):
         >>> import flexsc, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     files = flexsc.Scenario.example("relay-sampled").export_c(folder, name="relay")
-        ...     [file.name for file in files if file.suffix in (".c", ".h")]
-        ['start.c', 'driver.c', 'relay.c', 'relay.h']
+        ...     [file.name for file in files if file.name.startswith("relay")]
+        ['relay.c', 'relay.h']
 
         Raises:
             ValueError: The law has no code for flight, or a file exists with other content.
