@@ -157,6 +157,7 @@ mod requirements;
 mod serve;
 mod serve_clients;
 mod sheets;
+mod sky_combinations;
 mod stops;
 #[cfg(unix)]
 mod stops_soon;
