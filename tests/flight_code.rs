@@ -76,8 +76,10 @@ fn exported_laws_have_equal_bits_in_every_home() {
         dir.run(&format!("export-c {name}.toml -o out --calls 2000"))
             .exits(0)
             .says(&["calls of the run as vectors"]);
-        let hash = &hashes(&dir, "out")[&20_000];
-        let output = make(&dir, "out", &["check-all", "CYCLES=20000", &format!("HASH={hash}")]);
+        let hashes = hashes(&dir, "out");
+        let [hash, board] = [20_000, 1000].map(|cycles| &hashes[&cycles]);
+        let (hash, board) = (format!("HASH={hash}"), format!("BOARD_HASH={board}"));
+        let output = make(&dir, "out", &["check-all", "CYCLES=20000", &hash, "BOARD_CYCLES=1000", &board]);
         let said = text(&output);
         assert!(output.status.success(), "{name}: {said}");
         said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
