@@ -21,11 +21,19 @@ impl CommunicationPoint {
             let at = multiple(nearest, grid_ns);
             return Self { at, latest: at };
         }
-        let mut latest = nearest + Span::from_seconds((seconds.next_up() - seconds) / 2.0) + Span::TICK;
-        while latest > nearest && latest.seconds() > seconds {
-            latest = latest.before(Span::TICK);
+        // Seconds grow with the instants: the last one is between the nearest and the next double, by bisection.
+        let after = |femtoseconds: i64| nearest + Span::from_femtoseconds(femtoseconds);
+        let next = Span::from_seconds(seconds.next_up() - seconds).leading_femtoseconds();
+        let (mut last, mut beyond) = (0, 2 * next + 2048);
+        while beyond - last > 1 {
+            let middle = last + (beyond - last) / 2;
+            if after(middle).seconds() <= seconds {
+                last = middle;
+            } else {
+                beyond = middle;
+            }
         }
-        Self { at: nearest, latest }
+        Self { at: nearest, latest: after(last) }
     }
 }
 
@@ -55,7 +63,9 @@ mod tests {
             let point = CommunicationPoint::new(seconds, 0);
             assert!(point.at <= point.latest && point.latest.seconds() <= seconds, "{seconds}");
             assert!((point.latest + Span::TICK).seconds() > seconds || point.latest == point.at, "{seconds}");
-            assert!((point.at.seconds() - seconds).abs() <= seconds * f64::EPSILON, "{seconds}");
+            // Below 4 s, a double is finer than a femtosecond.
+            let rounding = (seconds * f64::EPSILON).max(0.5e-15 * (1.0 + 1e-9));
+            assert!((point.at.seconds() - seconds).abs() <= rounding, "{seconds}");
         }
         // At 1e6 s, a double stands for more than 1e5 femtoseconds.
         let point = CommunicationPoint::new(1e6 + 0.1, 0);

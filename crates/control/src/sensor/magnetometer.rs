@@ -134,6 +134,7 @@ mod tests {
         let text = "period = 1.0\nbias = [1e-6, 0, 0]\nscale = [0, 0.5, 0]\nrange = [2e-5, 4e-5, 5e-5]";
         let sensor: Magnetometer = flexsc_formats::document::from_text(text).unwrap();
         let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut now = Instant::START;
         let mut measure = |field: [f64; 3]| {
             let sky = EnvironmentObservation {
                 field: Some(Vector::from(field)),
@@ -142,7 +143,9 @@ mod tests {
             let orientation = Orientation::Attitude(rotation(&Vector::zeros()));
             let [elastic, rate] = [[0.0; 3]; 2];
             let truth = Truth { orientation, elastic, rate, rigid: rate, turned: rate, sky };
-            state.read(Instant::START, &truth, None).unwrap().sight.unwrap().vector
+            let reading = state.read(now, &truth, None).unwrap();
+            now += Span::from_seconds(1.0);
+            reading.sight.unwrap().vector
         };
         let within = measure([1.8e-5, -2e-5, 4.9e-5]);
         assert!((within - Vector::new(1.9e-5, -3e-5, 4.9e-5)).norm() < 1e-19, "{within}");
