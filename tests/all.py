@@ -44,6 +44,8 @@ FUZZED = {
 }
 # What codespell reads; its exceptions are in pyproject.toml.
 WORDS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs", "scenarios", "site")
+# Time limit of a step (s), so that one that waits for ever is named.
+LONGEST_STEP = 1800
 # What the runners of tests say at their ends.
 SUMMARY = re.compile(r"^(test result: .*|(?:=+ )?\d+ (?:passed|failed).* in [\d.]+ ?s.*)$", re.MULTILINE)
 SUMMARIES: list[str] = []
@@ -303,6 +305,12 @@ LEFT_OUT = """left out: clippy, the features `matrices`, `papers`, `parquet` and
 combinations of parts, docs/papers.md, the fuzzer, the wheel, the Python tests and the documentation site"""
 
 
+def give_up(step: Step) -> None:
+    """Ends everything, because a step takes too long."""
+    print(f"\n`{step.name}` did not end within {LONGEST_STEP} s", flush=True)
+    os._exit(1)
+
+
 def perform(steps: Sequence[Step]) -> None:
     began = time.monotonic()
     about = sum(step.seconds for step in steps)
@@ -311,7 +319,11 @@ def perform(steps: Sequence[Step]) -> None:
     for number, step in enumerate(steps, 1):
         print(f"\n{number}/{len(steps)} {step.name} (about {step.seconds} s)", flush=True)
         start = time.monotonic()
+        limit = threading.Timer(LONGEST_STEP, give_up, [step])
+        limit.daemon = True
+        limit.start()
         told = step.work()
+        limit.cancel()
         times.append(time.monotonic() - start)
         print(f"{number}/{len(steps)} done in {times[-1]:.0f} s" + (f": {told}" if told else ""), flush=True)
     print(f"\nall passed in {time.monotonic() - began:.0f} s")

@@ -19,8 +19,8 @@ const SKIPPED: &[&str] = &["live", "scheduler", "yes", "set", "vary", "help", "l
 const CPU: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The first example of a verb's help.
-fn example(dir: &Dir, verb: &str) -> Vec<Vec<String>> {
+/// Returns the examples of a verb's help that end without another program.
+fn examples(dir: &Dir, verb: &str) -> Vec<Vec<String>> {
     let ran = dir.run(&format!("{verb} --help")).exits(0);
     let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));
     let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("flexsc "));
@@ -28,7 +28,8 @@ fn example(dir: &Dir, verb: &str) -> Vec<Vec<String>> {
         let line = line.split(" > ").next().unwrap_or(line);
         line.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect()
     };
-    lines.map(words).collect()
+    let waits = |words: &Vec<String>| words[0] == "serve" && !words.contains(&"--describe".to_owned());
+    lines.map(words).filter(|words| !waits(words)).collect()
 }
 
 /// Arguments with a value of an option, in place of the one that they have.
@@ -150,7 +151,7 @@ fn every_option_ends_in_seconds_whatever_its_value() {
         if WITHOUT.contains(&verb.get_name()) {
             continue;
         }
-        let examples = example(&dir, verb.get_name());
+        let examples = examples(&dir, verb.get_name());
         // Later examples read what earlier ones write.
         for line in &examples {
             dir.run(&line.join(" "));

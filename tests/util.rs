@@ -4,12 +4,17 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::sync::mpsc;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use serde_json::Value as Json;
 use tempfile::TempDir;
 
 pub const FLEXSC: &str = env!("CARGO_BIN_EXE_flexsc");
+
+/// Time limit of a command, so that one that waits for ever fails its test.
+const LONGEST_RUN: Duration = Duration::from_secs(300);
 
 /// A short scenario with an uncertain gain and rate.
 pub const UNCERTAIN: &str = r#"seed = 7
@@ -103,7 +108,7 @@ impl Dir {
 
     /// Runs the command; its arguments are parted by blanks.
     pub fn run(&self, arguments: &str) -> Ran {
-        Ran::new(arguments, self.command(arguments).output().expect("the command starts"))
+        self.start(arguments).wait()
     }
 
     /// Runs the command with 1.5 GB of memory and 10 s of time, beyond which it is killed.
@@ -154,7 +159,7 @@ impl Dir {
         let began = Instant::now();
         while self.size(name) < bytes {
             assert!(began.elapsed() < Duration::from_secs(30), "{name} does not grow to {bytes} bytes");
-            std::thread::sleep(Duration::from_millis(2));
+            thread::sleep(Duration::from_millis(2));
         }
     }
 
@@ -163,6 +168,17 @@ impl Dir {
         command.args(arguments.split_whitespace()).current_dir(self.0.path());
         command
     }
+}
+
+/// Returns the output of a command, and fails if it does not end within a time.
+fn finished(child: Child, arguments: &str) -> Output {
+    let (id, (sender, receiver)) = (child.id(), mpsc::channel());
+    thread::spawn(move || sender.send(child.wait_with_output()));
+    let Ok(output) = receiver.recv_timeout(LONGEST_RUN) else {
+        let _ = Command::new("kill").args(["-KILL", &id.to_string()]).status();
+        panic!("flexsc {arguments}: still there after {LONGEST_RUN:?}");
+    };
+    output.expect("waited for")
 }
 
 /// Running command. It is killed at the end of its test.
@@ -195,7 +211,7 @@ impl Started {
     /// Waits for the end.
     pub fn wait(mut self) -> Ran {
         let child = self.child.take().expect("not yet waited for");
-        Ran::new(&self.arguments, child.wait_with_output().expect("waited for"))
+        Ran::new(&self.arguments, finished(child, &self.arguments))
     }
 
     /// Sends a signal, such as `INT`, and waits for the end.
