@@ -53,7 +53,8 @@ mod tests {
             let sky = EnvironmentObservation { nadir, ..EnvironmentObservation::default() };
             let orientation = Orientation::Attitude(rotation(&Vector::new(rotation_angle, 0.0, 0.0)));
             let [elastic, rate] = [[0.0; 3]; 2];
-            let truth = Truth { orientation, elastic, rate, rigid: rate, turned: rate, sky };
+            let truth =
+                Truth { orientation, elastic, rate, rigid_rate: rate, rate_integral: rate, environment: sky };
             let now = Instant::START + Span::from_seconds(t);
             state.read(now, &truth, None).and_then(|reading| reading.sight)
         };

@@ -330,10 +330,17 @@ mod tests {
         assert_eq!(gyro.inconsistency(), None);
         let mut state = gyro.start(3, Seed { scenario: 1, run: 0 }, 0);
         let read = |state: &mut dyn Sensor, t: f64| {
-            let turned = rate.map(|rate| rate * t);
-            let orientation = Orientation::Attitude(rotation(&Vector::from(turned)));
+            let rate_integral = rate.map(|rate| rate * t);
+            let orientation = Orientation::Attitude(rotation(&Vector::from(rate_integral)));
             let sky = EnvironmentObservation::default();
-            let truth = Truth { orientation, elastic: [0.0; 3], rate, rigid: rate, turned, sky };
+            let truth = Truth {
+                orientation,
+                elastic: [0.0; 3],
+                rate,
+                rigid_rate: rate,
+                rate_integral,
+                environment: sky,
+            };
             state.read(Instant::START + Span::from_seconds(t), &truth, None).unwrap().rate.unwrap()
         };
         read(&mut state, 0.0);

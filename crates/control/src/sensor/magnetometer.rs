@@ -142,7 +142,8 @@ mod tests {
             };
             let orientation = Orientation::Attitude(rotation(&Vector::zeros()));
             let [elastic, rate] = [[0.0; 3]; 2];
-            let truth = Truth { orientation, elastic, rate, rigid: rate, turned: rate, sky };
+            let truth =
+                Truth { orientation, elastic, rate, rigid_rate: rate, rate_integral: rate, environment: sky };
             let reading = state.read(now, &truth, None).unwrap();
             now += Span::from_seconds(1.0);
             reading.sight.unwrap().vector

@@ -134,11 +134,11 @@ pub struct Truth {
     /// Rates at the sensor, elastic part included (rad/s).
     pub rate: [f64; 3],
     /// Rigid rates of the body (rad/s).
-    pub rigid: [f64; 3],
+    pub rigid_rate: [f64; 3],
     /// Integral of `rate` (rad), up to a constant, which integrating gyros read.
-    pub turned: [f64; 3],
+    pub rate_integral: [f64; 3],
     /// Vectors of the environment: magnetic field, and directions to Sun and planet.
-    pub sky: EnvironmentObservation,
+    pub environment: EnvironmentObservation,
 }
 
 impl Truth {

@@ -53,7 +53,7 @@ impl RateIntegrator {
 
     /// Returns the mean rates since the last reading (rad/s); the current rates at the first reading.
     pub fn mean_rate(&mut self, gyro: &Gyro, now: Instant, truth: &Truth) -> [f64; 3] {
-        let before = self.read.replace((now, truth.turned));
+        let before = self.read.replace((now, truth.rate_integral));
         let period = before.map_or(0.0, |(then, _)| now.since(then).seconds());
         if period.to_bits() != self.period.to_bits() {
             self.period = period;
@@ -61,7 +61,7 @@ impl RateIntegrator {
         }
         match before {
             Some((_, angle)) if self.period > 0.0 => {
-                std::array::from_fn(|axis| (truth.turned[axis] - angle[axis]) / self.period)
+                std::array::from_fn(|axis| (truth.rate_integral[axis] - angle[axis]) / self.period)
             }
             _ => truth.rate,
         }
@@ -128,9 +128,9 @@ mod tests {
                 orientation: Orientation::Angle(0.0),
                 elastic: [0.0; 3],
                 rate,
-                rigid: rate,
-                turned: rate.map(|rate| rate * t),
-                sky: flexsc_spacecraft::environment::EnvironmentObservation::default(),
+                rigid_rate: rate,
+                rate_integral: rate.map(|rate| rate * t),
+                environment: flexsc_spacecraft::environment::EnvironmentObservation::default(),
             };
             let now = Instant::START + Span::from_seconds(t);
             reported.push(gyro.read(now, &truth, None).unwrap().rate.unwrap());

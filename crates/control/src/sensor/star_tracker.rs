@@ -218,7 +218,7 @@ mod tests {
     fn truth(attitude: Quaternion<f64>, elastic: [f64; 3], rate: [f64; 3]) -> Truth {
         let orientation = Orientation::Attitude(attitude);
         let sky = flexsc_spacecraft::environment::EnvironmentObservation::default();
-        Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3], sky }
+        Truth { orientation, elastic, rate, rigid_rate: rate, rate_integral: [0.0; 3], environment: sky }
     }
 
     fn start(keys: &str) -> StarTrackerState {

@@ -182,7 +182,7 @@ impl SunCellsState {
 
     fn measure(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         let attitude = truth.orientation.rotated_by(truth.sensor_angles()).attitude()?;
-        let inertial = truth.sky.sun;
+        let inertial = truth.environment.sun;
         let exact = inertial.map(|inertial| to_body(&attitude, &inertial));
         let vector = self.direction(exact.as_ref());
         let reading = vector.zip(inertial).map(|(vector, inertial)| Reading {

@@ -43,7 +43,14 @@ mod tests {
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
         let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun, nadir: None };
         let [elastic, rate] = [[0.0; 3]; 2];
-        Truth { orientation: Orientation::Attitude(attitude), elastic, rate, rigid: rate, turned: rate, sky }
+        Truth {
+            orientation: Orientation::Attitude(attitude),
+            elastic,
+            rate,
+            rigid_rate: rate,
+            rate_integral: rate,
+            environment: sky,
+        }
     }
 
     #[test]

@@ -110,7 +110,7 @@ impl<S: VectorSensor> VectorSensorState<S> {
         let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
             return None;
         };
-        let reading = self.sensor.reference(&truth.sky).and_then(|inertial| {
+        let reading = self.sensor.reference(&truth.environment).and_then(|inertial| {
             let exact = to_body(&attitude, &inertial);
             let vector = self.sensor.reading(&exact, self.errors.measured(&exact, &draws))?;
             let vector_measurement =

@@ -156,7 +156,7 @@ impl Blinding {
     /// of the body and of its modes, all in phase, and the growth of both under the torques.
     fn rate_bound(&self, watch: &Watch, plant: &Plant, torque: f64, h: f64) -> f64 {
         let Some(motion) = plant.quantities().three_axis() else { return 0.0 };
-        let rate = Vector::from(plant.truth().rigid).norm();
+        let rate = Vector::from(plant.truth().rigid_rate).norm();
         let (_, momentum) = motion.rotational_energy();
         let torque =
             torque + motion.surroundings().map_or(0.0, flexsc_dynamics::three_axis::Surroundings::bound);

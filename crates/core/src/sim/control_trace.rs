@@ -77,7 +77,7 @@ impl Simulation {
         if axes.is_empty() {
             return;
         }
-        let (actuator, rigid) = (&self.loads.actuator, self.plant.truth().rigid);
+        let (actuator, rigid) = (&self.loads.actuator, self.plant.truth().rigid_rate);
         let abilities = actuator.capabilities();
         let wheels = abilities.momentum.map(|storage| storage.wheels(now, rigid)).unwrap_or_default();
         let mut demanded_torque = [0.0; 3];

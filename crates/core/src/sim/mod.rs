@@ -194,7 +194,7 @@ impl Simulation {
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
-            self.loads.apply_due_changes(now, self.plant.truth().rigid);
+            self.loads.apply_due_changes(now, self.plant.truth().rigid_rate);
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
@@ -232,7 +232,7 @@ impl Simulation {
         self.clock.count_decision()?;
         self.estimation.predict(now, &self.plant, &self.sensors);
         self.update_mode(record)?;
-        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid);
+        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid_rate);
         let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates, &speeds);
         if decision.is_switching() || matches!(event, Event::Guard { axis: 1.., .. }) {
             self.clock.count_switching()?;
@@ -248,7 +248,7 @@ impl Simulation {
         let truth = self.plant.truth();
         self.loads.set_magnetic_field(self.clock.now(), self.sensors.magnetic_field(truth));
         let (outputs, estimates) = (self.laws.outputs(), &self.estimation.estimates);
-        self.loads.command(self.clock.now(), outputs, estimates, truth.rigid);
+        self.loads.command(self.clock.now(), outputs, estimates, truth.rigid_rate);
         self.trace_decision(self.clock.now());
     }
 

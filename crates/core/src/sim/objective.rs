@@ -106,7 +106,7 @@ impl AdaptationObjective {
                 let all = loads.actuator.capabilities().wheels(now, truth.rate);
                 let wheels = all.iter().map(|wheel| wheel.torque_nm * wheel.speed_rad_s);
                 let about = |axis: usize| {
-                    let rates = [truth.rate[axis], truth.rigid[axis]];
+                    let rates = [truth.rate[axis], truth.rigid_rate[axis]];
                     let wheel = loads.actuator.response(now, axis, rates).rotor?;
                     Some(loads.actuator.effort(axis).held * wheel.speed_rad_s)
                 };

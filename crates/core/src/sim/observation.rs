@@ -112,7 +112,7 @@ impl RunView<'_> {
                 row.write_all(state.modes.iter().map(|mode| mode.displacement));
                 row.write_all(motion.body().mode_rates());
                 row.write(&[self.torque(0, truth)]);
-                let rates = [truth.rate[0], truth.rigid[0]];
+                let rates = [truth.rate[0], truth.rigid_rate[0]];
                 let rotor = self.loads.actuator.response(now, 0, rates).rotor;
                 row.write_all(rotor.map(|wheel| wheel.speed_rad_s));
             }
@@ -121,7 +121,7 @@ impl RunView<'_> {
                 row.write(&[q.w, q.i, q.j, q.k]);
                 row.write(&truth.orientation.error_from(&origin));
                 row.write(&truth.rate);
-                row.write(&truth.rigid);
+                row.write(&truth.rigid_rate);
                 row.write_all(motion.body().state.modes.iter().map(|mode| mode.displacement));
                 row.write_all(motion.body().mode_rates());
                 let magnetic = motion.magnetic_torque();
@@ -170,7 +170,7 @@ impl RunView<'_> {
 
     /// Returns the torque that the actuator applies about an axis (N m).
     fn torque(&self, axis: usize, truth: &Truth) -> f64 {
-        self.loads.actuator.response(self.now, axis, [truth.rate[axis], truth.rigid[axis]]).applied
+        self.loads.actuator.response(self.now, axis, [truth.rate[axis], truth.rigid_rate[axis]]).applied
     }
 }
 

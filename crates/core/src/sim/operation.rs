@@ -153,7 +153,7 @@ impl ModeReadings for KnownQuantities<'_> {
             }
             ModeQuantity::Momentum => norm(&run.loads.actuator.capabilities().stored_momentum(now)),
             ModeQuantity::WheelSpeed => {
-                let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid);
+                let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid_rate);
                 speeds.into_iter().map(f64::abs).reduce(f64::max).unwrap_or(f64::NAN)
             }
             ModeQuantity::Field => run.sensors.measured_field().map_or(f64::NAN, |field| field.norm()),

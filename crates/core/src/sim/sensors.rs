@@ -255,7 +255,7 @@ impl Sensors {
     /// measures it; `None` without a field.
     pub fn magnetic_field(&self, truth: &Truth) -> Option<Vector> {
         let measured = self.field.map(|(_, field)| field);
-        measured.or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.sky.field?)))
+        measured.or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.environment.field?)))
     }
 }
 

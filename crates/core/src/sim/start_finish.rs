@@ -10,11 +10,11 @@ impl Simulation {
     pub(super) fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         self.plant.evaluate(now)?;
-        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid);
+        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid_rate);
         let estimates = &mut self.estimation.estimates;
         self.laws.decide_uncounted(now, Event::Start, &self.guidance, estimates, &speeds);
         self.command_actuator();
-        self.loads.apply_due_changes(now, self.plant.truth().rigid);
+        self.loads.apply_due_changes(now, self.plant.truth().rigid_rate);
         self.begin_segment(record)?;
         if let Some(search) = self.estimation.search().or(self.laws.objective.search()) {
             // The value of a tuned parameter is logged from the start on.

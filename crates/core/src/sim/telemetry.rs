@@ -163,9 +163,9 @@ fn has_dominant_mode(scenario: &Scenario) -> bool {
 fn wheel_speeds(run: &RunView<'_>) -> Vec<f64> {
     let truth = run.plant.truth();
     if run.estimation.axis_count() > 1 {
-        return run.loads.wheel_speeds(run.now, truth.rigid);
+        return run.loads.wheel_speeds(run.now, truth.rigid_rate);
     }
-    let response = run.loads.actuator.response(run.now, 0, [truth.rate[0], truth.rigid[0]]);
+    let response = run.loads.actuator.response(run.now, 0, [truth.rate[0], truth.rigid_rate[0]]);
     response.rotor.iter().map(|wheel| wheel.speed_rad_s).collect()
 }
 

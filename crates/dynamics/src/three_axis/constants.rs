@@ -186,12 +186,12 @@ impl BodyConstants {
     pub fn momentum_and_rate(
         &self,
         momentum: &Vector,
-        elastic_rate: &Vector,
+        canonical_elastic_rate: &Vector,
         inertia_change: &Matrix3<f64>,
     ) -> (Vector, Vector) {
         let rate = solved(
             &(self.residual_inertia + inertia_change),
-            &(momentum + self.residual_inertia * elastic_rate),
+            &(momentum + self.residual_inertia * canonical_elastic_rate),
         );
         (momentum - inertia_change * rate, rate)
     }
@@ -205,7 +205,7 @@ impl BodyConstants {
         &self,
         kind: R,
         momentum: Vectors<R>,
-        elastic_rate: Vectors<R>,
+        canonical_elastic_rate: Vectors<R>,
         inertia_change: &[R; 6],
     ) -> (Vectors<R>, Vectors<R>) {
         let m = &self.residual_inertia;
@@ -215,7 +215,7 @@ impl BodyConstants {
         let yz = kind.splat(m.m32) + inertia_change[3];
         let zx = kind.splat(m.m31) + inertia_change[4];
         let xy = kind.splat(m.m21) + inertia_change[5];
-        let v = momentum + elastic_rate.transform(m);
+        let v = momentum + canonical_elastic_rate.transform(m);
         // Solution by Cramer's rule.
         let first = Vectors { x: yy * zz - yz * yz, y: yz * zx - xy * zz, z: xy * yz - yy * zx };
         let (second, third, across) = (zz * xx - zx * zx, xx * yy - xy * xy, xy * zx - xx * yz);

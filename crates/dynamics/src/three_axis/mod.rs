@@ -20,7 +20,7 @@
 //!
 //! | symbol | name in the code | unit |
 //! |---|---|---|
-//! | G = H - sum a h | `free` | N m s |
+//! | G = H - sum a h | `body_momentum` | N m s |
 //! | Gr, with Gr th' the rate of the hub against the mean axes | `rate_correction` of `small_rotation.rs` returns (1 - Gr) th' | - |
 //! | A, b; h of a step | `MATRIX`, `WEIGHTS` of `gauss_legendre`; `h` | -; s |
 //! | D = 2 zeta W on the diagonal | `damping` of a mode | 1/s |

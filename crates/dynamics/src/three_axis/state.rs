@@ -114,7 +114,7 @@ impl BodyView {
         rotors: &Vector,
         stuck_inertia: &Matrix3<f64>,
     ) {
-        let ModalSumsResult { elastic_rotation, elastic_rate, inertia_change } =
+        let ModalSums { elastic_rotation, canonical_elastic_rate, inertia_change } =
             model.lanes.run(SumModes { model, states: &state.modes });
         let hub_to_mean = SmallRotation::new(elastic_rotation);
         let inertia_change = tensor(inertia_change);
@@ -123,7 +123,7 @@ impl BodyView {
         self.momentum = hub_to_mean.to_hub_axes(&state.mean_momentum);
         let (rigid_momentum, rate) = model.momentum_and_rate(
             &(self.momentum - rotors),
-            &elastic_rate,
+            &canonical_elastic_rate,
             &(inertia_change + stuck_inertia),
         );
         self.rate = rate;
@@ -162,39 +162,43 @@ pub(super) struct SumModes<'a> {
 
 /// Modal sums: sum phi q (rad), sum phi P (rad/s), and the change of the inertia as xx, yy, zz, yz, zx and xy (kg
 /// m²).
-pub(super) struct ModalSumsResult {
+pub(super) struct ModalSums {
     pub elastic_rotation: Vector,
-    pub elastic_rate: Vector,
+    pub canonical_elastic_rate: Vector,
     pub inertia_change: [f64; 6],
 }
 
 impl SimdTask for SumModes<'_> {
-    type Output = ModalSumsResult;
+    type Output = ModalSums;
 
     #[inline(always)]
-    fn run<R: LaneFloat>(self, kind: R) -> ModalSumsResult {
+    fn run<R: LaneFloat>(self, kind: R) -> ModalSums {
         let Self { model, states } = self;
         let zero = kind.splat(0.0);
-        let (mut elastic_rotation, mut elastic_rate, mut inertia_change) = (zero, zero, [zero; 2]);
+        let (mut elastic_rotation, mut canonical_elastic_rate, mut inertia_change) = (zero, zero, [zero; 2]);
         let count = model.padded.len().min(states.len());
         let (padded, states) = (&model.padded[..count], &states[..count]);
         for index in 0..count {
             let (of, [q, p, ..]) = (&padded[index], states[index]);
             let (rotation, [first, second]) = (kind.load(&of.rotation), &of.moments);
             elastic_rotation = elastic_rotation + rotation * q;
-            elastic_rate = elastic_rate + rotation * (of.frequency * p);
+            canonical_elastic_rate = canonical_elastic_rate + rotation * (of.frequency * p);
             inertia_change =
                 [inertia_change[0] + kind.load(first) * q, inertia_change[1] + kind.load(second) * q];
         }
         let mut kept = [[0.0; 4]; 4];
         elastic_rotation.store(&mut kept[0]);
-        elastic_rate.store(&mut kept[1]);
+        canonical_elastic_rate.store(&mut kept[1]);
         inertia_change[0].store(&mut kept[2]);
         inertia_change[1].store(&mut kept[3]);
-        let [elastic_rotation, elastic_rate, first, second] = kept;
-        ModalSumsResult {
+        let [elastic_rotation, canonical_elastic_rate, first, second] = kept;
+        ModalSums {
             elastic_rotation: Vector::new(elastic_rotation[0], elastic_rotation[1], elastic_rotation[2]),
-            elastic_rate: Vector::new(elastic_rate[0], elastic_rate[1], elastic_rate[2]),
+            canonical_elastic_rate: Vector::new(
+                canonical_elastic_rate[0],
+                canonical_elastic_rate[1],
+                canonical_elastic_rate[2],
+            ),
             inertia_change: [first[0], first[1], first[2], first[3], second[0], second[1]],
         }
     }

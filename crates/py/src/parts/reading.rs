@@ -212,25 +212,25 @@ impl Truth {
     /// The rigid rates of the body (rad/s).
     #[getter]
     fn rigid(&self) -> Three {
-        self.truth.rigid.into()
+        self.truth.rigid_rate.into()
     }
 
     /// The integral of `rate` (rad) up to a constant, as a gyro counts it.
     #[getter]
     fn turned(&self) -> Three {
-        self.truth.turned.into()
+        self.truth.rate_integral.into()
     }
 
     /// The magnetic field in the inertial frame (T), if there is one.
     #[getter]
     fn field(&self) -> Option<Three> {
-        self.truth.sky.field.map(|field| <[f64; 3]>::from(field).into())
+        self.truth.environment.field.map(|field| <[f64; 3]>::from(field).into())
     }
 
     /// The direction to the Sun in the inertial frame, when in sunlight.
     #[getter]
     fn sun(&self) -> Option<Three> {
-        self.truth.sky.sun.map(|sun| <[f64; 3]>::from(sun).into())
+        self.truth.environment.sun.map(|sun| <[f64; 3]>::from(sun).into())
     }
 
     /// The attitude rotated by three small angles about the body axes (rad).

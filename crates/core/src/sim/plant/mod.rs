@@ -1,6 +1,5 @@
 //! Plant: the flow of the body and its true state at the last evaluation.
 
-mod coupled;
 mod external;
 mod flow;
 mod one_axis;
@@ -10,6 +9,7 @@ mod small_angles;
 mod three_axis_body;
 mod three_axis_rows;
 mod two_way;
+mod two_way_motion;
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -32,26 +32,26 @@ use flexsc_spacecraft::environment::EnvironmentObservation;
 use super::SimulationError;
 use crate::scenario::{ResolvedScenario, Scenario};
 
-use coupled::CoupledSegment;
 use external::ExternalFlow;
 use one_way::OneWayFlow;
 use small_angles::SmallAnglesFlow;
 use two_way::TwoWayFlow;
+use two_way_motion::TwoWaySegment;
 
-pub use coupled::AccelerometerMount;
 pub use flow::{Flow, FlowQuantities};
 pub use one_axis::{AppliedTorque, OneAxisFlow};
 pub use one_axis_body::OneAxisQuantities;
 pub use three_axis_body::ThreeAxisQuantities;
+pub use two_way_motion::AccelerometerMount;
 
 /// True state before the first evaluation.
 const INITIAL_TRUTH: Truth = Truth {
     orientation: Orientation::Angle(0.0),
     elastic: [0.0; 3],
     rate: [0.0; 3],
-    rigid: [0.0; 3],
-    turned: [0.0; 3],
-    sky: EnvironmentObservation { field: None, sun: None, nadir: None },
+    rigid_rate: [0.0; 3],
+    rate_integral: [0.0; 3],
+    environment: EnvironmentObservation { field: None, sun: None, nadir: None },
 };
 
 /// Moving body.
@@ -206,24 +206,24 @@ impl Plant {
     /// tachometer.
     #[inline]
     pub fn rotor_observations(&self) -> Vec<RotorObservation> {
-        self.coupled().map_or_else(Vec::new, |segment| segment.motion.rotor_observations(segment.start))
+        self.two_way().map_or_else(Vec::new, |segment| segment.motion.rotor_observations(segment.start))
     }
 
     /// Returns the slip states of the wheels in bearings.
     pub fn slip_states(&self) -> &[SlipDirection] {
-        self.coupled().map_or(&[], |segment| segment.motion.slip_states())
+        self.two_way().map_or(&[], |segment| segment.motion.slip_states())
     }
 
     /// Returns the specific force at an accelerometer of a spacecraft at the current instant (m/s²), under the loads
     /// from then on.
     pub fn specific_force(&self, place: &AccelerometerMount) -> Vector {
-        self.coupled()
+        self.two_way()
             .map_or_else(Vector::zeros, |segment| segment.motion.specific_force(place, segment.start))
     }
 
     /// Returns the motion whose modes act back on the rotation, if the body has it.
-    fn coupled(&self) -> Option<CoupledSegment<'_>> {
-        self.quantities().three_axis().and_then(ThreeAxisQuantities::coupled)
+    fn two_way(&self) -> Option<TwoWaySegment<'_>> {
+        self.quantities().three_axis().and_then(ThreeAxisQuantities::two_way)
     }
 
     /// Returns the closed-form motion of a one-axis body, for the relay kernel.

@@ -83,7 +83,7 @@ impl OneAxisBody {
             return false;
         }
         truth.orientation = Orientation::Angle(angle);
-        (truth.rate[0], truth.rigid[0], truth.turned[0]) = (rate, self.state.rigid_rate, angle);
+        (truth.rate[0], truth.rigid_rate[0], truth.rate_integral[0]) = (rate, self.state.rigid_rate, angle);
         true
     }
 

@@ -155,11 +155,11 @@ impl Flow for OneWayFlow {
         truth.orientation = Orientation::Attitude(turn.attitude);
         truth.elastic = angle.into();
         truth.rate = (rigid + elastic).into();
-        truth.rigid = rigid.into();
-        truth.turned = (RigidBody::rigid_angle(turn) + angle).into();
+        truth.rigid_rate = rigid.into();
+        truth.rate_integral = (RigidBody::rigid_angle(turn) + angle).into();
         body.rates = (rigid, elastic);
         if let Some(around) = &self.surroundings {
-            truth.sky = around.observation(body.evaluated_at.seconds());
+            truth.environment = around.observation(body.evaluated_at.seconds());
         }
         body.has_truth = true;
         true

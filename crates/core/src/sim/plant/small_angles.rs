@@ -173,11 +173,11 @@ impl Flow for SmallAnglesFlow {
         // From the hub, so that a sensor reads the sum of the small rotations.
         truth.elastic = rotation_vector(&self.hub, &(self.target * rotation(&angles))).into();
         truth.rate = (state.rates + elastic).into();
-        truth.rigid = state.rates.into();
-        truth.turned = (angles - self.first_angles).into();
+        truth.rigid_rate = state.rates.into();
+        truth.rate_integral = (angles - self.first_angles).into();
         self.body.rates = (state.rates, elastic);
         if let Some(around) = &self.surroundings {
-            truth.sky = around.observation(self.body.evaluated_at.seconds());
+            truth.environment = around.observation(self.body.evaluated_at.seconds());
         }
         self.body.has_truth = true;
         true

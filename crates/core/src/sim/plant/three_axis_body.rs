@@ -10,7 +10,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::Quaternion;
 
-use super::coupled::CoupledSegment;
+use super::two_way_motion::TwoWaySegment;
 use crate::scenario::ResolvedScenario;
 
 /// A mode is visible to a sensor if it rotates the sensor by at least this fraction of the largest modal rotation
@@ -68,7 +68,7 @@ pub trait ThreeAxisQuantities {
     fn fastest_frequency(&self) -> f64;
 
     /// Returns the motion whose modes act back on the rotation; `None` for another one.
-    fn coupled(&self) -> Option<CoupledSegment<'_>> {
+    fn two_way(&self) -> Option<TwoWaySegment<'_>> {
         None
     }
 }
@@ -108,7 +108,7 @@ impl ThreeAxisBody {
         Truth {
             elastic: (Vector::from(first.elastic) + angle).into(),
             rate: (Vector::from(first.rate) + rate).into(),
-            turned: (Vector::from(first.turned) + angle).into(),
+            rate_integral: (Vector::from(first.rate_integral) + angle).into(),
             ..*first
         }
     }

@@ -27,7 +27,7 @@ impl dyn ThreeAxisQuantities + '_ {
 
     /// Returns the heat of the wheels' friction since the start (J); NaN without bearings.
     pub fn friction_heat(&self) -> f64 {
-        self.coupled().and_then(|segment| segment.motion.friction_heat()).unwrap_or(f64::NAN)
+        self.two_way().and_then(|segment| segment.motion.friction_heat()).unwrap_or(f64::NAN)
     }
 
     /// Adds the rows of the plant that depend on nothing else to a report.
@@ -49,7 +49,7 @@ impl dyn ThreeAxisQuantities + '_ {
 
     /// Returns the row of the first point's position; `None` for a body without forces or with unknown mass.
     pub fn position(&self) -> Option<Position> {
-        let [at, speed] = self.coupled()?.motion.position()?;
+        let [at, speed] = self.two_way()?.motion.position()?;
         Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
     }
 
@@ -75,7 +75,7 @@ impl dyn ThreeAxisQuantities + '_ {
     /// Returns the row of the appendages' drives and of the modal frequencies, which change with them; `None` without
     /// drives.
     pub fn drives(&self) -> Option<DrivesMotion> {
-        let motion = self.coupled()?.motion;
+        let motion = self.two_way()?.motion;
         let (frequencies, _) = motion.modes().filter(|_| motion.has_drives())?;
         let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
         let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
@@ -91,7 +91,7 @@ impl dyn ThreeAxisQuantities + '_ {
             angle_rad: *angle_rad,
             rate_rad_s: *rate_rad_s,
         };
-        let hinges = self.coupled()?.motion.hinges();
+        let hinges = self.two_way()?.motion.hinges();
         (!hinges.is_empty()).then(|| Hinges { hinges: hinges.iter().map(hinge).collect() })
     }
 

@@ -14,16 +14,16 @@ use flexsc_record::{Record, RecordError};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::Quaternion;
 
-use super::coupled::{CoupledMotion, CoupledSegment};
 use super::flow::{Flow, FlowQuantities};
 use super::three_axis_body::{ThreeAxisBody, ThreeAxisQuantities};
+use super::two_way_motion::{TwoWayMotion, TwoWaySegment};
 use crate::scenario::ResolvedScenario;
 
 /// Flow of a three-axis body whose modes act back on its rotation.
 #[derive(Clone, Debug)]
 pub struct TwoWayFlow {
     body: ThreeAxisBody,
-    motion: CoupledMotion,
+    motion: TwoWayMotion,
     /// Start of the motion segment.
     segment_start: Instant,
 }
@@ -32,7 +32,7 @@ impl TwoWayFlow {
     /// Creates the flow at the start, without loads.
     pub fn new(spec: &ThreeAxisModel, flexible: &FlexibleBody, study: &ResolvedScenario) -> Self {
         let body = ThreeAxisBody::new(spec, study);
-        let motion = CoupledMotion::new(
+        let motion = TwoWayMotion::new(
             spec,
             flexible,
             study.surroundings.clone(),
@@ -85,9 +85,9 @@ impl Flow for TwoWayFlow {
             return false;
         }
         let elastic = self.motion.write_truth(&body.sensor_rotations, truth);
-        body.rates = (truth.rigid.into(), elastic);
+        body.rates = (truth.rigid_rate.into(), elastic);
         if let Some(around) = self.motion.surroundings() {
-            truth.sky = around.observation(body.evaluated_at.seconds());
+            truth.environment = around.observation(body.evaluated_at.seconds());
         }
         body.has_truth = true;
         true
@@ -161,7 +161,7 @@ impl ThreeAxisQuantities for TwoWayFlow {
         self.motion.fastest()
     }
 
-    fn coupled(&self) -> Option<CoupledSegment<'_>> {
-        Some(CoupledSegment { motion: &self.motion, start: self.segment_start.seconds() })
+    fn two_way(&self) -> Option<TwoWaySegment<'_>> {
+        Some(TwoWaySegment { motion: &self.motion, start: self.segment_start.seconds() })
     }
 }

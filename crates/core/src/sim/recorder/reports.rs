@@ -39,7 +39,7 @@ impl TrueState for RunView<'_> {
 
     fn rates(&self) -> [[f64; 3]; 2] {
         let truth = self.plant.truth();
-        [truth.rate, truth.rigid]
+        [truth.rate, truth.rigid_rate]
     }
 
     fn about_axis(&self, axis: usize) -> Cow<'_, AxisState> {

@@ -83,5 +83,5 @@ fn error(run: &RunView<'_>, is_rate: bool) -> [f64; 3] {
         return error;
     }
     let reference = run.guidance.reference_rate(run.now, &Vector::from(error));
-    (Vector::from(truth.rigid) - reference).into()
+    (Vector::from(truth.rigid_rate) - reference).into()
 }

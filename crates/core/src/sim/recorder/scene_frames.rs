@@ -75,7 +75,7 @@ impl SceneFrames {
                     };
                     record.record(now, Sample::Row(scene.frames(stamp, ScenePose::OneAxis(pose))))?;
                 }
-                let rates = [truth.rate[0], truth.rigid[0]];
+                let rates = [truth.rate[0], truth.rigid_rate[0]];
                 SceneThrust::Torque(run.loads.actuator.response(now, 0, rates).applied)
             }
             FlowQuantities::ThreeAxis(motion) => {

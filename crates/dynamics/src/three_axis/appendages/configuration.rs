@@ -170,7 +170,7 @@ impl ArticulatedBody {
 
 impl Configuration {
     /// Returns the free modes; `None` if the mass matrix is not positive definite.
-    pub fn free(&self, of: &ArticulatedBody) -> Option<FreeModes> {
+    pub fn free_modes(&self, of: &ArticulatedBody) -> Option<FreeModes> {
         let columns = |of: &[Vector]| Matrix3xX::from_fn(of.len(), |row, column| of[column][row]);
         let held = ClampedModes {
             mass: self.mass,
@@ -197,13 +197,13 @@ impl Configuration {
 
     /// Returns the rate w of the hub (rad/s) for the momentum without rotors (N m s) and the displacements `eta` of the
     /// clamped modes; replaces their momenta pi in `rates` by their rates eta'.
-    pub fn rates(&self, free: &Vector, eta: &[f64], rates: &mut [f64]) -> Vector {
+    pub fn rates(&self, body_momentum: &Vector, eta: &[f64], rates: &mut [f64]) -> Vector {
         rates.iter_mut().zip(&self.modal_momenta).for_each(|(pi, modal_momentum)| *pi -= modal_momentum);
         self.solve_mass(rates);
         let sum = |of: &[Vector], by: &[f64]| -> Vector {
             of.iter().zip(by).fold(Vector::zeros(), |sum, (of, by)| sum + of * *by)
         };
-        let remaining = free - self.momentum - sum(&self.momenta, eta) - sum(&self.rotations, rates);
+        let remaining = body_momentum - self.momentum - sum(&self.momenta, eta) - sum(&self.rotations, rates);
         let whole = self.residual_inertia + self.inertia_change(eta);
         let rate = whole.lu().solve(&remaining).unwrap_or_else(|| Vector::repeat(f64::NAN));
         // Here eta' = E⁻¹ (pi - k) - E⁻¹ delta' w; `rates` already holds the first term.

@@ -116,7 +116,7 @@ impl ArticulatedBody {
     pub fn frequencies(&self, angles: &[f64]) -> Vec<f64> {
         let mut configuration = Configuration::default();
         self.update(|drive| [angles[drive], 0.0], &[], &mut configuration);
-        configuration.free(self).map(|free| free.frequencies).unwrap_or_default()
+        configuration.free_modes(self).map(|free| free.frequencies).unwrap_or_default()
     }
 
     /// Returns true if a drive or a hinge moves the centre of mass.

@@ -35,7 +35,7 @@ impl ModalBasis {
     pub fn initial(of: &ArticulatedBody, angles: &dyn DriveAngles) -> Option<Self> {
         let mut configuration = Configuration::default();
         of.update(|drive| angles.at(drive, 0.0), &[], &mut configuration);
-        let free = configuration.free(of)?;
+        let free = configuration.free_modes(of)?;
         let start = inverse(of, &free).transpose();
         Some(Self::new(of, &configuration, free, (configuration.centre, start)))
     }
@@ -44,7 +44,7 @@ impl ModalBasis {
     pub fn at(&self, of: &ArticulatedBody, angles: &dyn DriveAngles, t: f64) -> Option<Self> {
         let mut configuration = Configuration::default();
         of.update(|drive| angles.at(drive, t), &[], &mut configuration);
-        let free = self.reordered(&configuration.free(of)?);
+        let free = self.reordered(&configuration.free_modes(of)?);
         Some(Self::new(of, &configuration, free, (self.first_centre, self.start.clone())))
     }
 

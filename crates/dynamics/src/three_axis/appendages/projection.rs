@@ -56,7 +56,7 @@ impl ArticulatedMotion {
         let ReducedState { attitude, momentum, mut eta, mut pi, .. } = self.reduce(state);
         // The free modes are those with hinges at angle 0.
         self.configuration(self.segment_start + now, &[], &mut configuration);
-        let Some(free) = configuration.free(&self.body) else { return };
+        let Some(free) = configuration.free_modes(&self.body) else { return };
         if self.hinged {
             self.configuration(self.segment_start + now, &eta, &mut configuration);
         }

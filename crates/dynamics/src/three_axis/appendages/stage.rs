@@ -75,7 +75,7 @@ impl ArticulatedMotion {
     pub fn stage_rates(
         &self,
         stage: usize,
-        free: &Vector,
+        body_momentum: &Vector,
         com_acceleration: Option<Vector>,
         scratch: &mut StageScratch,
     ) -> StageRates {
@@ -87,7 +87,7 @@ impl ArticulatedMotion {
         configuration.without_hinges(&mut scratch.eta);
         // The momenta pi, which the next call replaces by the rates eta'.
         scratch.rates = self.basis.to_clamped_momenta(&scratch.p);
-        let rate = configuration.rates(free, &scratch.eta, &mut scratch.rates);
+        let rate = configuration.rates(body_momentum, &scratch.eta, &mut scratch.rates);
         scratch.modal_rates = self.basis.to_free(&scratch.rates);
         let arm_torque = com_acceleration.map_or_else(Vector::zeros, |com_acceleration| {
             let shift = self.centre_shift(configuration, &scratch.eta);

@@ -53,7 +53,7 @@ pub struct NodeIteration<'a> {
 /// Modal sums at the nodes: sum phi q, sum phi P, change of the inertia, and torque of moving points of application.
 struct NodeDeformations<R> {
     elastic_rotation: Vectors<R>,
-    elastic_rate: Vectors<R>,
+    canonical_elastic_rate: Vectors<R>,
     inertia_change: [R; 6],
     arm_torque: Vectors<R>,
 }
@@ -127,7 +127,7 @@ fn deformations<R: LaneFloat, const WITH_ARMS: bool>(
 ) -> NodeDeformations<R> {
     let zero = kind.splat(0.0);
     let none = Vectors { x: zero, y: zero, z: zero };
-    let (mut elastic_rotation, mut elastic_rate, mut inertia_change, mut arm_torque) =
+    let (mut elastic_rotation, mut canonical_elastic_rate, mut inertia_change, mut arm_torque) =
         (none, none, [zero; 6], none);
     let changes_inertia = step.model.changes_inertia;
     let count = modes.len();
@@ -148,7 +148,7 @@ fn deformations<R: LaneFloat, const WITH_ARMS: bool>(
         let rate = p * of.frequency;
         rate.store(&mut memory.rate);
         elastic_rotation = elastic_rotation.add_scaled(&of.rotation, q);
-        elastic_rate = elastic_rate.add_scaled(&of.rotation, rate);
+        canonical_elastic_rate = canonical_elastic_rate.add_scaled(&of.rotation, rate);
         if changes_inertia {
             for entry in 0..6 {
                 inertia_change[entry] = inertia_change[entry] + q * of.moments[entry];
@@ -158,7 +158,7 @@ fn deformations<R: LaneFloat, const WITH_ARMS: bool>(
             arm_torque = arm_torque.add_scaled(&step.force_arms[index], q);
         }
     }
-    NodeDeformations { elastic_rotation, elastic_rate, inertia_change, arm_torque }
+    NodeDeformations { elastic_rotation, canonical_elastic_rate, inertia_change, arm_torque }
 }
 
 /// Computes the motion of the body at the nodes and writes it to `nodes`; returns the modal forcing and the changes.
@@ -175,21 +175,26 @@ fn evaluate<R: LaneFloat>(
     let hub_to_mean = SmallRotationLanes::new(kind, deformations.elastic_rotation);
     let times = times(kind, h);
     let (rotors, change) = &step.rotors;
-    let mut free = hub_to_mean.to_hub_axes(momentum) - Vectors::splat(kind, rotors).add_scaled(change, times);
+    let mut body_momentum =
+        hub_to_mean.to_hub_axes(momentum) - Vectors::splat(kind, rotors).add_scaled(change, times);
     if let Some(gimbal_momentum) = &step.gimbal_momentum {
-        free = free - Vectors::load(kind, &gimbal_momentum.nodes);
+        body_momentum = body_momentum - Vectors::load(kind, &gimbal_momentum.nodes);
     }
     let (rigid_momentum, rigid_rate, rate) = if model.changes_inertia {
         let (rigid_momentum, rate) = model.momentum_and_rate_lanes(
             kind,
-            free,
-            deformations.elastic_rate,
+            body_momentum,
+            deformations.canonical_elastic_rate,
             &deformations.inertia_change,
         );
         (rigid_momentum, rigid_momentum.transform(&model.inverse), rate)
     } else {
-        let rigid_rate = free.transform(&model.inverse);
-        (free, rigid_rate, rigid_rate + deformations.elastic_rate + free.transform(&model.bending))
+        let rigid_rate = body_momentum.transform(&model.inverse);
+        (
+            body_momentum,
+            rigid_rate,
+            rigid_rate + deformations.canonical_elastic_rate + body_momentum.transform(&model.bending),
+        )
     };
     let (mut torque, mut tides) = (Vectors::splat(kind, &step.torque), [None; 3]);
     if !step.force_arms.is_empty() {

@@ -18,7 +18,7 @@ pub struct Deformation {
     /// Elastic rotation th = sum phi q (rad).
     pub elastic_rotation: Vector,
     /// Sum phi P of the canonical rates (rad/s); the elastic rate of the hub is sum phi q'.
-    pub elastic_rate: Vector,
+    pub canonical_elastic_rate: Vector,
     /// Change J1 of the inertia (kg m²).
     pub inertia_change: Matrix3<f64>,
     /// Torque on the hub by forces whose points of application the modes move (N m).
@@ -27,19 +27,19 @@ pub struct Deformation {
 
 /// Accumulator of modal sums.
 #[derive(Default)]
-pub struct ModalSums {
+pub struct DeformationSum {
     elastic_rotation: Vector,
-    elastic_rate: Vector,
+    canonical_elastic_rate: Vector,
     inertia_change: [f64; 6],
     arm_torque: Vector,
 }
 
-impl ModalSums {
+impl DeformationSum {
     #[inline]
     /// Adds a mode with the displacement q (m sqrt(kg)) and the canonical rate P (m sqrt(kg)/s).
     pub fn add(&mut self, of: &ModeConstants, q: f64, canonical_rate: f64, changes_inertia: bool) {
         self.elastic_rotation += of.rotation * q;
-        self.elastic_rate += of.rotation * canonical_rate;
+        self.canonical_elastic_rate += of.rotation * canonical_rate;
         if changes_inertia {
             self.inertia_change.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
         }
@@ -55,7 +55,7 @@ impl ModalSums {
     pub fn deformation(&self) -> Deformation {
         Deformation {
             elastic_rotation: self.elastic_rotation,
-            elastic_rate: self.elastic_rate,
+            canonical_elastic_rate: self.canonical_elastic_rate,
             inertia_change: tensor(self.inertia_change),
             arm_torque: self.arm_torque,
         }
@@ -138,7 +138,7 @@ impl IntegrationStep<'_> {
         modes: &mut [ModeMemory],
         optional: &mut OptionalStages,
     ) -> Deformation {
-        let mut sums = ModalSums::default();
+        let mut sums = DeformationSum::default();
         let varying = self.has_varying_forces();
         let all = modes.iter_mut().zip(self.responses).zip(&self.model.modes);
         for (index, ((memory, response), of)) in all.enumerate() {
@@ -196,11 +196,15 @@ impl IntegrationStep<'_> {
                 deformation.inertia_change + stuck_inertia
             });
             let (rigid_momentum, rate) =
-                model.momentum_and_rate(&body_momentum, &deformation.elastic_rate, &inertia_change);
+                model.momentum_and_rate(&body_momentum, &deformation.canonical_elastic_rate, &inertia_change);
             (rigid_momentum, model.inverse * rigid_momentum, rate)
         } else {
             let rigid_rate = model.inverse * body_momentum;
-            (body_momentum, rigid_rate, rigid_rate + deformation.elastic_rate + model.bending * body_momentum)
+            (
+                body_momentum,
+                rigid_rate,
+                rigid_rate + deformation.canonical_elastic_rate + model.bending * body_momentum,
+            )
         };
         let (mut torque, mut tide) = (self.torque, None);
         if !self.force_arms.is_empty() || self.appendages.is_some() {

@@ -24,7 +24,7 @@ use nalgebra::Vector2;
 use crate::three_axis::appendages::{ArticulatedMotion, StageScratch};
 use crate::three_axis::constants::{BodyConstants, centrifugal_terms, tensor};
 use crate::three_axis::rotors::{BearingLoads, GimbalMomentum, RotorStage};
-use crate::three_axis::state::{IntegratorState, ModalSumsResult, SumModes};
+use crate::three_axis::state::{IntegratorState, ModalSums, SumModes};
 use crate::three_axis::surroundings::TimedSurroundings;
 use crate::three_axis::vectors::{length, vector};
 
@@ -172,13 +172,13 @@ impl IntegrationStep<'_> {
         optional: &mut OptionalStages,
     ) -> (StageValues, [f64; 2]) {
         let lanes = self.model.lanes;
-        let ModalSumsResult { elastic_rotation, elastic_rate, inertia_change } =
+        let ModalSums { elastic_rotation, canonical_elastic_rate, inertia_change } =
             lanes.run(SumModes { model: self.model, states: &state.modes });
         let force_arms = self.force_arms.iter().zip(&state.modes);
         let arm_torque = force_arms.fold(Vector::zeros(), |sum, (arm, [q, ..])| sum + arm * *q);
         let deformation = Deformation {
             elastic_rotation,
-            elastic_rate,
+            canonical_elastic_rate,
             inertia_change: tensor(inertia_change),
             arm_torque,
         };

@@ -23,7 +23,7 @@ use crate::scenario::{AppendageDrives, DriveProfiles};
 /// Motion of a three-axis body whose modes act back on its rotation: the integrator, with the data that convert loads
 /// and true state between it and the plant.
 #[derive(Clone, Debug)]
-pub struct CoupledMotion {
+pub struct TwoWayMotion {
     motion: ThreeAxisMotion,
     frequencies: Vec<f64>,
     /// Modal rotations of the hub (rad/(m sqrt(kg))).
@@ -136,13 +136,13 @@ impl Surroundings for ExternalTorques {
 
 /// Two-way coupled motion, with the start of its segment.
 #[derive(Copy, Clone, Debug)]
-pub struct CoupledSegment<'a> {
-    pub motion: &'a CoupledMotion,
+pub struct TwoWaySegment<'a> {
+    pub motion: &'a TwoWayMotion,
     /// Start of the segment (s).
     pub start: f64,
 }
 
-impl CoupledMotion {
+impl TwoWayMotion {
     /// Creates the motion at the start, under the environment alone, with the modal rotations at the first sensor and
     /// where torques act, the bearings of the rotors, if any, and the steps that it shares with other runs.
     pub fn new(
@@ -340,8 +340,8 @@ impl CoupledMotion {
         truth.orientation = Orientation::Attitude(seen.attitude);
         truth.elastic = sum(&self.sensor_offsets, &seen.displacements).into();
         truth.rate = (seen.rigid_rate + elastic).into();
-        truth.rigid = seen.rigid_rate.into();
-        truth.turned = (seen.rigid_angle + sum(sensed, &seen.displacements)).into();
+        truth.rigid_rate = seen.rigid_rate.into();
+        truth.rate_integral = (seen.rigid_angle + sum(sensed, &seen.displacements)).into();
         elastic
     }
 

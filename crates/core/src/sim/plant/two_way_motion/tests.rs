@@ -106,7 +106,12 @@ fn without_coupling_both_are_one() {
                 a.orientation.rotated_by(a.elastic).error_from(&b.orientation.rotated_by(b.elastic)),
                 [0.0; 3],
             );
-            let found = [attitudes, off(a.rigid, b.rigid), off(a.rate, b.rate), off(a.turned, b.turned)];
+            let found = [
+                attitudes,
+                off(a.rigid_rate, b.rigid_rate),
+                off(a.rate, b.rate),
+                off(a.rate_integral, b.rate_integral),
+            ];
             assert!(found.into_iter().all(|off| off < 1e-12), "{found:?}");
             let (a, b) = (three_axes(&one_way).energy(), three_axes(&two_way).energy());
             assert!((a.rotational_j - b.rotational_j).abs() < 1e-11, "{a:?} {b:?}");
@@ -147,14 +152,14 @@ fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
         plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
         let h = 1.0 / 16.0;
         let mut integral = Vector::zeros();
-        let before = seen(&mut plant, 0.0).turned;
+        let before = seen(&mut plant, 0.0).rate_integral;
         // Covers the instant at which a one-way motion begins another segment.
         for step in 0..400 {
             for (node, weight) in NODES.into_iter().zip(WEIGHTS) {
                 integral += Vector::from(seen(&mut plant, h * (f64::from(step) + node)).rate) * (weight * h);
             }
         }
-        let turned = Vector::from(seen(&mut plant, 25.0).turned) - Vector::from(before);
+        let turned = Vector::from(seen(&mut plant, 25.0).rate_integral) - Vector::from(before);
         assert!((turned - integral).norm() < 1e-9, "{turned} {integral}");
         assert!(turned.norm() > 0.1);
     }
