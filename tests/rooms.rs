@@ -1,4 +1,4 @@
-//! Structure of the sources: no circle of imports between the rooms of the engine, no file above 400 lines, each with a
+//! Structure of the sources: no circle of imports between the rooms of a crate, no file above 400 lines, each with a
 //! module comment first.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,6 +23,9 @@ pub const ENGINE: [&str; 12] = [
     "handover",
     "cosim",
 ];
+
+/// Crates around the engine whose rooms form no circle either.
+const AROUND: [&str; 5] = ["cli", "export-c", "figure", "fmi", "py"];
 
 /// The Rust files under a directory: their paths below the repository, and their texts.
 pub fn sources(directory: &Path, found: &mut Vec<(String, String)>) {
@@ -80,7 +83,7 @@ fn room(name: &str) -> (&str, &str) {
 #[test]
 fn no_arrow_runs_in_a_circle() {
     let mut files = Vec::new();
-    for part in ENGINE {
+    for part in ENGINE.into_iter().chain(AROUND) {
         sources(&Path::new(ROOT).join("crates").join(part).join("src"), &mut files);
     }
     // Cargo allows no circle of crates; within each, `crate::` names the rooms.

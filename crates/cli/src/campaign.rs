@@ -39,7 +39,6 @@ pub use options::{CampaignOptions, TableFormat};
 use points::Points;
 use progress_table::LiveStatistics;
 pub use progress_table::{RunningMean, table as table_so_far};
-pub use report::success_rate;
 use report::{CampaignReport, are_alike, verdict, write_statistics};
 
 /// Metrics that are printed and drawn if none is named: the first ones of this list that vary.

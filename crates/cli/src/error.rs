@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::record::LogError;
 use flexsc_core::record::atomic_file::is_busy;
+use flexsc_core::worst_case::WorstCaseFault;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
 
@@ -100,6 +102,18 @@ impl From<NotReplaced> for io::Error {
 }
 
 impl CliError {
+    /// Returns the error of a search for the worst case of a scenario.
+    pub fn worst_case(scenario: &str, fault: WorstCaseFault) -> Self {
+        match fault {
+            WorstCaseFault::Key(ConfigError { key, why, .. }) => {
+                ScenarioError::Key { origin: scenario.to_owned(), key, why }.into()
+            }
+            WorstCaseFault::Scenario(error) => error.into(),
+            WorstCaseFault::Request(why) => Self::Arguments(format!("{scenario}: {why}")),
+            WorstCaseFault::Interrupted => Self::Interrupted(String::new()),
+        }
+    }
+
     /// Returns the conversion of an I/O error to a failure to write `path`.
     pub fn write(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
         move |source| {

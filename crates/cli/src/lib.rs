@@ -50,6 +50,7 @@ mod serve;
 mod simulate;
 mod spectrum;
 mod stop;
+mod success_rate;
 mod summary;
 mod sweep;
 mod terminal;

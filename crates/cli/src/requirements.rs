@@ -8,9 +8,9 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
 use serde_json::Value as Json;
 
-use crate::campaign::success_rate;
 use crate::error::CliError;
 use crate::human::{Units, digits};
+use crate::success_rate::success_rate;
 use crate::{files, say};
 
 /// Prints each verdict.

@@ -8,9 +8,10 @@ use flexsc_core::metrics::{MetricValue, Metrics, goal};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use super::{MAIN, success_rate};
+use super::MAIN;
 use crate::number::short;
 use crate::progress::{self, Lines};
+use crate::success_rate::success_rate;
 
 /// Largest number of metrics in the table.
 const SHOWN: usize = 4;

@@ -23,7 +23,7 @@ use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::number_or_none;
 use crate::results::{Results, show, with_scenario_name};
 use crate::stop::stop_requested;
-use crate::{say, scenario, worst};
+use crate::{say, scenario};
 
 /// Number of loops of each search for the least margin.
 const WORST_POINTS: usize = 100;
@@ -90,7 +90,7 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
     let kinds = MarginKind::ALL.into_iter().filter(|_| args.worst);
     let least = |kind: MarginKind| {
         let search = MarginSearch { kind, opened: args.opened.loop_break(), most_loops: WORST_POINTS };
-        let found = search.run(scenario, stop_requested).map_err(|fault| worst::fault(&name, fault));
+        let found = search.run(scenario, stop_requested).map_err(|fault| CliError::worst_case(&name, fault));
         found.map(|case| (kind, case))
     };
     let worst = kinds.map(least).collect::<Result<_, CliError>>()?;

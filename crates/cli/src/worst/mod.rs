@@ -7,14 +7,10 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use flexsc_core::Scenario;
-use flexsc_core::campaign::Campaign;
+use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::document::ConfigError;
 use flexsc_core::scenario::AssessedRequirement;
-use flexsc_core::worst_case::{
-    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase, WorstCaseFault,
-};
-use flexsc_core::{ScenarioError, campaign::Design};
+use flexsc_core::worst_case::{MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
@@ -127,7 +123,8 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     let most = args.points as usize;
     if let Some(margin) = args.margin {
         let search = MarginSearch { kind: margin.kind(), opened: args.opened.loop_break(), most_loops: most };
-        let case = search.run(scenario, stop_requested).map_err(|error| fault(&name, error))?;
+        let case =
+            search.run(scenario, stop_requested).map_err(|error| CliError::worst_case(&name, error))?;
         return Ok(WorstCases { name, cases: vec![(case, None)], bounds: None, units: args.units.units });
     }
     let quantities = args.quantities(scenario)?;
@@ -162,24 +159,13 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
         let work = |run: &flexsc_core::campaign::CampaignRun, selection: &flexsc_core::metrics::Selection| {
             Ok(Campaign::simulate_metrics(run, selection, StopRecord)?)
         };
-        let case =
-            search.run(scenario, &origin, work, stop_requested).map_err(|error| fault(&name, error))?;
+        let case = search
+            .run(scenario, &origin, work, stop_requested)
+            .map_err(|error| CliError::worst_case(&name, error))?;
         cases.push((case, requirement));
     }
     let bounds = args.claims(scenario)?;
     Ok(WorstCases { name, cases, bounds, units: args.units.units })
-}
-
-/// Returns the error of a search in a scenario.
-pub fn fault(name: &str, fault: WorstCaseFault) -> CliError {
-    match fault {
-        WorstCaseFault::Key(ConfigError { key, why, .. }) => {
-            ScenarioError::Key { origin: name.to_owned(), key, why }.into()
-        }
-        WorstCaseFault::Scenario(error) => error.into(),
-        WorstCaseFault::Request(why) => CliError::Arguments(format!("{name}: {why}")),
-        WorstCaseFault::Interrupted => CliError::Interrupted(String::new()),
-    }
 }
 
 impl WorstArgs {
