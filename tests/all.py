@@ -5,6 +5,7 @@ Rust is built with one profile, and but for the light build one set of features:
 """
 
 import argparse
+import contextlib
 import os
 import re
 import shutil
@@ -148,7 +149,16 @@ def build() -> None:
     run("cargo", "build", "--release", "--quiet", *EVERYTHING, "--bins", "--tests")
 
 
+def wait_for_installation() -> None:
+    """Waits for the installation of compilers that `.ci/run` has begun beside the first steps."""
+    process = os.environ.get("FLEXSC_INSTALLATION")
+    if process is not None:
+        with contextlib.suppress(ChildProcessError):
+            os.waitpid(int(process), 0)
+
+
 def rust() -> str:
+    wait_for_installation()
     return tally(run("cargo", "test", "--release", "--quiet", *EVERYTHING))
 
 
