@@ -11,7 +11,7 @@ use crate::frozen::is_frozen;
 use crate::util::Dir;
 
 /// A relay at samples, a PD law with a gain schedule, phase planes with active damping, and attitude laws with wheels.
-const EXPORTED: [&str; 4] = ["relay-sampled", "wheel-scheduled-gain", "iss-ringdown", "earth-observer"];
+pub const EXPORTED: [&str; 4] = ["relay-sampled", "wheel-scheduled-gain", "iss-ringdown", "earth-observer"];
 
 /// Returns a shipped scenario.
 fn shipped(name: &str) -> Scenario {
@@ -20,7 +20,7 @@ fn shipped(name: &str) -> Scenario {
 }
 
 /// True if a command is installed; else it says aloud what is skipped.
-fn is_installed(command: &str) -> bool {
+pub fn is_installed(command: &str) -> bool {
     let is_there = Command::new(command).arg("--version").output().is_ok_and(|out| out.status.success());
     if !is_there {
         eprintln!("skipped: {command} is not installed");
@@ -28,12 +28,20 @@ fn is_installed(command: &str) -> bool {
     is_there
 }
 
-fn make(dir: &Dir, within: &str, arguments: &[&str]) -> Output {
+/// Runs `make` in a directory of another.
+pub fn make(dir: &Dir, within: &str, arguments: &[&str]) -> Output {
     Command::new("make").arg("-C").arg(dir.path(within)).args(arguments).output().expect("make runs")
 }
 
-fn text(output: &Output) -> String {
+/// Returns what a command printed.
+pub fn text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Returns the page about flight code.
+pub fn document() -> String {
+    let path = format!("{}/../../docs/flight-code.md", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("the document")
 }
 
 /// Returns the hashes in the description of an exported control system.
@@ -136,8 +144,7 @@ fn sizes_are_those_of_the_document_but_for_a_tenth() {
     if !is_installed("make") || !is_installed("arm-none-eabi-gcc") {
         return;
     }
-    let path = format!("{}/../../docs/flight-code.md", env!("CARGO_MANIFEST_DIR"));
-    let document = std::fs::read_to_string(path).expect("the document");
+    let document = document();
     for name in EXPORTED {
         let dir = Dir::with(&[name]);
         dir.run(&format!("export-c {name}.toml -o out --calls 1")).exits(0);

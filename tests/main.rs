@@ -110,7 +110,9 @@ mod bad_spatial;
 mod bad_structures;
 mod craft_written;
 mod documented;
+mod flight_analysis;
 mod flight_code;
+mod flight_guests;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;

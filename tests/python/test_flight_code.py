@@ -40,6 +40,18 @@ def hash_of(folder: Path) -> str:
     return row.split("|")[2].strip()
 
 
+def test_guests_are_written_beside_the_control_system(tmp_path: Path) -> None:
+    scenario = flexsc.Scenario.example("relay-sampled")
+    files = scenario.export_c(tmp_path / "flight", name="relay", calls=10, guests=["cfs", "fprime"])
+    names = {str(file.relative_to(tmp_path / "flight")) for file in files}
+    assert {
+        "cfs/relay_app/fsw/src/relay_app.c",
+        "fprime/Components/RelayControl/RelayControl.fpp",
+    } <= names
+    with pytest.raises(ValueError, match="'vxworks' is none of cfs, fprime"):
+        scenario.export_c(tmp_path / "other", guests=["vxworks"])  # type: ignore[list-item]
+
+
 def test_a_law_without_plain_code_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"state_space"):
         flexsc.Scenario.example("earth-observer-lqg").export_c(tmp_path / "flight")

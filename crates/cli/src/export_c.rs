@@ -1,9 +1,10 @@
 //! `flexsc export-c` and `flexsc vectors`: the control system of a scenario as C99, and the calls of its run.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::formats::document::ConfigError;
-use flexsc_export_c::package::{self, ExportError};
+use flexsc_export_c::package::{self, ExportError, Guest};
 use flexsc_export_c::vectors::{self, VectorError};
 
 use crate::error::CliError;
@@ -33,9 +34,30 @@ pub struct ExportCArgs {
     /// Most calls of the run to export as vectors
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(1..=MOST_CALLS))]
     calls: u64,
+    /// Add the control system as an app of cFS or a component of F Prime; may be given twice
+    #[arg(long, value_name = "GUEST")]
+    guest: Vec<GuestName>,
     /// Replace files of other content in DIR
     #[arg(long)]
     force: bool,
+}
+
+/// Framework of flight software in which the control system runs.
+#[derive(Copy, Clone, clap::ValueEnum)]
+pub enum GuestName {
+    /// NASA's core Flight System
+    Cfs,
+    /// F Prime
+    Fprime,
+}
+
+impl From<GuestName> for Guest {
+    fn from(name: GuestName) -> Self {
+        match name {
+            GuestName::Cfs => Self::Cfs,
+            GuestName::Fprime => Self::FPrime,
+        }
+    }
 }
 
 #[derive(clap::Args)]
@@ -75,7 +97,9 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         Some(name) => checked_name(name)?,
         None => default_name(&args.scenario),
     };
-    let package = package::export(&scenario, &origin, &prefix, args.calls as usize)
+    let guests: BTreeSet<Guest> = args.guest.iter().map(|name| Guest::from(*name)).collect();
+    let guests: Vec<Guest> = guests.into_iter().collect();
+    let package = package::export(&scenario, &origin, &prefix, args.calls as usize, &guests)
         .map_err(|error| refused(&args.scenario, error))?;
     let written: Vec<(PathBuf, Vec<u8>)> =
         package.files.iter().map(|file| (args.out.join(&file.path), file.bytes.clone())).collect();
@@ -90,6 +114,10 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.vectors
     );
     eprintln!("`make -C {} check` compares them by bits", args.out.display());
+    for guest in guests {
+        let directory = args.out.join(guest.directory());
+        eprintln!("`make -C {} check` replays them through the {}", directory.display(), guest.about());
+    }
     Ok(())
 }
 

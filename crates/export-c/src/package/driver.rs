@@ -13,7 +13,7 @@ pub fn driver(plan: &Plan<'_>) -> String {
     let mut text = format!(
         "/* Driver of {prefix}.c.\n *\n *   driver vectors.bin    replays the calls of a run and compares their outputs by bits\n *   driver --hash N       \
          prints the hash over the outputs of N cycles with random and extreme inputs\n *\n * On a board without arguments, DRIVER_CYCLES \
-         is the number of cycles.\n */\n\n#include \"{prefix}.h\"\n\n#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\n"
+         is the number of cycles.\n */\n\n#include \"{prefix}.h\"\n\n{COUNTING}#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\n"
     );
     text.push_str(WORDS);
     let most = |words: fn(&CallLayout) -> usize| plan.calls.iter().map(words).max().unwrap_or(0).max(1);
@@ -39,7 +39,8 @@ pub fn driver(plan: &Plan<'_>) -> String {
     );
     text.push_str(&SELF_TEST.replace("PREFIX", prefix).replace("SEED", &format!("UINT64_C(0x{SEED:016x})")));
     text.push_str(&REPLAY.replace("PREFIX", prefix));
-    text.push_str(MAIN);
+    let names: Vec<String> = plan.calls.iter().map(|call| format!("\"{}\"", call.name)).collect();
+    text.push_str(&MAIN.replace("NAMES", &names.join(", ")));
     text
 }
 
@@ -112,7 +113,10 @@ fn call(plan: &Plan<'_>, text: &mut String) {
                 word += 1;
             }
         }
-        let _ = writeln!(text, "        {prefix}_{name}(state, {now}&input, &output);");
+        let _ = writeln!(
+            text,
+            "        count_begin();\n        {prefix}_{name}(state, {now}&input, &output);\n        count_end({index});"
+        );
         let mut word = 0;
         for channel in &layout.outputs {
             for element in 0..channel.count {
@@ -134,6 +138,15 @@ fn call(plan: &Plan<'_>, text: &mut String) {
 fn member(channel: &Channel, element: usize) -> String {
     if channel.count == 1 { channel.name.clone() } else { format!("{}[{element}]", channel.name) }
 }
+
+const COUNTING: &str = "#ifdef DRIVER_COUNT
+#include \"boards/instructions.h\"
+#else
+#define count_begin() ((void)0)
+#define count_end(function) ((void)0)
+#endif
+
+";
 
 const WORDS: &str = "/* Kind of a word: R double, F truth value, I integer below a limit. */
 typedef struct {
@@ -310,13 +323,21 @@ const MAIN: &str = "int main(int argc, char **argv)
 #ifdef DRIVER_CYCLES
     (void)argc;
     (void)argv;
+#ifdef DRIVER_COUNT
+    static const char *const names[CALLS] = { NAMES };
+    count_start();
+#endif
     print_hash(DRIVER_CYCLES);
 #ifdef DRIVER_VECTORS
-    return replay(DRIVER_VECTORS);
+    const int status = replay(DRIVER_VECTORS);
 #else
     (void)replay;
-    return 0;
+    const int status = 0;
 #endif
+#ifdef DRIVER_COUNT
+    count_print(names, CALLS);
+#endif
+    return status;
 #else
     if (argc == 3 && strcmp(argv[1], \"--hash\") == 0) {
         print_hash(strtoull(argv[2], NULL, 10));

@@ -3,6 +3,7 @@
 mod calls;
 mod driver;
 mod estimator_calls;
+mod guests;
 mod header;
 mod initialiser;
 mod signature;
@@ -16,6 +17,8 @@ use crate::flight_sources::flight_sources;
 use crate::self_test::self_test;
 use crate::translate::{TranslationError, translate};
 use crate::vectors::{self, CallVector, VectorError};
+
+pub use guests::Guest;
 
 /// Numbers of cycles for which the hash of the self-test is exported.
 pub const HASHED_CYCLES: [u64; 3] = [1000, 20_000, 1_000_000];
@@ -77,11 +80,18 @@ impl Plan<'_> {
     }
 }
 
-/// Exports the control system of a scenario, with names that begin with `prefix`, and at most `most` vectors of its run.
+/// Exports the control system of a scenario, with names that begin with `prefix`, at most `most` vectors of its run, and these
+/// guests.
 ///
 /// # Errors
 /// An [`ExportError`] if a part of the control system has no plain code, or if its run fails.
-pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> Result<Package, ExportError> {
+pub fn export(
+    scenario: &Scenario,
+    origin: &str,
+    prefix: &str,
+    most: usize,
+    guests: &[Guest],
+) -> Result<Package, ExportError> {
     let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
     let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
@@ -90,14 +100,18 @@ pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> R
     let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
         .map_err(ExportError::Translation)?;
     let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
-    let mut files = vec![
-        text(format!("{prefix}.h"), header::header(&plan, &translation)),
-        text(format!("{prefix}.c"), source::source(&plan, &translation, &functions)),
+    let (header, source) =
+        (header::header(&plan, &translation), source::source(&plan, &translation, &functions));
+    let mut files: Vec<PackageFile> =
+        guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();
+    files.extend([
+        text(format!("{prefix}.h"), header),
+        text(format!("{prefix}.c"), source),
         text("driver.c".to_owned(), driver::driver(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
-    ];
+    ]);
     files
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));

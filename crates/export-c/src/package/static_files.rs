@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use super::Plan;
 
 /// Files with which the driver runs on a Cortex-M board.
-pub fn board_files() -> [(&'static str, &'static str); 3] {
+pub fn board_files() -> [(&'static str, &'static str); 5] {
     [
         ("boards/double_sum.c", include_str!("files/double_sum.c")),
+        ("boards/instructions.c", include_str!("files/instructions.c")),
+        ("boards/instructions.h", include_str!("files/instructions.h")),
         ("boards/mps2.ld", include_str!("files/mps2.ld")),
         ("boards/start.c", include_str!("files/start.c")),
     ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 from flexsc._scenario_file import ScenarioFile
 
@@ -274,6 +274,7 @@ class ScenarioAnalysis(ScenarioFile):
         *,
         name: str | None = None,
         calls: int = 20_000,
+        guests: Sequence[Literal["cfs", "fprime"]] = (),
         force: bool = False,
     ) -> list[Path]:
         """Write the control system as C99 for a flight computer, and return its files: `flexsc export-c`.
@@ -285,6 +286,8 @@ class ScenarioAnalysis(ScenarioFile):
             path: The directory.
             name: Prefix of all names in C; None for the scenario's name.
             calls: Largest number of calls of the run that are recorded as vectors.
+            guests: Frameworks of flight software for which the control system is also written: as an app of
+                cFS, as a component of F Prime.
             force: Whether files of other content are replaced.
 
         >>> import flexsc, tempfile
@@ -298,4 +301,4 @@ class ScenarioAnalysis(ScenarioFile):
         """
         from flexsc._flight_code import export_c
 
-        return export_c(self._scenario, path, name, calls, force)
+        return export_c(self._scenario, path, name, calls, guests, force)

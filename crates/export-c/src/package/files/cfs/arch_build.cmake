@@ -1,0 +1,7 @@
+# Headers of a processor: a mission replaces one by a file of its own of this name.
+foreach(UPPER_APP_HEADER LOWER_app_platform_cfg.h LOWER_app_msgids.h)
+    generate_config_includefile(
+        FILE_NAME "${UPPER_APP_HEADER}"
+        FALLBACK_FILE "${CMAKE_CURRENT_LIST_DIR}/config/default_${UPPER_APP_HEADER}"
+    )
+endforeach()

@@ -1,0 +1,2 @@
+/* STUB of a header of cFE: see cfe.h. */
+#include "cfe.h"

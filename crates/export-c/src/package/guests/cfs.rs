@@ -1,0 +1,302 @@
+//! App of cFS: messages, the functions that treat them, configuration, and stubs with which it is tested.
+
+use std::fmt::Write as _;
+
+use super::payload::Payload;
+use super::{camel, named};
+use crate::control_system::{CallLayout, Channel, NumberKind};
+use crate::package::signature::has_time;
+use crate::package::{PackageFile, Plan, text};
+
+/// Longest name of a pipe: cFS keeps 20 bytes of it.
+const LONGEST_PIPE: usize = 19;
+/// First number of a topic of the app.
+const FIRST_TOPIC: usize = 0x90;
+
+/// Returns the files of the app, of its stubs and their Makefile.
+pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageFile> {
+    let (prefix, app) = (plan.prefix, format!("cfs/{}_app", plan.prefix));
+    let pipe: String = prefix.to_uppercase().chars().take(LONGEST_PIPE - "_PIPE".len()).collect();
+    let of_config = |name: &str| format!("{app}/config/default_{prefix}_app_{name}.h");
+    let file = |path: String, template: &str| text(path, named(template, plan));
+    vec![
+        file("cfs/Makefile".to_owned(), include_str!("../files/cfs/Makefile")),
+        file(format!("{app}/CMakeLists.txt"), include_str!("../files/cfs/CMakeLists.txt")),
+        file(format!("{app}/arch_build.cmake"), include_str!("../files/cfs/arch_build.cmake")),
+        file(format!("{app}/mission_build.cmake"), include_str!("../files/cfs/mission_build.cmake")),
+        file(of_config("msg"), &messages(plan)),
+        file(of_config("msgids"), &message_ids(plan)),
+        file(of_config("perfids"), include_str!("../files/cfs/perfids.h")),
+        file(
+            of_config("platform_cfg"),
+            &include_str!("../files/cfs/platform_cfg.h").replace("PIPE_NAME\"", &format!("{pipe}_PIPE\"")),
+        ),
+        file(of_config("topicids"), &topics(plan)),
+        file(format!("{app}/fsw/inc/{prefix}_app_eventids.h"), include_str!("../files/cfs/eventids.h")),
+        text(format!("{app}/fsw/src/{prefix}.c"), source.to_owned()),
+        text(format!("{app}/fsw/src/{prefix}.h"), header.to_owned()),
+        file(format!("{app}/fsw/src/{prefix}_app.c"), &app_source(plan)),
+        file(format!("{app}/fsw/src/{prefix}_app.h"), &app_header(plan)),
+        file("cfs/stubs/bus.c".to_owned(), include_str!("../files/cfs/stub_bus.c")),
+        file("cfs/stubs/bus.h".to_owned(), include_str!("../files/cfs/stub_bus.h")),
+        file("cfs/stubs/cfe.h".to_owned(), include_str!("../files/cfs/stub_cfe.h")),
+        file(
+            "cfs/stubs/cfe_core_api_base_msgids.h".to_owned(),
+            include_str!("../files/cfs/stub_base_msgids.h"),
+        ),
+        file("cfs/stubs/replay.c".to_owned(), &replay(plan)),
+    ]
+}
+
+/// Returns the name of the law: the last function.
+fn law<'a>(plan: &Plan<'a>) -> &'a CallLayout {
+    &plan.calls[plan.calls.len() - 1]
+}
+
+fn payload<'a>(plan: &Plan<'a>, call: &'a CallLayout, is_input: bool) -> Payload<'a> {
+    let (side, channels) = if is_input { ("Input", &call.inputs) } else { ("Output", &call.outputs) };
+    Payload {
+        name: format!("UPPER_APP_{}_{side}_Payload_t", camel(call.name)),
+        has_time: has_time(plan),
+        channels,
+    }
+}
+
+/// Returns the header of the messages.
+fn messages(plan: &Plan<'_>) -> String {
+    let mut text = "/* Messages of the app: numbers in the byte order of the processor. */\n#ifndef UPPER_APP_MSG_H\n\
+                    #define UPPER_APP_MSG_H\n\n#include \"cfe.h\"\n\n/* Codes of commands. */\n#define UPPER_APP_NOOP_CC           0\n\
+                    #define UPPER_APP_RESET_COUNTERS_CC 1\n/* Sets the state of the control system as before its first call. */\n\
+                    #define UPPER_APP_RESTART_CC        2\n\n/* Message without a payload: all commands, the request of the counters, and \
+                    the message that wakes the\n * app up. */\ntypedef struct {\n    CFE_MSG_CommandHeader_t CommandHeader;\n} \
+                    UPPER_APP_NoArgsCmd_t;\n\n"
+        .to_owned();
+    for call in plan.calls {
+        for (is_input, side, about) in [(true, "Input", "Inputs"), (false, "Output", "Outputs")] {
+            let payload = payload(plan, call, is_input);
+            let _ = write!(
+                text,
+                "/* {about} of `LOWER_{}`. {} */\n{}",
+                call.name,
+                call.about,
+                payload.definition()
+            );
+            let _ = writeln!(
+                text,
+                "typedef struct {{\n    CFE_MSG_TelemetryHeader_t TelemetryHeader;\n    {} Payload;\n}} UPPER_APP_{}_{side}_t;\n",
+                payload.name,
+                camel(call.name)
+            );
+        }
+    }
+    let _ = write!(
+        text,
+        "/* Counters. */\ntypedef struct {{\n    /* Messages that woke the app up, and those without new inputs. */\n    uint32 WakeUps;\n    \
+         uint32 MissedInputs;\n    /* Messages of a wrong length or for another app. */\n    uint32 RefusedMessages;\n    \
+         /* Calls of {}. */\n    uint32 Calls[{}];\n    uint16 CommandCounter;\n    uint16 CommandErrorCounter;\n}} \
+         UPPER_APP_HkTlm_Payload_t;\n\ntypedef struct {{\n    CFE_MSG_TelemetryHeader_t TelemetryHeader;\n    \
+         UPPER_APP_HkTlm_Payload_t Payload;\n}} UPPER_APP_HkTlm_t;\n\n#endif\n",
+        plan.calls.iter().map(|call| format!("`LOWER_{}`", call.name)).collect::<Vec<_>>().join(", "),
+        plan.calls.len()
+    );
+    text
+}
+
+/// Returns the names of the messages with the inputs or outputs of each function.
+fn names(plan: &Plan<'_>, side: &str) -> Vec<String> {
+    plan.calls.iter().map(|call| format!("{}_{side}", call.name.to_uppercase())).collect()
+}
+
+/// Returns the numbers of topics: commands, then telemetry.
+fn topics(plan: &Plan<'_>) -> String {
+    let commands = ["CMD", "SEND_HK", "WAKE_UP"].map(str::to_owned);
+    let telemetry: Vec<String> =
+        ["HK_TLM".to_owned()].into_iter().chain(names(plan, "INPUT")).chain(names(plan, "OUTPUT")).collect();
+    let mut text =
+        "/* Topics of the app. A mission sets numbers that no other app has. */\n#ifndef UPPER_APP_TOPICIDS_H\n\
+         #define UPPER_APP_TOPICIDS_H\n\n"
+            .to_owned();
+    for list in [&commands[..], &telemetry[..]] {
+        for (index, name) in list.iter().enumerate() {
+            let _ =
+                writeln!(text, "#define CFE_MISSION_UPPER_APP_{name}_TOPICID 0x{:x}", FIRST_TOPIC + index);
+        }
+        text.push('\n');
+    }
+    text.push_str("#endif\n");
+    text
+}
+
+/// Returns the numbers of messages.
+fn message_ids(plan: &Plan<'_>) -> String {
+    let mut text =
+        "/* Numbers of the messages of the app. */\n#ifndef UPPER_APP_MSGIDS_H\n#define UPPER_APP_MSGIDS_H\n\n\
+         #include \"cfe_core_api_base_msgids.h\"\n#include \"LOWER_app_topicids.h\"\n\n"
+            .to_owned();
+    for name in ["CMD", "SEND_HK", "WAKE_UP"] {
+        let _ = writeln!(
+            text,
+            "#define UPPER_APP_{name}_MID CFE_PLATFORM_CMD_TOPICID_TO_MIDV(CFE_MISSION_UPPER_APP_{name}_TOPICID)"
+        );
+    }
+    for name in ["HK_TLM".to_owned()].into_iter().chain(names(plan, "INPUT")).chain(names(plan, "OUTPUT")) {
+        let _ = writeln!(
+            text,
+            "#define UPPER_APP_{name}_MID CFE_PLATFORM_TLM_TOPICID_TO_MIDV(CFE_MISSION_UPPER_APP_{name}_TOPICID)"
+        );
+    }
+    text.push_str("\n#endif\n");
+    text
+}
+
+fn app_header(plan: &Plan<'_>) -> String {
+    let mut outputs = "    /* Messages that the app sends. */\n".to_owned();
+    for call in plan.calls {
+        let name = camel(call.name);
+        let _ = writeln!(outputs, "    UPPER_APP_{name}_Output_t {name}_Output;");
+    }
+    include_str!("../files/cfs/app.h").replace("LAW", &camel(law(plan).name)).replace("OUTPUTS", &outputs)
+}
+
+fn app_source(plan: &Plan<'_>) -> String {
+    let measured: Vec<String> =
+        plan.calls[..plan.calls.len() - 1].iter().map(|call| format!("`LOWER_{}`", call.name)).collect();
+    let measured = if measured.is_empty() { "no function".to_owned() } else { measured.join(", ") };
+    let (mut functions, mut cases, mut initialised) = (String::new(), String::new(), String::new());
+    for (index, call) in plan.calls.iter().enumerate() {
+        let (name, upper) = (camel(call.name), call.name.to_uppercase());
+        functions.push_str(&function(plan, index, call));
+        let action = if index + 1 == plan.calls.len() {
+            format!(
+                "UPPER_APP_Data.{name}_Input = *(const UPPER_APP_{name}_Input_t *)Buffer;\n                \
+                 UPPER_APP_Data.Has_{name}_Input = true;"
+            )
+        } else {
+            format!("UPPER_APP_{name}(&((const UPPER_APP_{name}_Input_t *)Buffer)->Payload);")
+        };
+        let _ = writeln!(
+            cases,
+            "        case UPPER_APP_{upper}_INPUT_MID:\n            \
+             if (UPPER_APP_HasLength(Message, sizeof(UPPER_APP_{name}_Input_t))) {{\n                {action}\n            \
+             }}\n            break;"
+        );
+        let _ = writeln!(
+            initialised,
+            "    CFE_MSG_Init(CFE_MSG_PTR(UPPER_APP_Data.{name}_Output.TelemetryHeader),\n        \
+             CFE_SB_ValueToMsgId(UPPER_APP_{upper}_OUTPUT_MID), sizeof(UPPER_APP_Data.{name}_Output));"
+        );
+    }
+    let subscribed: Vec<String> =
+        names(plan, "INPUT").iter().map(|name| format!("UPPER_APP_{name}_MID")).collect();
+    include_str!("../files/cfs/app.c")
+        .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name))
+        .replace("LAW", &camel(law(plan).name))
+        .replace("MEASURED", &measured)
+        .replace("FUNCTIONS", &functions)
+        .replace("CASES", &cases)
+        .replace("SUBSCRIBED", &subscribed.join(", "))
+        .replace("INITIALISED", &initialised)
+}
+
+/// Returns the function that calls a function of the control system with a payload, and publishes its outputs.
+fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
+    let (name, lower) = (camel(call.name), call.name);
+    let mut text = format!(
+        "/* {} */\nstatic void UPPER_APP_{name}(const UPPER_APP_{name}_Input_Payload_t *In)\n{{\n    LOWER_{lower}_input Input;\n    \
+         LOWER_{lower}_output Output;\n    UPPER_APP_{name}_Output_Payload_t *Out = &UPPER_APP_Data.{name}_Output.Payload;\n\n",
+        call.about
+    );
+    for channel in &call.inputs {
+        copy(channel, "Input.", "In->", " != 0", &mut text);
+    }
+    let now = if has_time(plan) {
+        "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }, "
+    } else {
+        ""
+    };
+    let _ = writeln!(text, "    LOWER_{lower}(&UPPER_APP_Data.State, {now}&Input, &Output);");
+    if has_time(plan) {
+        text.push_str("    Out->now_whole = In->now_whole;\n    Out->now_part = In->now_part;\n");
+    }
+    for channel in &call.outputs {
+        copy(channel, "Out->", "Output.", " ? 1 : 0", &mut text);
+    }
+    let header = format!("CFE_MSG_PTR(UPPER_APP_Data.{name}_Output.TelemetryHeader)");
+    let _ = writeln!(
+        text,
+        "    UPPER_APP_Data.HkTlm.Payload.Calls[{index}]++;\n    CFE_SB_TimeStampMsg({header});\n    \
+         CFE_SB_TransmitMsg({header}, true);\n}}\n"
+    );
+    text
+}
+
+/// Writes the copy of a channel; a truth value is converted.
+fn copy(channel: &Channel, to: &str, from: &str, converted: &str, text: &mut String) {
+    let (name, converted) = (&channel.name, if channel.kind == NumberKind::Flag { converted } else { "" });
+    if channel.count == 1 {
+        let _ = writeln!(text, "    {to}{name} = {from}{name}{converted};");
+    } else {
+        let _ = writeln!(
+            text,
+            "    for (size_t Index = 0; Index < {}; Index++) {{\n        {to}{name}[Index] = {from}{name}[Index]{converted};\n    }}",
+            channel.count
+        );
+    }
+}
+
+/// Returns the program that replays the vectors through the messages of the app.
+fn replay(plan: &Plan<'_>) -> String {
+    let mut tables = String::new();
+    for (is_input, side) in [(true, "input"), (false, "output")] {
+        let mut rows = Vec::new();
+        for call in plan.calls {
+            let (payload, name) = (payload(plan, call, is_input), camel(call.name));
+            let message = format!("UPPER_APP_{name}_{}_t", camel(side));
+            let members: Vec<String> = payload
+                .channels
+                .iter()
+                .map(|channel| {
+                    let kind = match channel.kind {
+                        NumberKind::Real => 'R',
+                        NumberKind::Flag => 'F',
+                        NumberKind::Integer(_) => 'I',
+                    };
+                    format!(
+                        "    {{ \"{0}\", '{kind}', offsetof({1}, {0}), {2} }}",
+                        channel.name, payload.name, channel.count
+                    )
+                })
+                .collect();
+            let _ = writeln!(
+                tables,
+                "static const member {}_{side}s[{}] = {{\n{}\n}};\n",
+                call.name,
+                members.len(),
+                members.join(",\n")
+            );
+            rows.push(format!(
+                "    {{ UPPER_APP_{}_{}_MID, sizeof({message}), offsetof({message}, Payload), {}_{side}s, {} }}",
+                call.name.to_uppercase(),
+                side.to_uppercase(),
+                call.name,
+                members.len()
+            ));
+        }
+        let _ = writeln!(
+            tables,
+            "static const message_kind {side}s[{}] = {{\n{}\n}};\n",
+            rows.len(),
+            rows.join(",\n")
+        );
+    }
+    let most = plan.calls.iter().map(CallLayout::output_words).max().unwrap_or(0).max(1);
+    let most_input = plan.calls.iter().map(CallLayout::input_words).max().unwrap_or(0);
+    let time = if has_time(plan) { "#define HAS_TIME\n" } else { "" };
+    let _ = writeln!(
+        tables,
+        "{time}enum {{ CALLS = {}, MOST_WORDS = {most}, MOST_BYTES = {} }};\n",
+        plan.calls.len(),
+        8 * (most.max(most_input) + 8) + 64
+    );
+    include_str!("../files/cfs/replay.c").replace("TABLES", &tables)
+}

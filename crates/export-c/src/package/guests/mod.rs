@@ -1,0 +1,63 @@
+//! Guests: the control system as an app of cFS and as a component of F Prime, around the exported functions.
+//!
+//! A guest has a message or a port for the inputs of each function, and one for its outputs. The last function is the law: its
+//! inputs wait until the guest is woken up. The others are called when their inputs arrive.
+
+mod cfs;
+mod fprime;
+mod payload;
+
+use super::{PackageFile, Plan};
+
+/// Framework of flight software in which the control system runs.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Guest {
+    /// App of NASA's core Flight System.
+    Cfs,
+    /// Component of F Prime.
+    FPrime,
+}
+
+impl Guest {
+    /// Returns the directory of the guest within the exported files.
+    pub fn directory(self) -> &'static str {
+        match self {
+            Self::Cfs => "cfs",
+            Self::FPrime => "fprime",
+        }
+    }
+
+    /// Returns the form of the control system in the guest.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Cfs => "app of cFS",
+            Self::FPrime => "component of F Prime",
+        }
+    }
+
+    /// Returns the files of the guest; `header` and `source` are those of the control system.
+    pub(super) fn files(self, plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageFile> {
+        match self {
+            Self::Cfs => cfs::files(plan, header, source),
+            Self::FPrime => fprime::files(plan, header, source),
+        }
+    }
+}
+
+/// Returns a template with the names of the control system in place of `UPPER`, `LOWER`, `ORIGIN` and `VERSION`.
+fn named(template: &str, plan: &Plan<'_>) -> String {
+    template
+        .replace("ORIGIN", plan.origin)
+        .replace("VERSION", env!("CARGO_PKG_VERSION"))
+        .replace("LOWER", plan.prefix)
+        .replace("UPPER", &plan.prefix.to_uppercase())
+}
+
+/// Returns a name in lower case with a capital letter at the start of each word, and without underscores.
+fn camel(name: &str) -> String {
+    let words = name.split('_').map(|word| {
+        let (first, rest) = word.split_at(word.len().min(1));
+        first.to_uppercase() + rest
+    });
+    words.collect()
+}
