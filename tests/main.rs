@@ -17,6 +17,7 @@ mod calculix;
 mod coupled;
 mod craft;
 mod crossings;
+mod day_balance;
 mod drifting_axes;
 mod drives;
 mod eclipses;

@@ -129,6 +129,10 @@ fn numbers_of_conditions_are_keys() {
     assert_eq!(drawn.len(), 4);
     let json = dir.run("simulate two.toml --set mode[0].leave[0].numbers.after=6.5 --json").exits(0).json();
     assert!(json.to_string().contains("6.5"), "{json}");
+    dir.run("sweep two.toml --vary mode[0].leave[0].numbers.after=3:9:3 --table csv -o swept").exits(0);
+    let starts: Vec<_> =
+        table(&dir, "swept/runs.csv").iter().map(|row| row["mode_starts_s"].clone()).collect();
+    assert_eq!(starts, ["[0.0,3.0]", "[0.0,6.0]", "[0.0,9.0]"]);
     for (from, to, words) in [
         ("after = 4.0", "soon = 4.0", "`mode[0].leave[0].numbers.soon` is not in the condition"),
         ("> last", "> last or truth.time > lately", "`mode[0].leave[0].when`"),

@@ -32,7 +32,8 @@ enum SegmentPath {
     Turn(Slew),
     /// The rate of the reference decays to that of the frame before the turn.
     Moving(RateDecay, Slew),
-    Shaped(PlannedSlew),
+    /// The same for modes that are to rest: the decay of the rate, if there is one, and the turn.
+    Shaped(Option<PlannedSlew>, PlannedSlew),
     Table(AttitudeTable),
 }
 
@@ -42,7 +43,9 @@ impl SegmentPath {
             Self::Turn(slew) => slew.at(t),
             Self::Moving(decay, slew) if t >= decay.duration() => slew.at(t - decay.duration()),
             Self::Moving(decay, _) => decay.at(t.max(0.0)),
-            Self::Shaped(turn) => turn.at(t),
+            Self::Shaped(Some(decay), turn) if t >= decay.duration() => turn.at(t - decay.duration()),
+            Self::Shaped(Some(decay), _) => decay.at(t),
+            Self::Shaped(None, turn) => turn.at(t),
             Self::Table(table) => table.at(t),
         }
     }
@@ -51,7 +54,7 @@ impl SegmentPath {
         match self {
             Self::Turn(slew) => slew.duration(),
             Self::Moving(decay, slew) => decay.duration() + slew.duration(),
-            Self::Shaped(turn) => turn.duration(),
+            Self::Shaped(decay, turn) => decay.as_ref().map_or(0.0, PlannedSlew::duration) + turn.duration(),
             Self::Table(table) => table.duration(),
         }
     }
@@ -59,7 +62,7 @@ impl SegmentPath {
     fn to(&self) -> Quaternion<f64> {
         match self {
             Self::Turn(slew) | Self::Moving(_, slew) => slew.final_attitude(),
-            Self::Shaped(turn) => turn.to(),
+            Self::Shaped(_, turn) => turn.to(),
             Self::Table(table) => table.final_attitude(),
         }
     }
@@ -83,10 +86,10 @@ impl AttitudeProfile {
         for (index, target) in targets.iter().enumerate() {
             let (begins, frame) = (target.starts(), target.target_frame());
             let path = if target.is_shaped() {
-                let attitudes = [profile.relative_to(frame, begins).attitude, target.attitude()];
-                let turn =
-                    target.slew(attitudes, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
-                SegmentPath::Shaped(turn)
+                let from = profile.relative_to(frame, begins);
+                let planned = target.slew(&from, modes);
+                let (decay, turn) = planned.map_err(|fault| fault.within(&format!("[{index}]")))?;
+                SegmentPath::Shaped(decay, turn)
             } else if target.table.is_empty() {
                 turn_to(target, || profile.relative_to(frame, begins))
             } else {
@@ -114,7 +117,9 @@ impl AttitudeProfile {
     /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
     pub fn fastest(&self, target: usize) -> Option<f64> {
         match &self.legs.get(target)?.path {
-            SegmentPath::Shaped(turn) => Some(turn.fastest()),
+            SegmentPath::Shaped(decay, turn) => {
+                Some(decay.as_ref().map_or(0.0, PlannedSlew::fastest).max(turn.fastest()))
+            }
             _ => None,
         }
     }

@@ -1,10 +1,12 @@
 //! The slew to a target that leaves modes at rest: a command planned for them, or a slew with limits through a shaper.
 
 use flexsc_dynamics::axis_model::AxisMode;
+use flexsc_dynamics::waveform::Waveform;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
-use flexsc_spacecraft::manoeuvre::{PlannedSlew, RestToRestTask, Slew, SlewProfile, convolve};
-use nalgebra::Quaternion;
+use flexsc_spacecraft::manoeuvre::{
+    AttitudeMotion, PlannedSlew, RateDecay, RestToRestTask, Slew, SlewProfile, convolve,
+};
 
 use super::AttitudeTarget;
 
@@ -14,28 +16,57 @@ impl AttitudeTarget {
         self.command.is_some() || self.shaper.is_some()
     }
 
-    /// Returns the slew to the target, of a body with these modes.
+    /// Returns the slew to the target from a motion in its frame, of a body with these modes, and before it the decay of the
+    /// rate of that motion, which leaves the same modes at rest; `None` for a motion that is at rest.
     ///
     /// # Errors
     /// A `ConfigError` with the key that does not fit the modes and the reason.
     pub(super) fn slew(
         &self,
-        attitudes: [Quaternion<f64>; 2],
+        from: &AttitudeMotion,
         modes: &[AxisMode],
-    ) -> Result<PlannedSlew, ConfigError> {
-        PlannedSlew::new(attitudes, |angle| {
-            let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
-                let task = RestToRestTask { time: duration.get(), impulse: 0.0, travel: angle };
-                let planned = command.waveform(&task, &command.zeros(modes)?);
-                planned.map_err(|fault| ConfigError::new("duration", fault.why))?.0
-            } else {
-                let acceleration = self.acceleration.map_or(0.0, Positive::get);
-                let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
-                Slew::new(attitudes, acceleration, rate_limit, self.profile).command()
-            };
-            let Some(shaper) = &self.shaper else { return Ok(plan) };
-            Ok(convolve(&plan, &shaper.impulses(modes)?))
-        })
+    ) -> Result<(Option<PlannedSlew>, PlannedSlew), ConfigError> {
+        let acceleration = self.acceleration.map_or(0.0, Positive::get);
+        let decay = PlannedSlew::to_rest(from, |rate| {
+            self.shape(
+                modes,
+                |time| RestToRestTask { time, impulse: -rate, travel: -0.5 * rate * time },
+                || {
+                    let decay = RateDecay::new(from.attitude, &from.rate, acceleration, self.profile);
+                    decay.map_or_else(Waveform::default, |decay| decay.command())
+                },
+            )
+        })?;
+        let attitudes = [decay.as_ref().map_or(from.attitude, PlannedSlew::to), self.attitude()];
+        let turn = PlannedSlew::new(attitudes, |angle| {
+            self.shape(
+                modes,
+                |time| RestToRestTask { time, impulse: 0.0, travel: angle },
+                || {
+                    let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
+                    Slew::new(attitudes, acceleration, rate_limit, self.profile).command()
+                },
+            )
+        })?;
+        Ok((decay, turn))
+    }
+
+    /// Returns the acceleration (rad/s²) of the command for a task in its duration, or else the limited one, through the
+    /// shaper.
+    fn shape(
+        &self,
+        modes: &[AxisMode],
+        task: impl FnOnce(f64) -> RestToRestTask,
+        limited: impl FnOnce() -> Waveform,
+    ) -> Result<Waveform, ConfigError> {
+        let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
+            let planned = command.waveform(&task(duration.get()), &command.zeros(modes)?);
+            planned.map_err(|fault| ConfigError::new("duration", fault.why))?.0
+        } else {
+            limited()
+        };
+        let Some(shaper) = &self.shaper else { return Ok(plan) };
+        Ok(convolve(&plan, &shaper.impulses(modes)?))
     }
 
     /// Checks the keys of a shaped slew against each other; returns the key and the reason.
@@ -95,7 +126,8 @@ mod tests {
         let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
         let count = 200_000;
         let h = end / f64::from(count);
-        // Rates are continuous, so the integral of the acceleration is taken by parts.
+        // Rates are continuous and end at 0, so the integral of the acceleration is taken by parts.
+        let first = turn.at(0.0).rate.dot(&axis) * libm::exp(-zeta * w * end);
         for k in 0..=count {
             let t = h * f64::from(k);
             let weight = if k == 0 || k == count {
@@ -112,14 +144,14 @@ mod tests {
             sine += grown * libm::sin(damped * t);
             most = most.max(rate.abs());
         }
-        libm::hypot(cosine, sine) * w / most
+        let real = first + zeta * w * cosine - damped * sine;
+        libm::hypot(real, zeta * w * sine + damped * cosine) / most
     }
 
     #[test]
     fn chosen_modes_rest_after_the_turn() {
         let axis = Vector::new(1.0, 2.0, 2.0) / 3.0;
-        let from = rotation(&Vector::new(0.3, -0.2, 0.5));
-        let to = from * rotation(&(axis * 0.8));
+        let (from, to) = (rotation(&(axis * -0.8)), AttitudeTarget::INERTIAL.attitude());
         // Tolerances of Simpson's rule for rates with kinks.
         let cases = [
             ("acceleration = 2e-3\nrate_limit = 0.02\nshaper = { zv = { modes = [0] } }", vec![0], 1e-7),
@@ -137,11 +169,26 @@ mod tests {
             ),
         ];
         for (keys, rest, bound) in cases {
-            let turn =
-                target(keys).slew([from, to], &modes()).unwrap_or_else(|fault| panic!("{keys}: {fault}"));
+            let slew = |from: &AttitudeMotion| {
+                target(keys).slew(from, &modes()).unwrap_or_else(|fault| panic!("{keys}: {fault}"))
+            };
+            let (none, turn) = slew(&AttitudeMotion::at_rest(from));
+            assert_eq!(none, None);
+            // From a rate, its decay leaves the same modes at rest.
+            let rate = Vector::new(-2e-3, 1e-3, 2e-3);
+            let (decay, after) = slew(&AttitudeMotion { rate, ..AttitudeMotion::at_rest(from) });
+            let decay = decay.expect("a decay");
+            assert!(
+                (decay.at(0.0).rate - rate).norm() < 1e-18 && (decay.at(0.0).attitude - from).norm() == 0.0
+            );
+            let end = decay.at(decay.duration() * (1.0 - 1e-12));
+            assert!(end.rate.norm() < 1e-13 && (end.attitude - decay.to()).norm() < 1e-13, "{keys}");
+            assert!((after.at(0.0).attitude - decay.to()).norm() < 1e-15 && (after.to() - to).norm() < 1e-15);
             for mode in rest {
                 let residual = residual_amplitude(&turn, &modes()[mode], axis);
                 assert!(residual < bound, "{keys}: mode {mode} keeps {residual:e}");
+                let residual = residual_amplitude(&decay, &modes()[mode], rate.normalize());
+                assert!(residual < 10.0 * bound, "{keys}: mode {mode} keeps {residual:e} of the decay");
             }
             // The slew ends at its target, at rest, and has a single axis.
             let near_end = turn.at(turn.duration() * (1.0 - 1e-12));
@@ -150,7 +197,7 @@ mod tests {
             assert!(turn.fastest() < 0.05);
         }
         let plain = target("acceleration = 2e-3\nrate_limit = 0.02");
-        let plain = plain.slew([from, to], &modes()).expect("a turn");
+        let (_, plain) = plain.slew(&AttitudeMotion::at_rest(from), &modes()).expect("a turn");
         assert!(residual_amplitude(&plain, &modes()[0], axis) > 1e-2);
         // Without a shaper it is the closed-form slew.
         let slew = Slew::new([from, to], 2e-3, 0.02, SlewProfile::Trapezoid);
@@ -162,10 +209,10 @@ mod tests {
 
     #[test]
     fn keys_that_do_not_fit_are_refused() {
-        let attitudes = [rotation(&Vector::zeros()), rotation(&Vector::new(0.0, 0.0, 0.5))];
+        let from = AttitudeMotion::at_rest(rotation(&Vector::new(0.0, 0.0, 0.5)));
         let fault = |keys: &str| {
             let target = target(keys);
-            let found = target.validate_shape().or_else(|| target.slew(attitudes, &modes()).err());
+            let found = target.validate_shape().or_else(|| target.slew(&from, &modes()).err());
             found.unwrap_or_else(|| panic!("{keys}")).to_string()
         };
         let cases = [

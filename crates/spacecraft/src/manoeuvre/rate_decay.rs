@@ -2,13 +2,14 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
 use flexsc_numerics::attitude::{Vector, rotation};
 use nalgebra::Quaternion;
 
 use super::{AttitudeMotion, SlewProfile};
 
 /// Rate (rad/s) below which a reference is at rest: the rounding of rates that agree.
-const REST: f64 = 1e-10;
+pub(super) const REST: f64 = 1e-10;
 
 /// Decay of a rate to rest about its axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +39,20 @@ impl RateDecay {
     pub fn duration(&self) -> f64 {
         let mean = if self.profile == SlewProfile::Versine { 0.5 } else { 1.0 } * self.acceleration;
         self.rate / mean
+    }
+
+    /// Returns the acceleration about the axis of the rate as a waveform (rad/s²).
+    pub fn command(&self) -> Waveform {
+        let (to, most) = (self.duration(), self.acceleration);
+        let term = |shape| Term { from: 0.0, to, shape };
+        let terms = match self.profile {
+            SlewProfile::Trapezoid => vec![term(TermShape::Polynomial(vec![-most]))],
+            SlewProfile::Versine => {
+                let rising = TermShape::Harmonic { frequency: TAU / to, cosine: 0.5 * most, sine: 0.0 };
+                vec![term(TermShape::Polynomial(vec![-0.5 * most])), term(rising)]
+            }
+        };
+        Waveform { terms }
     }
 
     /// Returns the attitude at the end.
@@ -93,6 +108,8 @@ mod tests {
                 let change = (after.rate - before.rate) / (2.0 * h);
                 assert!((change - now.acceleration).norm() < 1e-11);
                 assert!(now.acceleration.norm() <= 2e-4 * (1.0 + 1e-12));
+                let commanded = decay.command().at(t) * rate / rate.norm();
+                assert!((now.acceleration - commanded).norm() < 1e-18);
             }
         }
         assert_eq!(RateDecay::new(from, &Vector::new(0.0, 1e-12, 0.0), 2e-4, SlewProfile::Trapezoid), None);

@@ -2,6 +2,7 @@
 
 use super::*;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use flexsc_numerics::time::Span;
 
 fn targets(text: &str) -> Vec<AttitudeTarget> {
@@ -130,6 +131,45 @@ fn a_slew_between_moving_frames_has_no_jump_of_its_rate() {
         );
         let way = AttitudeProfile::new(&same, &sky, &[]);
         assert!(matches!(way.legs[1].path, SegmentPath::Turn(_)));
+    }
+}
+
+/// Slews by commands and through shapers begin with the rate of the reference before, and turn and change as they say.
+#[test]
+fn a_shaped_slew_between_moving_frames_has_no_jump_of_its_rate() {
+    let environment = flexsc_formats::document::from_text(
+        "orbit = { semi_major_axis = 7e6, eccentricity = 0.01, inclination = 1.2 }\nsun = [1, 2, 3]",
+    );
+    let sky = OrbitEnvironment::new(&environment.unwrap(), Span::from_seconds(1e4), None);
+    let mode = |frequency| {
+        AxisMode::at_rest(Frequency::new(frequency).unwrap(), Finite::default(), NonNegative::default())
+    };
+    let modes = [mode(0.9), mode(1.7)];
+    for (keys, duration) in [
+        ("acceleration = 2e-3, rate_limit = 0.02, shaper = { zvd = { modes = [0] } }", None),
+        ("duration = 100, command = { cosine = { suppress = 2 } }", Some(200.0)),
+    ] {
+        let slews = targets(&format!(
+            "target = [{{ from = 0, frame = \"nadir\" }}, {{ from = 100, frame = \"sun\", {keys} }}]"
+        ));
+        assert_eq!(AttitudeProfile::validate(&slews, &sky, &modes), None);
+        let way = AttitudeProfile::new(&slews, &sky, &modes);
+        let [before, after] = [100.0 - 1e-6, 100.0].map(|t| way.at(at(t)));
+        assert!(before.rate.norm() > 1e-3 && (before.rate - after.rate).norm() < 1e-8, "{keys}");
+        assert!((before.attitude - after.attitude).norm() < 1e-8, "{keys}");
+        let SegmentPath::Shaped(Some(decay), turn) = &way.legs[1].path else { panic!("{keys}") };
+        let end = decay.duration() + turn.duration();
+        assert!(duration.is_none_or(|duration: f64| (end - duration).abs() < 1e-9), "{keys}: {end}");
+        let h = 1e-3;
+        for k in 1..600 {
+            let t = 100.0 + (end + 10.0) * f64::from(k) / 600.0;
+            let [before, now, after] = [t - h, t, t + h].map(|t| way.at(at(t)));
+            let turn = (before.attitude.conjugate() * after.attitude).vector() * 2.0;
+            assert!((turn / (2.0 * h) - now.rate).norm() < 2e-6, "{keys} {t}");
+            assert!((after.rate - before.rate).norm() / (2.0 * h) < 1e-2, "{keys} {t}");
+        }
+        assert!(way.slews(at(100.0 + 0.999 * end)) && !way.slews(at(100.0 + 1.001 * end)));
+        assert!((way.at(at(400.0)).attitude - way.target(at(400.0))).norm() < 1e-15);
     }
 }
 

@@ -1,0 +1,28 @@
+/* The law of nadir.toml for 42: it replaces SandboxFSW, which 42 offers for such uses. Three wheels along x, y and z point the
+   body to the Earth, and magnetorquers along them unload the wheels. It is compiled at the end of Source/42fsw.c. */
+void SandboxFSW(struct SCType *S)
+{
+   const double bandwidth = 0.05, damping = 0.8, unload = 2.0E-3;
+   struct AcType *AC = &S->AC;
+   double CLN[3][3], CBN[3][3], q[4], wn[3], w[3], h[3], mxb[3], m[3], square = 0.0;
+   long i;
+
+   FindCLN(AC->PosN, AC->VelN, CLN, wn);
+   Q2C(AC->qbn, CBN);
+   MxV(CBN, wn, w);
+   C2Q(CLN, AC->qrn);
+   QxQT(AC->qbn, AC->qrn, q);
+   RECTIFYQ(q);
+   for (i = 0; i < 3; i++) {
+      AC->Tcmd[i] = -AC->MOI[i][i]*(2.0*damping*bandwidth*(AC->wbn[i] - w[i]) + bandwidth*bandwidth*2.0*q[i]);
+      h[i] = AC->Whl[i].H;
+      square += AC->bvb[i]*AC->bvb[i];
+   }
+   VxV(h, AC->bvb, m);
+   for (i = 0; i < 3; i++) {
+      m[i] *= unload/square;
+      AC->MTB[i].Mcmd = m[i];
+   }
+   VxV(m, AC->bvb, mxb);
+   for (i = 0; i < 3; i++) AC->Whl[i].Tcmd = mxb[i] - AC->Tcmd[i];
+}
