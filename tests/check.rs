@@ -76,3 +76,55 @@ fn a_continuous_sensor_beside_a_magnetometer_is_refused_with_the_reason() {
         .replace("\"continuous\"", "{ sampled = { period = 0.2 } }");
     Scenario::parse("sensors.toml", &sampled).unwrap_or_else(|error| panic!("{error}"));
 }
+
+#[test]
+fn margins_of_stages_say_which_loops_there_are() {
+    let dir = Dir::new();
+    let law = |bandwidth: f64| format!("law.attitude = {{ period = 0.5, bandwidth = {bandwidth} }}");
+    let craft = "duration = 100.0\n[spacecraft]\nmass = 200.0\ninertia = [[80, 0, 0], [0, 70, 0], [0, 0, 60]]\n\
+                 points = [{ name = \"hub\" }]\n[sensor.sampled]\nperiod = 0.5\n[actuator.ideal]\n";
+    let stages = format!("[[law.stages]]\n{}\n[[law.stages]]\nfrom = 50.0\n{}\n", law(0.1), law(0.05));
+    dir.write("stages.toml", format!("{craft}{stages}"));
+    let told = [
+        "law.stages",
+        "one in each stage",
+        "in Python `in_mode`: `0`, attitude from 0 s; `1`, attitude from 50 s",
+    ];
+    dir.run("margins stages.toml").exits(2).says(&told);
+    dir.run("spectrum stages.toml").exits(2).says(&["law.stages"]);
+    dir.run("margins stages.toml --mode 2")
+        .exits(2)
+        .says(&["index of a stage of the law, from 0 to 1, got `2`"]);
+    for (stage, bandwidth) in [0.1, 0.05].into_iter().enumerate() {
+        dir.write("one.toml", format!("{}\n{craft}", law(bandwidth)));
+        let alone = dir.run("margins one.toml --json").exits(0).json();
+        let chosen = dir.run(&format!("margins stages.toml --mode {stage} --json")).exits(0).json();
+        assert_eq!(alone["loops"], chosen["loops"]);
+        assert!(alone["loops"].is_array(), "{alone}");
+    }
+}
+
+/// Samples each second show 3.5 rad/s as 2 pi - 3.5 rad/s.
+#[test]
+fn check_names_modes_that_samples_alias() {
+    let dir = Dir::new();
+    let text = |period: f64| {
+        format!(
+            "duration = 10.0\nsensor.sampled.period = {period}\nlaw.pd = {{ period = {period}, k_p = 1.0, k_d = 1.0 }}\n\
+             actuator = \"ideal\"\n[body.planar]\ninertia = 100.0\nmodes = [{{ frequency = 3.5, gain = 0.01 }}, {{ frequency = 3.0, gain = 0.01 }}]\n"
+        )
+    };
+    dir.write("slow.toml", text(1.0));
+    let told = [
+        "remark: `law.pd.period`",
+        "pi/period = 3.142 rad/s: 1 mode is above it",
+        "3.500 rad/s",
+        "2.783 rad/s",
+    ];
+    dir.run("check slow.toml").exits(0).says(&told);
+    dir.write("quick.toml", text(0.5));
+    assert!(!dir.run("check quick.toml").exits(0).err.contains("remark"));
+    let law = Dir::with(&["earth-observer"]);
+    let told = ["remark: `law.attitude.bandwidth` is above pi/period = 12.566 rad/s", "another unit"];
+    law.run("check earth-observer.toml --set law.attitude.bandwidth=30").exits(0).says(&told);
+}

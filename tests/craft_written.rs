@@ -140,6 +140,35 @@ fn impossible_spacecraft_are_refused() {
     dir.run("cycle one.toml").exits(2).says(&["spacecraft: turns about three axes"]);
 }
 
+/// Equal appendages share a file of modes: points of the file have the names of those of the appendage.
+#[test]
+fn equal_appendages_share_a_file_with_points() {
+    let dir = Dir::new();
+    dir.write(
+        "wing.csv",
+        "frequency,damping,tx,ty,tz,rx,ry,rz,tip.tx,tip.ty,tip.tz,tip.rx,tip.ry,tip.rz\n2.0,0.005,0,0,3.5,9.0,0,0,0,0,0.4,0.15,0,0\n",
+    );
+    let wing = |name: &str, point: &str, at: f64| {
+        format!(
+            "[[appendage]]\nname = \"{name}\"\nmass = 20.0\ncentre = [0, 2, 0]\ninertia = [[30, 0, 0], [0, 3, 0], [0, 0, 33]]\nat = [0, {at}, 0]\n\
+             points = [{{ name = \"{point}\", position = [0, 4, 0] }}]\nmodes = \"wing.csv\"\n"
+        )
+    };
+    let hub = "duration = 1.0\nlaw.attitude = { period = 0.5, bandwidth = 0.01 }\n[spacecraft]\nmass = 400.0\ninertia = [[300, 0, 0], [0, 200, 0], [0, 0, 250]]\n";
+    let both = |second: &str| format!("{hub}{}{}", wing("north", "tip", 1.0), wing("south", second, -1.0));
+    dir.write("shared.toml", both("south tip"));
+    let json = dir.run("modes shared.toml --json").exits(0).json();
+    let points: Vec<_> = json["points"].as_array().expect("points").iter().map(|of| &of["point"]).collect();
+    assert_eq!(points, ["hub", "tip", "south tip"]);
+    for point in 1..3 {
+        let largest = json["points"][point]["influences"][0].as_array().expect("modes").iter();
+        assert!(largest.filter_map(serde_json::Value::as_f64).any(|part| part.abs() > 0.1), "{json}");
+    }
+    dir.run("simulate shared.toml --log none --runs 2 --set duration=1").exits(0);
+    dir.write("other.toml", both("north tip"));
+    dir.run("check other.toml").exits(2).says(&["shapes.tip` must be at one of the appendage's `points`"]);
+}
+
 /// Wheels that spin with more inertia than the hub has leave no spacecraft.
 #[test]
 fn rotors_are_part_of_the_hub() {

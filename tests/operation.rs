@@ -220,7 +220,9 @@ fn linear_tools_take_one_mode() {
         json.to_string().replace("\"two\"", "\"one\"")
     };
     assert_eq!(margins("margins two.toml --mode quick --json"), margins("margins one.toml --json"));
-    dir.run("margins two.toml").exits(2).says(&["mode", "choose one with `--mode`: `calm`, `quick`"]);
+    dir.run("margins two.toml")
+        .exits(2)
+        .says(&["mode", "choose one with `--mode`, in Python `in_mode`: `calm`, `quick`"]);
     dir.run("margins two.toml --mode fast").exits(2).says(&["must be one of `calm`, `quick`, got `fast`"]);
     dir.run("margins one.toml --mode fast").exits(2).says(&["has no modes of operation"]);
     // A campaign draws numbers of the law of a mode.

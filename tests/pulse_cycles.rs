@@ -57,6 +57,11 @@ fn the_predicted_cycle_is_the_edge_of_attraction() {
         assert_eq!(late < 0.05 * swing, is_caught, "{part}: {late}");
     }
     dir.run("cycle pulses.toml").exits(0).says(&["predicts a cycle, unstable", "demand"]);
+    let remark = format!("predicts swings of {:.2} s that grow", number(&cycles[0]["period_s"]));
+    dir.run("check pulses.toml").exits(0).says(&["remark: `actuator.thrusters` has pulses", &remark]);
+    // Without the integral no lower gain is unstable.
+    std::fs::write(dir.path("pd.toml"), scenario(0.1).replace("c = [[0.4]]", "c = [[0.0]]")).expect("a file");
+    assert!(!dir.run("check pd.toml").exits(0).err.contains("remark"));
     let other = scenario(0.1).replace("torque = 1.0\nperiod = 0.5", "torque = 1.0\nperiod = 1.0");
     std::fs::write(dir.path("other.toml"), other).expect("a file");
     dir.run("cycle other.toml").exits(2).says(&["actuator.thrusters.period", "the period of the law"]);

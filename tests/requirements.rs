@@ -234,6 +234,10 @@ fn bad_requirements_are_refused_at_their_keys() {
         ),
         (&format!("{sampled}limit = 1.0\nlevel = 0.9"), "interpretation` is missing"),
         (
+            &format!("{sampled}limit = 1.0\nlevel = 0.9\nindex = \"RPE\""),
+            "window` is missing, and so are `convention`, `interpretation`",
+        ),
+        (
             &format!("{sampled}limit = 1.0\nlevel = 0.9\ninterpretation = \"mixed\"\nconfidence = 0.9"),
             "is for `interpretation = \"ensemble\"`",
         ),

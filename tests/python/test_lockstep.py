@@ -17,7 +17,9 @@ from typing import Any
 import flexsc
 import pytest
 from conftest import SCENARIOS, command_path
+from flexsc import lockstep
 from flexsc.lockstep import Client, Cycle, LockstepError, Quantity
+from test_examples import described, run_text
 
 ROOT = Path(__file__).parents[2]
 WN, ZETA = 0.1, 0.8
@@ -49,6 +51,19 @@ def ended(server: subprocess.Popen[str], exits: int = 0) -> str:
     _, err = server.communicate(timeout=60)
     assert server.returncode == exits, err
     return err
+
+
+def test_the_examples_of_the_client_run(tmp_path: Path) -> None:
+    source = described(Path(lockstep.__file__))
+    client, cycle = source["Client"], source["Cycle"]
+    texts = [client.text]
+    texts += [text for name, text in client.members.items() if name not in {"command", "close"}]
+    texts += [cycle.text, *cycle.members.values(), client.members["command"], client.members["close"]]
+    assert len(texts) == 15
+    with serving(tmp_path) as (_, port):
+        names: dict[str, Any] = {"port": port}
+        for text in [*texts, source["LockstepError"].text]:
+            assert run_text("flexsc.lockstep", text, names) > 0, text
 
 
 class LossyLink:

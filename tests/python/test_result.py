@@ -96,3 +96,20 @@ def test_runs_differ_by_their_noise_alone(sampled: Scenario) -> None:
 def test_a_run_that_cannot_go_on_says_when(fixed: Scenario) -> None:
     with pytest.raises(SimulationError, match=r"^relay-fixed: the state is no longer finite at t = "):
         fixed.with_("body.planar.rate", 1e308).with_("body.planar.angle", 1e308).simulate()
+
+
+def test_a_topic_of_the_motion_is_in_a_full_log() -> None:
+    run = shipped("earth-observer").with_("duration", 1.0).simulate()
+    with pytest.raises(KeyError, match="no topic 'pointing'; there are log: a run with log='full'"):
+        run["pointing"]
+    with pytest.raises(KeyError, match="no topic 'pointin'; there are log"):
+        run["pointin"]
+
+
+def test_texts_of_margins_have_no_arrays() -> None:
+    scenario = shipped("earth-observer")
+    for value in (scenario.margins(), scenario.spectrum(), shipped("bounded-jitter").bound()[0]):
+        text = repr(value)
+        assert "array(" not in text
+        assert len(text) < 600
+    assert "modulus=0.5744" in repr(scenario.margins())

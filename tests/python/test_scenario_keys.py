@@ -133,3 +133,18 @@ def test_a_quantity_of_pint_is_refused(fixed: Scenario) -> None:
 
     with pytest.raises(ScenarioError, match=r"`duration`: found a quantity, expected its number in SI units"):
         fixed.with_("duration", Quantity())
+
+
+@pytest.mark.parametrize("inertia", [[1, 2], [[1, 0, 0], [0, 1, 0]], 3.0])
+def test_types_and_ranges_are_told_at_once(inertia: object) -> None:
+    wrong = {
+        "law.attitude.bandwidth": -1.0,
+        "spacecraft.inertia": inertia,
+        "sensor[0].gyro.period": -1.0,
+        "actuator.wheels.torque": -5.0,
+        "estimator.attitude.initial": "none",
+    }
+    with pytest.raises(ScenarioError) as told:
+        shipped("earth-observer").with_(wrong)
+    keys = [str(mistake["key"]).partition("[")[0] for mistake in told.value.mistakes]
+    assert sorted(keys) == sorted(key.partition("[")[0] for key in wrong)

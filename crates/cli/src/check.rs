@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::analysis::pulse_describing_function::PulsedLoop;
 use flexsc_core::campaign::Campaign;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
@@ -10,7 +11,7 @@ use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
 use crate::error::CliError;
-use crate::human::seconds;
+use crate::human::{digits, seconds};
 use crate::{print, say, scenario};
 
 #[derive(clap::Args)]
@@ -87,6 +88,21 @@ fn costly_imbalance(scenario: &Scenario) -> Option<ConfigError> {
     })
 }
 
+/// Returns the remark that the describing function of pulses predicts a limit cycle.
+fn predicted_cycle(scenario: &Scenario) -> Option<ConfigError> {
+    let (_, key) = scenario.actuator.thrusters()?;
+    let cycles = PulsedLoop::from_scenario(scenario).ok()?.cycles;
+    let cycle = cycles.iter().find(|cycle| cycle.stable).or(cycles.first())?;
+    let (period, demand) = (digits(cycle.period_s), digits(cycle.torque_amplitude_nm));
+    let effect = if cycle.stable {
+        format!("predicts a limit cycle of {period} s, with a demand of {demand} N m")
+    } else {
+        format!("predicts swings of {period} s that grow from a demand of {demand} N m on")
+    };
+    let why = format!("has pulses whose describing function {effect}: see `flexsc cycle`");
+    Some(ConfigError::new(key, why))
+}
+
 fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError> {
     let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
     let cost = scenario.cost(None, false);
@@ -94,7 +110,9 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError
     let remarks: Vec<ConfigError> = scenario
         .remarks()
         .into_iter()
+        .chain(scenario.aliased_modes())
         .chain(costly_imbalance(scenario))
+        .chain(predicted_cycle(scenario))
         .chain(refused_draws(path, scenario))
         .collect();
     if json {

@@ -20,7 +20,7 @@ pub struct ScenarioArgs {
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Mode of operation that acts throughout, of a scenario with several
+    /// Mode of operation that acts throughout, of a scenario with several; of a law with stages, the index of one
     #[arg(long, value_name = "NAME")]
     pub mode: Option<String>,
     /// Print one JSON object to stdout

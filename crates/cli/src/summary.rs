@@ -99,7 +99,12 @@ impl Summary<'_> {
         };
         let (band, outside) = (self.number("goal_band_rad"), self.number("time_outside_s"));
         if !band.is_finite() {
-            say!("  goal           {word}");
+            let why = if *word == "none" {
+                ": law and targets promise no error; `reference.band` sets one"
+            } else {
+                ""
+            };
+            say!("  goal           {word}{why}");
             return;
         }
         let differ = bands.iter().any(|other| *other != band && other.is_finite());

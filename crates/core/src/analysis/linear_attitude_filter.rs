@@ -67,8 +67,8 @@ impl LinearAttitudeFilter {
                 SensorRole::Corrects { .. } if scenario.sensor[index].measures_vector() => {
                     let why = format!(
                         "reads the directions of `{}`, with which its gains change with the attitude and do not settle, so that there \
-                         is no linear loop: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor; \
-                         others are simulated",
+                         is no linear loop: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor, \
+                         which `sensors` of a `[[mode]]` chooses; others are simulated",
                         scenario.sensor_key(index)
                     );
                     return Err(ConfigError::new("", why));
@@ -76,8 +76,8 @@ impl LinearAttitudeFilter {
                 SensorRole::Corrects { .. } if found.1.is_some() => {
                     let why = format!(
                         "reads `{}` beside another sensor of the attitude, so that its gains change from sample to sample and do not \
-                         settle to one: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor; \
-                         others are simulated",
+                         settle to one: linear tools take a filter with a gyro and one `star_tracker` or `sampled` sensor, \
+                         which `sensors` of a `[[mode]]` chooses; others are simulated",
                         scenario.sensor_key(index)
                     );
                     return Err(ConfigError::new("", why));

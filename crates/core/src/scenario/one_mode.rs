@@ -1,23 +1,36 @@
-//! Scenario of one mode of operation alone, for analyses of its loop.
+//! Scenario of one mode of operation alone, or of one stage of the law, for analyses of its loop.
 
 use std::collections::BTreeMap;
 
 use flexsc_control::actuator::AssignedActuator;
+use flexsc_control::law::Stage;
 use flexsc_control::operation::ModeTarget;
 use flexsc_formats::document::{ConfigError, ScenarioError};
 
 use super::{Scenario, ScenarioSpec};
 
 impl Scenario {
-    /// Returns the scenario in which one of the modes acts throughout: with its law, target, sensors and actuators.
+    /// Returns the scenario in which one of the modes acts throughout: with its law, target, sensors and actuators. Of a law with
+    /// stages it is that of the stage with this index.
     ///
     /// # Errors
     /// Fails without a mode of this name, and if the parts of the mode are inconsistent without the others.
     pub fn in_mode(&self, name: &str) -> Result<Self, ScenarioError> {
+        if let Some(index) =
+            name.parse().ok().filter(|index| *index < self.law.stages().len() && self.mode.is_empty())
+        {
+            return self.clone().with(|written| written.keep_stage(index));
+        }
         let Some(index) = self.mode.iter().position(|mode| mode.name == name) else {
             let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
             let why = if names.is_empty() {
-                format!("has no modes of operation, got `{name}`")
+                match self.law.stages().len() {
+                    0 => format!("has no modes of operation, got `{name}`"),
+                    count => format!(
+                        "must be the index of a stage of the law, from 0 to {}, got `{name}`",
+                        count - 1
+                    ),
+                }
             } else {
                 format!("must be one of {}, got `{name}`", names.join(", "))
             };
@@ -31,10 +44,25 @@ impl Scenario {
         let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
         (!names.is_empty()).then(|| {
             let why = format!(
-                "has several loops, one in each mode: choose one with `--mode`: {}",
+                "has several loops, one in each mode: choose one with `--mode`, in Python `in_mode`: {}",
                 names.join(", ")
             );
             ConfigError::new("mode", why)
+        })
+    }
+
+    /// Returns the error of an analysis of one loop, for a scenario whose laws act one after another.
+    pub fn stage_choice_fault(&self) -> Option<ConfigError> {
+        let stage = |(index, stage): (usize, &Stage)| {
+            format!("`{index}`, {} from {} s", stage.law.kind(), stage.from.get())
+        };
+        let stages: Vec<String> = self.law.stages().iter().enumerate().map(stage).collect();
+        (!stages.is_empty() && self.mode.is_empty()).then(|| {
+            let why = format!(
+                "has several loops, one in each stage: choose one with `--mode`, in Python `in_mode`: {}",
+                stages.join("; ")
+            );
+            ConfigError::new("law.stages", why)
         })
     }
 }
@@ -58,19 +86,26 @@ impl ScenarioSpec {
         self.law = mode.law;
         self.mode.clear();
         self.mode_targets.clear();
-        self.keep_uncertain(index, &in_use);
+        self.keep_uncertain(&format!("mode[{index}].law."), "mode[", &in_use);
     }
 
-    /// Renames the uncertain keys of the law of a mode, and leaves out those of other modes, and of sensors and actuators
+    /// Replaces the stages of the law by one of them.
+    fn keep_stage(&mut self, index: usize) {
+        let stage = self.law.stages()[index].clone();
+        self.actuator.retain(|_, of| of.unloads.is_some() || stage.selects(of.kind.kind()));
+        self.law = stage.law;
+        self.keep_uncertain(&format!("law.stages[{index}].law."), "law.stages[", &[]);
+    }
+
+    /// Renames the uncertain keys of the law of a mode or stage, and leaves out those of others, and of sensors and actuators
     /// whose places may have changed.
-    fn keep_uncertain(&mut self, index: usize, in_use: &[bool]) {
-        let own = format!("mode[{index}].law.");
+    fn keep_uncertain(&mut self, own: &str, others: &str, in_use: &[bool]) {
         let moved = |key: &str| {
             key.starts_with("actuator[") || (key.starts_with("sensor[") && in_use.contains(&false))
         };
-        let renamed = |key: String| match key.strip_prefix(&own) {
+        let renamed = |key: String| match key.strip_prefix(own) {
             Some(rest) => Some(format!("law.{rest}")),
-            None if key.starts_with("mode[") || moved(&key) => None,
+            None if key.starts_with(others) || moved(&key) => None,
             None => Some(key),
         };
         let kept = std::mem::take(&mut self.uncertain);

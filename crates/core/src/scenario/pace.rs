@@ -3,6 +3,7 @@
 
 use flexsc_control::actuator::FiringMethod;
 use flexsc_dynamics::three_axis::Surroundings;
+use flexsc_spacecraft::environment::{FieldModel, Sun};
 
 use super::Scenario;
 
@@ -40,6 +41,15 @@ const DRIVEN: Pace = (3e-6, 3e-6);
 const BEARINGS: Pace = (1e-6, 6.5e-7);
 const HINGES: Pace = (7e-6, 7e-6);
 const SINES: Pace = (1.5e-6, 5e-7);
+/// Times (s) that are added to a step in surroundings: for wheels in bearings, spherical harmonics of the magnetic field (constant part,
+/// and part per square of the degree), drag, pressure of sunlight from a Sun that moves, plates on appendages that turn.
+const BEARINGS_THERE: f64 = 6e-6;
+const HARMONICS: (f64, f64) = (5e-7, 1.2e-8);
+const DRAG_THERE: f64 = 1e-6;
+const MOVING_SUN: f64 = 3e-6;
+const TURNING_PLATES: f64 = 1e-5;
+/// Degree of the harmonics unless a scenario gives one.
+const DEGREE: u32 = 13;
 /// Rate (rad/s) below which swings of a body that holds its attitude in surroundings do not shorten steps.
 pub(super) const QUIET_RATE: f64 = 1e-3;
 /// Length of steps of such a body, relative to steps that resolve its modes.
@@ -75,7 +85,7 @@ impl Scenario {
             });
             let allocated = cycles * ALLOCATION_S;
             let moves = match self.loaded_step() {
-                Some(stride) => (events + turns) * takes(stride),
+                Some(stride) => (events + turns) * (takes(stride) + self.environment_seconds()),
                 // A step that an event ends is part of the event.
                 None if turns > 0.0 => events * takes(TURNING) + (turns - events).max(0.0) * takes(TURN),
                 None => events * takes(AT_REST),
@@ -99,6 +109,23 @@ impl Scenario {
             events * takes(ONE_AXIS)
         };
         moves + filtered
+    }
+
+    /// Returns the time (s) that wheels in bearings and parts of the environment add to a step in surroundings.
+    fn environment_seconds(&self) -> f64 {
+        let Some(around) = &self.environment else { return 0.0 };
+        let field = around.magnetic_field.as_ref();
+        let harmonic = field.filter(|field| field.model(self.epoch.is_some()) != FieldModel::Dipole);
+        let degree = harmonic.map(|field| f64::from(field.degree.unwrap_or(DEGREE)));
+        let pressure = around.solar_pressure.as_ref();
+        let on_appendage = pressure.is_some_and(|of| of.plates.iter().any(|plate| plate.appendage.is_some()))
+            || around.drag.as_ref().is_some_and(|of| of.plates.iter().any(|plate| plate.appendage.is_some()));
+        let adds = |applies: bool, seconds: f64| if applies { seconds } else { 0.0 };
+        adds(!self.study.bearings.is_empty(), BEARINGS_THERE)
+            + degree.map_or(0.0, |degree| HARMONICS.0 + HARMONICS.1 * degree * degree)
+            + adds(around.drag.is_some(), DRAG_THERE)
+            + adds(pressure.is_some() && around.sun == Some(Sun::Epoch), MOVING_SUN)
+            + adds(on_appendage, TURNING_PLATES)
     }
 
     /// Returns the pace of a step of a three-axis body on which more acts than constant torques; `None` otherwise.

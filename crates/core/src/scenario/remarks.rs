@@ -1,5 +1,8 @@
 //! Remarks on values that are accepted but probably mistakes.
 
+use std::f64::consts::{PI, TAU};
+
+use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key::bare_or_quoted;
 use toml::{Table, Value};
@@ -16,12 +19,39 @@ impl Scenario {
             let look = match key.as_str() {
                 "body" | "appendage" => damping,
                 "sensor" => latency,
+                "law" | "mode" => bandwidth,
                 _ => continue,
             };
             each_table(key, value, look, &mut remarks);
         }
         remarks.extend(self.known_inertia());
         remarks
+    }
+
+    /// Returns the remark that modes vibrate faster than the law samples.
+    pub fn aliased_modes(&self) -> Option<ConfigError> {
+        let (key, period) = self.slowest_law()?;
+        let limit = PI / period;
+        let above: Vec<f64> = self.model.frequencies().filter(|mode| *mode > limit).collect();
+        let fastest = above.iter().copied().reduce(f64::max)?;
+        let cycles = fastest * period / TAU;
+        let alias = (cycles - libm::round(cycles)).abs() * TAU / period;
+        let verb = if above.len() == 1 { "is" } else { "are" };
+        let why = format!(
+            "shows frequencies up to pi/period = {limit:.3} rad/s: {} {verb} above it, the fastest of {fastest:.3} rad/s, which samples \
+             show as {alias:.3} rad/s",
+            counted(above.len(), "mode")
+        );
+        Some(ConfigError::new(key, why))
+    }
+
+    /// Returns the key and the length (s) of the longest period of a law in closed loop.
+    fn slowest_law(&self) -> Option<(String, f64)> {
+        let laws = (0..self.axis_count()).flat_map(|axis| self.law.laws_about(axis));
+        let closed = laws.filter(|of| !["open", "b_dot"].contains(&of.law.kind()));
+        let periods =
+            closed.filter_map(|of| Some((format!("{}.period", of.key), of.law.period()?.seconds())));
+        periods.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Returns the remark that a law knows an inertia that differs from run to run.
@@ -77,6 +107,20 @@ fn damping(path: &str, table: &Table, remarks: &mut Vec<ConfigError>) {
             "is a ratio, and above 1 a mode does not vibrate: is {ratio} a percentage, which is written \"{ratio} %\"?"
         );
         remarks.push(ConfigError::new(format!("{path}.damping"), why));
+    }
+}
+
+/// Laws that do not sample their own bandwidth.
+fn bandwidth(path: &str, table: &Table, remarks: &mut Vec<ConfigError>) {
+    let of = |key: &str| table.get(key).and_then(number);
+    if let (Some(bandwidth), Some(period)) = (of("bandwidth"), of("period"))
+        && bandwidth * period > PI
+    {
+        let limit = PI / period;
+        let why = format!(
+            "is above pi/period = {limit:.3} rad/s, up to which samples show a motion: is {bandwidth} in another unit than rad/s?"
+        );
+        remarks.push(ConfigError::new(format!("{path}.bandwidth"), why));
     }
 }
 

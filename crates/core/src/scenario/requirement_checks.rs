@@ -74,6 +74,12 @@ struct Context<'a> {
 impl Context<'_> {
     fn assess(&self, requirement: &Requirement) -> Result<AssessedRequirement, ConfigError> {
         let at = |key: &str, why: String| Err(ConfigError::new(key, why));
+        if let [first, others @ ..] = &absent_keys(requirement)[..]
+            && !others.is_empty()
+        {
+            let verb = if others.len() == 1 { "is" } else { "are" };
+            return at(first, format!("is missing, and so {verb} `{}`", others.join("`, `")));
+        }
         let (source, unit) = self.source(requirement)?;
         let limit = requirement.limit.in_unit(unit).map_err(|why| ConfigError::new("limit", why))?;
         if limit.is_nan() || limit < 0.0 && matches!(source, RequirementSource::Error(_)) {
@@ -221,6 +227,25 @@ fn count(span: Span, period: Span) -> u64 {
         u128::from(whole) * FEMTOSECONDS + u128::from(part)
     };
     u64::try_from(femtoseconds(span) / femtoseconds(period).max(1)).unwrap_or(u64::MAX - 1) + 1
+}
+
+/// Returns the keys that a requirement on an error needs and does not have.
+fn absent_keys(requirement: &Requirement) -> Vec<&'static str> {
+    let is_sight = requirement.quantity == "line_of_sight";
+    if !is_sight && !["pointing_error", "rate_error"].contains(&requirement.quantity.as_str()) {
+        return Vec::new();
+    }
+    let index = requirement.index.unwrap_or(PointingIndex::Absolute);
+    let is_difference = matches!(index, PointingIndex::Drift | PointingIndex::Reproducibility);
+    let is_partial = requirement.level.is_some_and(|level| level.get() < 1.0);
+    let absent = [
+        ("point", is_sight && requirement.point.is_none()),
+        ("window", index != PointingIndex::Absolute && requirement.window.is_none()),
+        ("convention", index == PointingIndex::Relative && requirement.convention.is_none()),
+        ("shift", is_difference && requirement.shift.is_none()),
+        ("interpretation", is_partial && requirement.interpretation.is_none()),
+    ];
+    absent.into_iter().filter(|(_, is_absent)| *is_absent).map(|(key, _)| key).collect()
 }
 
 /// Returns the index of a requirement with its window in samples.

@@ -10,6 +10,10 @@ use super::suggestions::is_other_word;
 
 /// Largest number of errors reported at once.
 const MOST: usize = 20;
+/// Largest number of replacements in search of them.
+const TRIES: usize = 4 * MOST;
+/// Largest length of an array that replaces one.
+const LONGEST: usize = 16;
 /// Number that most keys accept.
 const FITS: f64 = 0.5;
 
@@ -17,20 +21,28 @@ const FITS: f64 = 0.5;
 pub fn all<T: DeserializeOwned>(table: &Table, first: Mismatch) -> Vec<Mismatch> {
     let (mut table, mut found) = (table.clone(), Vec::new());
     let mut replaced: Vec<String> = Vec::new();
+    let mut refined: Vec<Mismatch> = Vec::new();
     let mut next = Some(first);
-    while let Some(wrong) = next.take() {
-        // The replacement of a previous error is invalid too: the document has no such value.
-        let own = replaced.iter().any(|place| wrong.path().starts_with(place));
-        if own || found.len() == MOST {
+    for _ in 0..TRIES {
+        let Some(wrong) = next.take() else { break };
+        // The document has no such value: what replaced it is refined, and the error is not reported.
+        let is_own = replaced.iter().any(|place| is_within(&wrong.path(), place));
+        if refined.contains(&wrong) || found.len() == MOST {
             break;
         }
         let place = replace(&mut table, &wrong);
-        found.push(wrong);
+        let list = if is_own { &mut refined } else { &mut found };
+        list.push(wrong);
         let Some(place) = place else { break };
         replaced.push(place);
         next = read::<T>(&table).err();
     }
     found
+}
+
+/// Returns true if a path is `place` or within it.
+fn is_within(path: &str, place: &str) -> bool {
+    path.strip_prefix(place).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// Replaces an invalid value by one that may be valid, and returns its path.
@@ -64,8 +76,18 @@ fn replace(table: &mut Table, wrong: &Mismatch) -> Option<String> {
         (None, None) if path.is_empty() => return None,
         (None, None) => (path, fitting(&wrong.to_string())?),
     };
+    // A matrix of the wrong shape is one error.
+    let is_row = place.ends_with(']') && value.as_array().is_some_and(|values| !values.is_empty());
     set(table, &place, value).ok()?;
-    Some(place)
+    Some(if is_row { outermost_array(&place).to_owned() } else { place })
+}
+
+/// Returns the path of the array that contains the element at a path, of nested ones the outermost.
+fn outermost_array(mut path: &str) -> &str {
+    while let Some((array, _)) = path.rsplit_once('[').filter(|_| path.ends_with(']')) {
+        path = array;
+    }
+    path
 }
 
 /// Returns a value of the type that a message asks for.
@@ -76,8 +98,13 @@ fn fitting(why: &str) -> Option<Value> {
         "a string" => Value::String("x".to_owned()),
         _ if expected.starts_with("a whole number") => Value::Integer(1),
         "a number" => Value::Float(FITS),
+        "an array" => Value::Array(Vec::new()),
+        "a table" => Value::Table(Table::new()),
         _ if expected.starts_with("must be") => Value::Float(FITS),
-        _ => return None,
+        _ => {
+            let length = expected.strip_prefix("an array of length ")?;
+            Value::Array(vec![Value::Float(FITS); length.parse().ok().filter(|length| *length <= LONGEST)?])
+        }
     };
     Some(value)
 }
@@ -133,6 +160,37 @@ mod tests {
         assert!(holds("law.relay: ", "missing key `k_t`"), "{described:#?}");
         assert!(holds("law.relay.strong: ", "must be"), "{described:#?}");
         assert_eq!(described.len(), 9, "{described:#?}");
+    }
+
+    #[test]
+    fn matrices_of_the_wrong_shape_hide_no_other_mistake() {
+        #[derive(serde::Deserialize)]
+        #[allow(dead_code)]
+        struct Whole {
+            inertia: [[f64; 3]; 3],
+            list: Vec<f64>,
+            part: Relay,
+            weak: Positive,
+        }
+        let found = |text: &str| {
+            let table = text.parse().expect("TOML");
+            let first = read::<Whole>(&table).map(|_| ()).expect_err("wrong");
+            let found = all::<Whole>(&table, first);
+            found.iter().map(|wrong| format!("{}: {wrong}", wrong.path())).collect::<Vec<_>>()
+        };
+        let rest = "list = 1\npart = 3\nweak = -1";
+        for inertia in ["[1, 2]", "[[1, 2, 3], [1, 2, 3]]", "[[1, 2], [1], 3]", "7"] {
+            let mistakes = found(&format!("inertia = {inertia}\n{rest}"));
+            let places: Vec<_> = mistakes.iter().filter_map(|text| text.split(['[', ':']).next()).collect();
+            assert_eq!(places, ["inertia", "list", "part", "weak"], "{inertia}: {mistakes:#?}");
+        }
+        let unlike = "inertia = [[1, 2, 3], [1, 'a', 3], [1, 2, true]]\nlist = []\npart = {}\nweak = -1";
+        let mistakes = found(unlike);
+        assert!(
+            mistakes.iter().any(|text| text.starts_with("inertia[2][2]: found boolean")),
+            "{mistakes:#?}"
+        );
+        assert!(mistakes.iter().any(|text| text.starts_with("weak: ")), "{mistakes:#?}");
     }
 
     #[test]

@@ -4,8 +4,11 @@ use strsim::damerau_levenshtein;
 
 /// Names used elsewhere, without underscores, with the names of scenarios that they may mean.
 const ALIASES: &[(&str, &[&str])] = &[
+    ("aop", &["perigee"]),
+    ("argumentofperigee", &["perigee"]),
     ("arw", &["angle_random_walk"]),
     ("antiwindup", &["limit"]),
+    ("at", &["position"]),
     ("bangbang", &["relay", "bang_bang"]),
     ("biasinstability", &["rate_random_walk"]),
     ("cg", &["centre"]),
@@ -26,6 +29,7 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("freq", &["frequency"]),
     ("hinfinity", &["state_space"]),
     ("imu", &["gyro"]),
+    ("inc", &["inclination"]),
     ("kd", &["k_d", "damping"]),
     ("kf", &["kalman"]),
     ("kp", &["k_p", "bandwidth"]),
@@ -38,6 +42,7 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("omega", &["frequency", "rate"]),
     ("pid", &["attitude", "pd"]),
     ("quaternion", &["attitude"]),
+    ("raan", &["node"]),
     ("rategyro", &["gyro"]),
     ("reactionwheel", &["wheels", "wheel"]),
     ("reactionwheels", &["wheels"]),
@@ -56,6 +61,7 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("tfinal", &["duration"]),
     ("torquerods", &["magnetorquers"]),
     ("tracker", &["star_tracker"]),
+    ("trueanomaly", &["anomaly"]),
     ("ts", &["period"]),
     ("ukf", &["unscented_kalman"]),
     ("w", &["frequency"]),
@@ -64,6 +70,16 @@ const ALIASES: &[(&str, &[&str])] = &[
 
 /// Features that do not exist, with the hint to give instead.
 const ABSENT: &[(&str, &str)] = &[
+    (
+        "altitude",
+        "an orbit has a `semi_major_axis`, that of the Earth's radius, 6378.137 km, and the altitude",
+    ),
+    ("like", "an appendage is written as often as the spacecraft has it; `turned` rotates one"),
+    (
+        "localtime",
+        "the `node` is the right ascension: that of the Sun and 15 degrees for each hour after noon",
+    ),
+    ("ltan", "the `node` is the right ascension: that of the Sun and 15 degrees for each hour after noon"),
     ("mpc", "there is no predictive control; a linear one goes into `state_space`"),
     ("slidingmode", "there is no sliding mode; `relay` and `phase_plane` switch"),
     ("lidar", "there is no lidar"),
@@ -142,7 +158,11 @@ mod tests {
         assert_eq!(nearest_name("kt", &["dead_zone", "k_t"]), Some("k_t"));
         assert_eq!(nearest_name("deadzone", &["dead_zone", "k_t"]), Some("dead_zone"));
         assert_eq!(nearest_name("traker", &["gyro", "star_tracker"]), None);
-        assert_eq!(hint("mpc", &laws).as_deref(), Some(ABSENT[0].1));
+        assert!(hint("mpc", &laws).is_some_and(|why| why.contains("there is no predictive control")));
+        assert_eq!(nearest_name("raan", &["inclination", "node"]), Some("node"));
+        assert!(
+            hint("altitude", &["inclination", "node"]).is_some_and(|why| why.contains("`semi_major_axis`"))
+        );
         for (alias, _) in ALIASES {
             assert_eq!(plain(alias), *alias);
         }

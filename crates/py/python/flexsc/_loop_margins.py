@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._named import Brief
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True)
-class LoopMargins:
+@dataclass(frozen=True, repr=False)
+class LoopMargins(Brief):
     """Margins of one signal of a loop, with the loops of the other signals closed, or of all together.
 
     >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins().loops["command"]
@@ -93,8 +94,8 @@ class LoopMargins:
     """
 
 
-@dataclass(frozen=True)
-class StabilityMargins:
+@dataclass(frozen=True, repr=False)
+class StabilityMargins(Brief):
     """Margins of a stable loop: of each signal at the break, and of all together.
 
     >>> margins = flexsc.Scenario.example("attitude-hold").margins("torque")

@@ -38,6 +38,29 @@ class Named(dict[str, _Value]):
         raise no_such(self._what, name, self)
 
 
+def _brief(value: Any) -> str:
+    """Return a short text of a value: four digits of a number, the shape of an array."""
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if hasattr(value, "shape"):
+        return f"array of shape {value.shape}"
+    if isinstance(value, dict):
+        is_short = all(isinstance(each, float) for each in value.values())
+        parts = [f"{key!r}: {_brief(each)}" if is_short else repr(key) for key, each in value.items()]
+        return f"{{{', '.join(parts)}}}"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_brief, value))})"
+    return repr(value)
+
+
+class Brief:
+    """A dataclass whose text has the shapes of its arrays, not their values."""
+
+    def __repr__(self) -> str:
+        parts = (f"{name}={_brief(value)}" for name, value in vars(self).items())
+        return f"{type(self).__name__}({', '.join(parts)})"
+
+
 def library(name: str, user: str, package: str | None = None) -> Any:
     """Import an optional library for a method, or raise an ImportError that says how to install it.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._named import Brief
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     Values = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class OutputNoise:
+@dataclass(frozen=True, repr=False)
+class OutputNoise(Brief):
     """Noise of one output of a loop, in the unit of the output.
 
     >>> noise = flexsc.Scenario.example("attitude-hold").spectrum().outputs["roll"]
@@ -81,8 +82,8 @@ class OutputNoise:
     """
 
 
-@dataclass(frozen=True)
-class WheelLines:
+@dataclass(frozen=True, repr=False)
+class WheelLines(Brief):
     """Lines of the outputs under one harmonic of one unbalanced wheel, over its speed.
 
     >>> found = flexsc.Scenario.example("wheel-run-up").spectrum(speeds=[40.0, 93.0]).wheels.harmonics[0]
@@ -128,8 +129,8 @@ class WheelLines:
     """
 
 
-@dataclass(frozen=True)
-class WheelSpectrum:
+@dataclass(frozen=True, repr=False)
+class WheelSpectrum(Brief):
     """Lines of the imbalance of wheels over their speed.
 
     >>> wheels = flexsc.Scenario.example("wheel-run-up").spectrum(speeds=[40.0, 93.0]).wheels
@@ -157,8 +158,8 @@ class WheelSpectrum:
     """
 
 
-@dataclass(frozen=True)
-class NoiseSpectrum:
+@dataclass(frozen=True, repr=False)
+class NoiseSpectrum(Brief):
     """Noise of the loop of a scenario, exact from its linear model.
 
     >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["pitch"], window=1.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._named import Brief
 
 if TYPE_CHECKING:
     import numpy as np
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True)
-class Witness:
+@dataclass(frozen=True, repr=False)
+class Witness(Brief):
     """State at the start and inputs over time that bring an output beyond its limits.
 
     >>> scenario = flexsc.Scenario.example("bounded-jitter").with_("bound[0].limits", [-5e-6, 5e-6])
@@ -76,8 +77,8 @@ class Witness:
     """
 
 
-@dataclass(frozen=True)
-class OutputBound:
+@dataclass(frozen=True, repr=False)
+class OutputBound(Brief):
     """Guaranteed range of an output over sets of states, inputs and parameters, and the verdict.
 
     >>> bound = flexsc.Scenario.example("bounded-jitter").bound()[0]

@@ -66,8 +66,11 @@ class Topics(Lookup[Topic]):
             KeyError: There is no such topic.
         """
         if topic not in self:
-            raise no_such("no topic", topic, self.topics)
+            raise self._no_topic(topic)
         return self._topic(topic.removeprefix("/"))
+
+    def _no_topic(self, topic: str) -> KeyError:
+        return no_such("no topic", topic, self.topics)
 
     def to_pandas(self) -> dict[str, Any]:
         """Return each topic as a `pandas.DataFrame`: see `Topic.to_pandas`.
@@ -218,6 +221,16 @@ class Result(Topics, Exportable):
 
     def _topic(self, name: str) -> Topic:
         return self._topics[name]
+
+    def _no_topic(self, topic: str) -> KeyError:
+        from flexsc import topics
+
+        if self._log not in ("full", "scene") and str(topic).removeprefix("/") in topics():
+            there = ", ".join(self.topics) or "none"
+            return KeyError(
+                f"no topic {topic!r}; there are {there}: a run with log='full' has those of the motion"
+            )
+        return super()._no_topic(topic)
 
     def sample(self, times: npt.ArrayLike) -> Samples:
         """Return the exact motion at chosen times (s), whatever the detail of the run's log.

@@ -137,8 +137,13 @@ class Scenario(ScenarioAnalysis):
     def in_mode(self, name: str, /) -> Scenario:
         """Return a scenario in which one `[[mode]]` of operation acts throughout, for linear tools.
 
+        Of a law with `stages`, `name` is the index of the stage that acts throughout.
+
         >>> flexsc.Scenario.example("safe-mode").in_mode("point")
         <flexsc.Scenario safe-mode: 9000 s, 0 modes, seed 0>
+        >>> quiet = flexsc.Scenario.example("orbit-correction").in_mode("0")
+        >>> quiet.get("law.attitude.bandwidth"), quiet.margins().modulus > 0.5
+        (0.05, True)
 
         Raises:
             ScenarioError: There is no such mode, or its parts do not fit without those of others.

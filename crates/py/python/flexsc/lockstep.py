@@ -48,7 +48,12 @@ _HELLO_REPEAT = 0.1
 
 
 class LockstepError(Exception):
-    """The server has refused the client, or is silent, or its run has failed."""
+    """The server has refused the client, or is silent, or its run has failed.
+
+    >>> Client(port=1, timeout=0.1)                                     # where no server is
+    Traceback (most recent call last):
+    flexsc.lockstep.LockstepError: no server answers there: start `flexsc serve` first
+    """
 
 
 def _table() -> list[int]:
@@ -100,12 +105,20 @@ class Cycle(Mapping[str, "float | int | str | tuple[float, ...]"]):
 
     A field with components is a tuple. `gyro.status` is `none` before the first reading, `new` if a reading
     has come since the last cycle, and else `held`.
+
+    >>> cycle = client.receive()                                        # of the `Client` below
+    >>> cycle["gyro.status"], len(cycle["estimate.rate"])
+    ('new', 3)
     """
 
     __slots__ = ("_content", "_fields", "number")
 
     number: int
-    """The number of the cycle, from 0."""
+    """The number of the cycle, from 0.
+
+    >>> cycle.number
+    1
+    """
 
     def __init__(self, fields: dict[str, _Field], content: bytes) -> None:
         self._fields = fields
@@ -118,14 +131,25 @@ class Cycle(Mapping[str, "float | int | str | tuple[float, ...]"]):
 
     @property
     def time(self) -> float:
-        """The simulated time (s), rounded to a double; `time_s` and `time_fs` are exact."""
+        """The simulated time (s), rounded to a double; `time_s` and `time_fs` are exact.
+
+        >>> cycle.time
+        0.25
+        """
         whole, part = self._integer("time_s"), self._integer("time_fs")
         if whole < 9000:
             return (whole * 10**15 + part) / 1e15
         return whole + part / 1e15
 
     def numbers(self, name: str) -> tuple[float, ...]:
-        """Return the numbers of a field, one for each component."""
+        """Return the numbers of a field, one for each component: a tuple also where there is one.
+
+        >>> cycle.numbers("cycle"), len(cycle.numbers("gyro.rate"))
+        ((1,), 3)
+
+        Raises:
+            KeyError: There is no such field.
+        """
         field = self._fields[name]
         return field.form.unpack_from(self._content, field.offset)
 
@@ -157,22 +181,53 @@ class Client:
 
     Raises:
         LockstepError: The server refuses the client, or does not answer.
+
+    >>> from flexsc.lockstep import Client
+    >>> client = Client(port=port)                                  # of `flexsc serve earth-observer.toml`
     """
 
     axes: int
-    """The number of axes with commands: 1 or 3."""
+    """The number of axes with commands: 1 or 3.
+
+    >>> client.axes
+    3
+    """
     period: float
-    """The period of the cycles (s)."""
+    """The period of the cycles (s).
+
+    >>> client.period
+    0.25
+    """
     layout: int
-    """The layout of the packets, a hash of their description."""
+    """The layout of the packets, a hash of their description.
+
+    >>> 0 < client.layout < 2**64
+    True
+    """
     pace: str
-    """The pace of the run: `free`, `real-time` or `step`."""
+    """The pace of the run: `free`, `real-time` or `step`.
+
+    >>> client.pace
+    'free'
+    """
     units: dict[str, str]
-    """The unit of each field."""
+    """The unit of each field.
+
+    >>> client.units["gyro.rate"], client.units["gyro.status"]
+    ('rad/s', '')
+    """
     components: dict[str, tuple[str, ...]]
-    """The names of the components of each field."""
+    """The names of the components of each field.
+
+    >>> client.components["estimate.rate"]
+    ('x', 'y', 'z')
+    """
     end: str | None
-    """How the run has ended, `complete`, `interrupted` or `failed`; None before."""
+    """How the run has ended, `complete`, `interrupted` or `failed`; None before.
+
+    >>> client.end is None
+    True
+    """
 
     def __init__(
         self,
@@ -297,6 +352,10 @@ class Client:
     def receive(self) -> Cycle | None:
         """Return the next cycle, once; None at the end of the run.
 
+        >>> client.receive()
+        <flexsc.lockstep.Cycle 0 at 0 s>
+        >>> client.command([0.0, 0.0, 0.0])
+
         Raises:
             LockstepError: The server is silent, or the run has failed.
         """
@@ -342,6 +401,11 @@ class Client:
         Args:
             values: The commands in SI units: one for each axis, or a number for one axis.
             quantity: The quantity of all commands, or of each.
+
+        >>> client.command([-0.01 * angle for angle in cycle["estimate.error"]], "acceleration")
+
+        Raises:
+            ValueError: No cycle has been received, or the number of values is not that of the axes.
         """
         if self._cycle is None:
             raise ValueError("no cycle has been received yet")
@@ -359,7 +423,10 @@ class Client:
             yield cycle
 
     def close(self) -> None:
-        """Close the connection; a run that goes on ends when the server misses the client."""
+        """Close the connection; a run that goes on ends when the server misses the client.
+
+        >>> client.close()
+        """
         self._socket.close()
 
     def __enter__(self) -> Client:

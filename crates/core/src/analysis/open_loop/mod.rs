@@ -137,7 +137,7 @@ impl<'a> LoopParts<'a> {
         scenario: &'a Scenario,
         opened: LoopBreak,
     ) -> Result<Self, ConfigError> {
-        if let Some(fault) = scenario.mode_choice_fault() {
+        if let Some(fault) = scenario.mode_choice_fault().or_else(|| scenario.stage_choice_fault()) {
             return Err(fault);
         }
         let model = LinearModel::from_scenario(scenario, 0.0)?;

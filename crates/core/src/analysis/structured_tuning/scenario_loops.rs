@@ -41,7 +41,10 @@ impl ScenarioLoops {
         table.remove("uncertain");
         table.remove("correlated");
         for name in &keys {
-            number(&table, name).ok_or_else(|| ConfigError::new(name, "is no number of this scenario"))?;
+            let of_mode =
+                if name.starts_with("mode[") { ": the law of the chosen mode is `law`" } else { "" };
+            let why = || ConfigError::new(name, format!("is no number of this scenario{of_mode}"));
+            number(&table, name).ok_or_else(why)?;
         }
         let uncertain = if corners { all.keys } else { Vec::new() };
         if let Some(tuned) = uncertain.iter().find(|own| keys.contains(&own.key)) {

@@ -57,10 +57,10 @@ impl Appendage {
         let file = self.modes.file();
         let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::from_path(file)?))) else {
             self.no_keys_of_results()?;
-            return self
-                .modes
-                .read(others.map(|other| &other.modes))
-                .map_err(|why| ConfigError::new("modes", why));
+            let same = others.filter(|other| (&other.name, &other.points) == (&self.name, &self.points));
+            self.modes.read(same.map(|other| &other.modes)).map_err(|why| ConfigError::new("modes", why))?;
+            self.name_shapes();
+            return Ok(());
         };
         let keys = |options: &Self| {
             (options.mass, options.keep, options.units, options.damping.clone(), options.points.clone())
@@ -96,6 +96,26 @@ impl Appendage {
         let modes = modes.collect::<Result<Vec<_>, _>>()?;
         self.modes.fill(modes);
         Ok(())
+    }
+
+    /// Gives shapes of a table the names of the appendage's points: `tip` of a file that equal appendages share is `north tip` on the
+    /// appendage `north`.
+    fn name_shapes(&mut self) {
+        let is_point = |name: &str| self.points.iter().any(|point| point.name == name);
+        let own = |name: &String| {
+            Some(format!("{} {name}", self.name)).filter(|own| !is_point(name) && is_point(own))
+        };
+        if self.modes.file().is_none()
+            || !self.modes.iter().flat_map(|mode| mode.shapes.keys()).any(|name| own(name).is_some())
+        {
+            return;
+        }
+        let mut modes = self.modes.to_vec();
+        for mode in &mut modes {
+            let shapes = std::mem::take(&mut mode.shapes).into_iter();
+            mode.shapes = shapes.map(|(name, shape)| (own(&name).unwrap_or(name), shape)).collect();
+        }
+        self.modes.fill(modes);
     }
 
     /// Keeps the modes inline, and removes the reference to their file.
