@@ -94,9 +94,16 @@ fn static_analysis_finds_what_the_document_lists() {
         assert!(said.contains("warnings: skipped, absent is not installed"), "{said}");
     }
     if is_installed("gcc") {
-        dir.write("out/relay_sampled.c", format!("{source}\nint relay_sampled_spoilt(void) {{ return 1; }}\n"));
+        dir.write(
+            "out/relay_sampled.c",
+            format!("{source}\nint relay_sampled_spoilt(void) {{ return 1; }}\n"),
+        );
         let output = make(dir, "out", &["lint"]);
-        assert!(!output.status.success() && text(&output).contains("missing-prototypes"), "{}", text(&output));
+        assert!(
+            !output.status.success() && text(&output).contains("missing-prototypes"),
+            "{}",
+            text(&output)
+        );
     }
 }
 
@@ -133,7 +140,8 @@ fn optimised_rust_has_no_panic_but_of_bounds() {
     assert!(checks > 0 && functions.len() == told.len(), "{checks} in {functions:?}, told {told:?}");
     for name in told {
         let words: Vec<&str> = name.split("::").collect();
-        let is_among = |label: &String| words.iter().all(|word| label.contains(&format!("{}{word}", word.len())));
+        let is_among =
+            |label: &String| words.iter().all(|word| label.contains(&format!("{}{word}", word.len())));
         assert!(functions.iter().any(is_among), "{name}: {functions:?}");
     }
 }

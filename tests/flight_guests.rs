@@ -47,7 +47,12 @@ fn replays_find_an_exchanged_member_and_a_message_that_is_not_refused() {
     let app = "out/cfs/aocs_app/fsw/src/aocs_app.c";
     let component = "out/fprime/Components/AocsControl/AocsControl.cpp";
     let changes = [
-        ("cfs", app, "Input.gyro_rate[Index] = In->gyro_rate[Index]", "Input.gyro_rate[Index] = In->gyro_rate[0]"),
+        (
+            "cfs",
+            app,
+            "Input.gyro_rate[Index] = In->gyro_rate[Index]",
+            "Input.gyro_rate[Index] = In->gyro_rate[0]",
+        ),
         ("cfs", app, "if (Length == Expected)", "if (Length >= Expected)"),
         ("cfs", app, "UPPER_APP_Data.Has_Step_Input = false", "(void)0"),
         ("fprime", component, "torque[i] = output.torque[i]", "torque[i] = output.torque[0]"),

@@ -42,7 +42,8 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
         text,
         "\n`make check` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits; \
          then it calls the functions with random and extreme inputs (zeros, subnormals, infinities, NaN) and compares a hash. \
-         `make check-all` does the same under emulation on AArch64, RISC-V, Cortex-M4F and Cortex-M7.\n\n| cycles | hash |\n|---|---|\n"
+         `make check-all` does the same under emulation on AArch64, RISC-V, Cortex-M4F and Cortex-M7. `make instructions` counts the most instructions of a call on the boards, and \
+         `make lint` runs static analysis.\n\n| cycles | hash |\n|---|---|\n"
     );
     for (cycles, hash) in hashes {
         let _ = writeln!(text, "| {cycles} | {hash:016x} |");

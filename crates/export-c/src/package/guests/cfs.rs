@@ -209,11 +209,8 @@ fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
     for channel in &call.inputs {
         copy(channel, "Input.", "In->", " != 0", &mut text);
     }
-    let now = if has_time(plan) {
-        "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }, "
-    } else {
-        ""
-    };
+    let now =
+        if has_time(plan) { "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }, " } else { "" };
     let _ = writeln!(text, "    LOWER_{lower}(&UPPER_APP_Data.State, {now}&Input, &Output);");
     if has_time(plan) {
         text.push_str("    Out->now_whole = In->now_whole;\n    Out->now_part = In->now_part;\n");

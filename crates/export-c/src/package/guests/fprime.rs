@@ -1,19 +1,57 @@
 //! Component of F Prime: its model, its implementation, and stubs with which it is tested.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::{camel, named};
-use crate::control_system::{CallLayout, Channel, NumberKind};
+use super::fprime_ports::{arrays, handled, type_name};
+use super::{camel, fprime_stubs, named};
+use crate::control_system::{CallLayout, Channel};
 use crate::package::signature::has_time;
 use crate::package::{PackageFile, Plan, text};
 
 /// Keywords of F Prime's modelling language among the words that a member may have as its name.
 const KEYWORDS: [&str; 42] = [
-    "action", "active", "array", "assert", "at", "base", "block", "bool", "change", "choice", "command",
-    "component", "constant", "container", "default", "enum", "event", "exit", "fatal", "format", "group",
-    "health", "id", "initial", "instance", "internal", "on", "param", "phase", "port", "priority", "queue",
-    "record", "reference", "seconds", "send", "signal", "size", "state", "string", "time", "type",
+    "action",
+    "active",
+    "array",
+    "assert",
+    "at",
+    "base",
+    "block",
+    "bool",
+    "change",
+    "choice",
+    "command",
+    "component",
+    "constant",
+    "container",
+    "default",
+    "enum",
+    "event",
+    "exit",
+    "fatal",
+    "format",
+    "group",
+    "health",
+    "id",
+    "initial",
+    "instance",
+    "internal",
+    "on",
+    "param",
+    "phase",
+    "port",
+    "priority",
+    "queue",
+    "record",
+    "reference",
+    "seconds",
+    "send",
+    "signal",
+    "size",
+    "state",
+    "string",
+    "time",
+    "type",
 ];
 
 /// Returns the files of the component, of its stubs and their Makefile.
@@ -21,11 +59,10 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
     let (prefix, component) = (plan.prefix, format!("{}Control", camel(plan.prefix)));
     let directory = format!("fprime/Components/{component}");
     let file = |path: String, template: &str| {
-        let template =
-            template.replace("COMPONENT", &component).replace("MODULE", &camel(prefix)).replace("LOWER_LAW", &format!(
-                "LOWER_{}",
-                law(plan).name
-            ));
+        let template = template
+            .replace("COMPONENT", &component)
+            .replace("MODULE", &camel(prefix))
+            .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name));
         text(path, named(&template, plan))
     };
     vec![
@@ -38,43 +75,16 @@ pub(super) fn files(plan: &Plan<'_>, header: &str, source: &str) -> Vec<PackageF
         file("fprime/Makefile".to_owned(), include_str!("../files/fprime/Makefile")),
         file(
             format!("fprime/stubs/Components/{component}/{component}ComponentAc.hpp"),
-            &stub(plan),
+            &fprime_stubs::stub(plan),
         ),
         file("fprime/stubs/framework.fpp".to_owned(), include_str!("../files/fprime/framework.fpp")),
-        file("fprime/stubs/replay.cpp".to_owned(), &replay(plan)),
+        file("fprime/stubs/replay.cpp".to_owned(), &fprime_stubs::replay(plan)),
     ]
 }
 
 /// Returns the law: the last function.
 fn law<'a>(plan: &Plan<'a>) -> &'a CallLayout {
     &plan.calls[plan.calls.len() - 1]
-}
-
-/// Returns the type of a channel in C++, which the model defines.
-fn type_name(channel: &Channel, scalar: [&str; 3]) -> String {
-    let (kind, name) = match channel.kind {
-        NumberKind::Real => (0, "Real"),
-        NumberKind::Flag => (1, "Flag"),
-        NumberKind::Integer(_) => (2, "Integer"),
-    };
-    if channel.count == 1 { scalar[kind].to_owned() } else { format!("{name}{}", channel.count) }
-}
-
-/// Types of scalars in the model and in C++.
-const MODEL: [&str; 3] = ["F64", "bool", "I64"];
-const CPP: [&str; 3] = ["F64", "bool", "I64"];
-
-/// Returns the arrays of the model: name, count and type of the elements.
-fn arrays(plan: &Plan<'_>) -> BTreeSet<(String, usize, &'static str)> {
-    let channels = plan.calls.iter().flat_map(|call| call.inputs.iter().chain(&call.outputs));
-    channels
-        .filter(|channel| channel.count > 1)
-        .map(|channel| {
-            let element = type_name(&Channel { count: 1, ..channel.clone() }, MODEL);
-            let element = MODEL.into_iter().find(|name| *name == element).unwrap_or(MODEL[0]);
-            (type_name(channel, MODEL), channel.count, element)
-        })
-        .collect()
 }
 
 /// Returns the model.
@@ -85,7 +95,9 @@ fn model(plan: &Plan<'_>) -> String {
     }
     for call in plan.calls {
         let name = camel(call.name);
-        for (side, about, channels) in [("Input", "Inputs", &call.inputs), ("Output", "Outputs", &call.outputs)] {
+        for (side, about, channels) in
+            [("Input", "Inputs", &call.inputs), ("Output", "Outputs", &call.outputs)]
+        {
             let mut parameters = Vec::new();
             if has_time(plan) {
                 parameters.push("    now_whole: I64 @< Time since the start: whole seconds\n".to_owned());
@@ -93,12 +105,7 @@ fn model(plan: &Plan<'_>) -> String {
             }
             parameters.extend(channels.iter().map(|channel| {
                 let escape = if KEYWORDS.contains(&channel.name.as_str()) { "$" } else { "" };
-                format!(
-                    "    {escape}{}: {} @< {}\n",
-                    channel.name,
-                    type_name(channel, MODEL),
-                    channel.about
-                )
+                format!("    {escape}{}: {} @< {}\n", channel.name, type_name(channel), channel.about)
             }));
             let _ = writeln!(
                 types,
@@ -123,28 +130,6 @@ fn model(plan: &Plan<'_>) -> String {
         .replace("PORTS", &ports)
         .replace("COUNTERS    @ Answer", &format!("{counters}    @ Answer"))
         .replace("MEASURED", &measured)
-}
-
-/// Returns the parameters of a handler or of an output in C++.
-fn parameters(plan: &Plan<'_>, channels: &[Channel]) -> String {
-    let mut list = if has_time(plan) { vec!["I64 now_whole".to_owned(), "I64 now_part".to_owned()] } else { Vec::new() };
-    list.extend(channels.iter().map(|channel| {
-        let reference = if channel.count == 1 { ["", ""] } else { ["const ", "&"] };
-        format!("{}{}{} {}", reference[0], type_name(channel, CPP), reference[1], channel.name)
-    }));
-    list.join(", ")
-}
-
-/// Returns the parameters of a handler after the number of its port.
-fn handled(plan: &Plan<'_>, call: &CallLayout) -> String {
-    let list = parameters(plan, &call.inputs);
-    if list.is_empty() { list } else { format!(", {list}") }
-}
-
-/// Returns the arguments with the time, and then these channels.
-fn arguments(plan: &Plan<'_>, channels: &[Channel]) -> Vec<String> {
-    let time = ["now_whole", "now_part"].iter().filter(|_| has_time(plan)).map(|name| (*name).to_owned());
-    time.chain(channels.iter().map(|channel| channel.name.clone())).collect()
 }
 
 /// Returns the parameter of the time, as the exported functions take it.
@@ -212,9 +197,7 @@ fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
         copy(channel, &format!("input.{}", channel.name), &channel.name, &mut text);
     }
     if has_time(plan) {
-        text.push_str(
-            "    LOWER_ticks now;\n    now.whole = now_whole;\n    now.part = now_part;\n",
-        );
+        text.push_str("    LOWER_ticks now;\n    now.whole = now_whole;\n    now.part = now_part;\n");
     }
     let now = if has_time(plan) { "now, " } else { "" };
     if is_law {
@@ -245,7 +228,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> String {
         if channel.count == 1 {
             arguments.push(format!("output.{}", channel.name));
         } else {
-            let _ = writeln!(text, "    {} {};", type_name(channel, CPP), channel.name);
+            let _ = writeln!(text, "    {} {};", type_name(channel), channel.name);
             copy(channel, &channel.name, &format!("output.{}", channel.name), &mut text);
             arguments.push(channel.name.clone());
         }
@@ -271,97 +254,4 @@ fn copy(channel: &Channel, to: &str, from: &str, text: &mut String) {
             channel.count
         );
     }
-}
-
-/// Returns the stub of the class that F Prime generates.
-fn stub(plan: &Plan<'_>) -> String {
-    let (mut calls, mut handlers, mut outputs, mut telemetry) =
-        (String::new(), String::new(), String::new(), String::new());
-    for call in plan.calls {
-        let name = call.name;
-        let list = arguments(plan, &call.inputs).iter().map(|name| format!(", {name}")).collect::<String>();
-        let _ = writeln!(
-            calls,
-            "    void call_{name}Input({}) {{ this->{name}Input_handler(0{list}); }}",
-            parameters(plan, &call.inputs)
-        );
-        let _ = writeln!(
-            handlers,
-            "    virtual void {name}Input_handler(FwIndexType portNum{}) = 0;",
-            handled(plan, call)
-        );
-        let added: Vec<String> =
-            call.outputs.iter().map(|channel| format!("        words.add({});\n", channel.name)).collect();
-        let times = if has_time(plan) { "        (void)now_whole;\n        (void)now_part;\n" } else { "" };
-        let list = parameters(plan, &call.outputs);
-        let _ = writeln!(
-            outputs,
-            "    bool isConnected_{name}Output_OutputPort(FwIndexType portNum) {{ return portNum == 0; }}\n    \
-             void {name}Output_out(FwIndexType portNum{}{list}) {{\n        (void)portNum;\n{times}        Words words;\n{}        \
-             this->m_sent.push_back(std::make_pair(std::string(\"{name}\"), words));\n    }}",
-            if list.is_empty() { "" } else { ", " },
-            added.concat()
-        );
-        let counter = format!("{}Calls", camel(name));
-        let _ = writeln!(
-            telemetry,
-            "    void tlmWrite_{counter}(U32 value) {{ this->m_telemetry[\"{counter}\"] = value; }}"
-        );
-    }
-    let arrays: String = arrays(plan)
-        .into_iter()
-        .map(|(name, count, element)| format!("typedef StubArray<{element}, {count}> {name};\n"))
-        .collect();
-    include_str!("../files/fprime/stub.hpp")
-        .replace("ARRAYS", &arrays)
-        .replace("CALLS    void", &format!("{calls}    void"))
-        .replace("HANDLERS", &handlers)
-        .replace("OUTPUTS", &outputs)
-        .replace("TELEMETRY", &telemetry)
-}
-
-/// Returns the program that replays the vectors through the ports.
-fn replay(plan: &Plan<'_>) -> String {
-    let (mut cases, mut counters) = (String::new(), String::new());
-    for (index, call) in plan.calls.iter().enumerate() {
-        let name = call.name;
-        let _ = writeln!(cases, "        if (index == {index}) {{");
-        for channel in &call.inputs {
-            let scope = if channel.count == 1 { "" } else { "MODULE::" };
-            let _ = writeln!(
-                cases,
-                "            {scope}{0} {1} = {scope}{0}();\n            Reader::read({1});",
-                type_name(channel, CPP),
-                channel.name
-            );
-        }
-        let kinds: String = call
-            .outputs
-            .iter()
-            .flat_map(|channel| std::iter::repeat_n(channel, channel.count))
-            .map(|channel| if channel.kind == NumberKind::Real { 'R' } else { 'I' })
-            .collect();
-        let list = arguments(plan, &call.inputs).join(", ");
-        let _ = writeln!(cases, "            component.call_{name}Input({list});");
-        if index + 1 == plan.calls.len() {
-            cases.push_str(
-                "            if (!component.m_sent.empty()) {\n                return fail(number, \"decided before `run`\");\n            \
-                 }\n            component.call_run();\n",
-            );
-        }
-        let _ = writeln!(
-            cases,
-            "            if (!hasOutputs(component, \"{name}\", \"{kinds}\")) {{\n                \
-             return fail(number, \"other outputs of {name}\");\n            }}\n        }}"
-        );
-        let _ = write!(
-            counters,
-            " ||\n        component.m_telemetry[\"{}Calls\"] != calls[{index}]",
-            camel(name)
-        );
-    }
-    include_str!("../files/fprime/replay.cpp")
-        .replace("CASES    }", &format!("{cases}    }}"))
-        .replace("CALL_COUNTERS", &counters)
-        .replace("CALL_COUNT", &plan.calls.len().to_string())
 }

@@ -5,6 +5,8 @@
 
 mod cfs;
 mod fprime;
+mod fprime_ports;
+mod fprime_stubs;
 mod payload;
 
 use super::{PackageFile, Plan};

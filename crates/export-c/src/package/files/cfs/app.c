@@ -123,7 +123,7 @@ static CFE_Status_t UPPER_APP_Init(void)
     static const CFE_SB_MsgId_Atom_t Subscribed[] = {
         SUBSCRIBED, UPPER_APP_WAKE_UP_MID, UPPER_APP_SEND_HK_MID, UPPER_APP_CMD_MID
     };
-    /* Faults that come back at each message are told 16 times. */
+    /* Faults that come back at each message are reported 16 times. */
     static const CFE_EVS_BinFilter_t Filters[] = {
         { UPPER_APP_LENGTH_ERR_EID, CFE_EVS_FIRST_16_STOP },
         { UPPER_APP_MESSAGE_ERR_EID, CFE_EVS_FIRST_16_STOP },

@@ -23,7 +23,7 @@ struct CmdResponse {
 
 namespace MODULE {
 
-// Array with so many elements.
+// Array of COUNT elements.
 template <typename Element, U32 COUNT>
 class StubArray {
   public:

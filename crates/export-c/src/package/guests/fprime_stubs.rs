@@ -1,0 +1,103 @@
+//! Stubs for the component of F Prime: the class that F Prime would generate, and the program that replays the vectors.
+
+use std::fmt::Write as _;
+
+use super::camel;
+use super::fprime_ports::{arguments, arrays, handled, parameters, type_name};
+use crate::control_system::NumberKind;
+use crate::package::Plan;
+use crate::package::signature::has_time;
+
+/// Returns the stub of the class that F Prime generates.
+pub(super) fn stub(plan: &Plan<'_>) -> String {
+    let (mut calls, mut handlers, mut outputs, mut telemetry) =
+        (String::new(), String::new(), String::new(), String::new());
+    for call in plan.calls {
+        let name = call.name;
+        let list =
+            ["0".to_owned()].into_iter().chain(arguments(plan, &call.inputs)).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(
+            calls,
+            "    void call_{name}Input({}) {{ this->{name}Input_handler({list}); }}",
+            parameters(plan, &call.inputs)
+        );
+        let _ = writeln!(
+            handlers,
+            "    virtual void {name}Input_handler(FwIndexType portNum{}) = 0;",
+            handled(plan, call)
+        );
+        let added: Vec<String> =
+            call.outputs.iter().map(|channel| format!("        words.add({});\n", channel.name)).collect();
+        let times = if has_time(plan) { "        (void)now_whole;\n        (void)now_part;\n" } else { "" };
+        let list = parameters(plan, &call.outputs);
+        let _ = writeln!(
+            outputs,
+            "    bool isConnected_{name}Output_OutputPort(FwIndexType portNum) {{ return portNum == 0; }}\n    \
+             void {name}Output_out(FwIndexType portNum{}{list}) {{\n        (void)portNum;\n{times}        Words words;\n{}        \
+             this->m_sent.push_back(std::make_pair(std::string(\"{name}\"), words));\n    }}",
+            if list.is_empty() { "" } else { ", " },
+            added.concat()
+        );
+        let counter = format!("{}Calls", camel(name));
+        let _ = writeln!(
+            telemetry,
+            "    void tlmWrite_{counter}(U32 value) {{ this->m_telemetry[\"{counter}\"] = value; }}"
+        );
+    }
+    let arrays: Vec<String> = arrays(plan)
+        .into_iter()
+        .map(|(name, count, element)| format!("typedef StubArray<{element}, {count}> {name};\n"))
+        .collect();
+    include_str!("../files/fprime/stub.hpp")
+        .replace("ARRAYS", &arrays.concat())
+        .replace("CALLS    void", &format!("{calls}    void"))
+        .replace("HANDLERS", &handlers)
+        .replace("OUTPUTS", &outputs)
+        .replace("TELEMETRY", &telemetry)
+}
+
+/// Returns the program that replays the vectors through the ports.
+pub(super) fn replay(plan: &Plan<'_>) -> String {
+    let (mut cases, mut counters) = (String::new(), String::new());
+    for (index, call) in plan.calls.iter().enumerate() {
+        let name = call.name;
+        let _ = writeln!(cases, "        if (index == {index}) {{");
+        for channel in &call.inputs {
+            let scope = if channel.count == 1 { "" } else { "MODULE::" };
+            let _ = writeln!(
+                cases,
+                "            {scope}{0} {1} = {scope}{0}();\n            Reader::read({1});",
+                type_name(channel),
+                channel.name
+            );
+        }
+        let kinds: String = call
+            .outputs
+            .iter()
+            .flat_map(|channel| std::iter::repeat_n(channel, channel.count))
+            .map(|channel| if channel.kind == NumberKind::Real { 'R' } else { 'I' })
+            .collect();
+        let list = arguments(plan, &call.inputs).join(", ");
+        let _ = writeln!(cases, "            component.call_{name}Input({list});");
+        if index + 1 == plan.calls.len() {
+            cases.push_str(
+                "            if (!component.m_sent.empty()) {\n                return fail(number, \"decided before `run`\");\n            \
+                 }\n            component.call_run();\n",
+            );
+        }
+        let _ = writeln!(
+            cases,
+            "            if (!hasOutputs(component, \"{name}\", \"{kinds}\")) {{\n                \
+             return fail(number, \"other outputs of {name}\");\n            }}\n        }}"
+        );
+        let _ = write!(
+            counters,
+            " ||\n        component.m_telemetry[\"{}Calls\"] != calls[{index}]",
+            camel(name)
+        );
+    }
+    include_str!("../files/fprime/replay.cpp")
+        .replace("CASES    }", &format!("{cases}    }}"))
+        .replace("CALL_COUNTERS", &counters)
+        .replace("CALL_COUNT", &plan.calls.len().to_string())
+}
