@@ -41,8 +41,8 @@ def hash_of(folder: Path) -> str:
 
 
 def test_a_law_without_plain_code_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"state_space"):
-        flexsc.Scenario.example("earth-observer-lqg").export_c(tmp_path / "flight")
+    with pytest.raises(ValueError, match=r"law\.open"):
+        flexsc.Scenario.example("rotation-cosine").export_c(tmp_path / "flight")
     assert not (tmp_path / "flight").exists()
     scenario = flexsc.Scenario.example("relay-sampled")
     scenario.export_c(tmp_path / "flight", name="relay")
