@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use crate::flight_code::{EXPORTED, is_installed, make, text};
+use crate::flight_code::{EXPORTED, is_installed, make, prepared, text};
 use crate::util::Dir;
 
 /// Directory, compilers and last words of the replay of each guest.
@@ -15,12 +15,10 @@ const GUESTS: [(&str, &[&str], &str); 2] = [
 #[test]
 fn calls_go_through_messages_and_ports_with_equal_bits() {
     for name in EXPORTED {
-        let dir = Dir::with(&[name]);
-        let said = dir
-            .run(&format!("export-c {name}.toml -o out --calls 1000 --guest cfs --guest fprime"))
+        let (dir, arguments) = prepared(name);
+        dir.run(&format!("export-c {arguments} -o out --calls 1000 --guest cfs --guest fprime"))
             .exits(0)
             .says(&["app of cFS", "component of F Prime"]);
-        drop(said);
         let vectors = dir.read("out/vectors.bin");
         let calls = u64::from_le_bytes(vectors[8..16].try_into().expect("a word"));
         for (guest, commands, words) in GUESTS {
@@ -33,7 +31,7 @@ fn calls_go_through_messages_and_ports_with_equal_bits() {
             assert!(said.contains(&format!("{calls} {words}")), "{name}: {said}");
         }
         // A guest is a copy of the control system.
-        let own = name.replace('-', "_");
+        let own = name.split(' ').next().map(|name| name.replace('-', "_")).expect("a name");
         let source = dir.text(&format!("out/{own}.c"));
         assert_eq!(dir.text(&format!("out/cfs/{own}_app/fsw/src/{own}.c")), source);
     }

@@ -53,8 +53,8 @@ def test_guests_are_written_beside_the_control_system(tmp_path: Path) -> None:
 
 
 def test_a_law_without_plain_code_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"state_space"):
-        flexsc.Scenario.example("earth-observer-lqg").export_c(tmp_path / "flight")
+    with pytest.raises(ValueError, match=r"law\.open"):
+        flexsc.Scenario.example("rotation-cosine").export_c(tmp_path / "flight")
     assert not (tmp_path / "flight").exists()
     scenario = flexsc.Scenario.example("relay-sampled")
     scenario.export_c(tmp_path / "flight", name="relay")

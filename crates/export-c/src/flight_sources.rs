@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 36;
+const COUNT: usize = 43;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -27,16 +27,22 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "attitude_law",
         "attitude_observation",
         "axis_motion",
+        "b_dot",
         "binary64",
         "biquad",
+        "compensator",
         "covariance_propagation",
         "error_measure",
         "exponentials",
+        "filter_lock",
         "gain_schedule",
         "guard",
         "hypotenuse",
         "integer_square_root",
         "inverse_trigonometry",
+        "jet_pulses",
+        "kalman",
+        "kalman_axis",
         "maths",
         "matrix3",
         "matrix6",
@@ -47,6 +53,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "pulse_width",
         "quaternion",
         "relay",
+        "rigid_rate",
         "square_root",
         "stumpff",
         "switching_lines",

@@ -8,7 +8,9 @@
 
 #![no_std]
 #![allow(
+    clippy::manual_memcpy,
     clippy::neg_cmp_op_on_partial_ord,
+    clippy::range_plus_one,
     clippy::return_self_not_must_use,
     clippy::struct_excessive_bools,
     clippy::trivially_copy_pass_by_ref,
@@ -26,16 +28,22 @@ pub mod attitude_history;
 pub mod attitude_law;
 pub mod attitude_observation;
 pub mod axis_motion;
+pub mod b_dot;
 pub mod binary64;
 pub mod biquad;
+pub mod compensator;
 pub mod covariance_propagation;
 pub mod error_measure;
 pub mod exponentials;
+pub mod filter_lock;
 pub mod gain_schedule;
 pub mod guard;
 pub mod hypotenuse;
 pub mod integer_square_root;
 pub mod inverse_trigonometry;
+pub mod jet_pulses;
+pub mod kalman;
+pub mod kalman_axis;
 pub mod maths;
 pub mod matrix3;
 pub mod matrix6;
@@ -46,6 +54,7 @@ pub mod pulse_timing;
 pub mod pulse_width;
 pub mod quaternion;
 pub mod relay;
+pub mod rigid_rate;
 // The translator takes `square_root.rs`.
 #[cfg_attr(feature = "std", path = "processor/square_root.rs")]
 pub mod square_root;

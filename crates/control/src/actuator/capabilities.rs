@@ -80,6 +80,12 @@ pub trait PulsedActuator {
         Vec::new()
     }
 
+    /// Returns the signed on-times about the axes (s) that the last command asked for, of groups of jets that fire once in a period
+    /// of the law; `None` of other actuators.
+    fn commanded_on_times(&self) -> Option<[f64; 3]> {
+        None
+    }
+
     /// Returns the angular impulse of all pulses of the current cycle (N m s, body axes).
     fn cycle_impulse(&self) -> Vector;
 

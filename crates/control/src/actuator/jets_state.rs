@@ -1,6 +1,7 @@
 //! Run-time state of jets in groups: demands, queued pulses, current pulses, and propellant.
 
 use flexsc_dynamics::wrench::Wrench;
+use flexsc_flight::jet_pulses::JetPair;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Report;
@@ -63,6 +64,19 @@ pub struct JetsState {
     valves: Option<(Valves, Vec<Vec<[usize; 2]>>)>,
 }
 
+/// Returns the groups about an axis, with their pulses of a period, as flight code has them.
+pub fn jet_pair(groups: &[[GroupEffect; 2]; 3], axis: usize, period: Span, width: PulseWidth) -> JetPair {
+    let [plus, minus] = &groups[axis];
+    JetPair {
+        acceleration_plus: plus.acceleration,
+        acceleration_minus: minus.acceleration,
+        torque_plus: plus.push.torque[axis].abs(),
+        torque_minus: minus.push.torque[axis].abs(),
+        period: period.seconds(),
+        quantum: width.flight(),
+    }
+}
+
 impl JetsState {
     /// Creates the jets before their first command, with their groups; `period` is the law's, for jets without their
     /// own.
@@ -97,16 +111,12 @@ impl JetsState {
 
     /// Returns the signed on-time of the demand about an axis (s).
     fn on_time(&self, axis: usize) -> f64 {
-        let period = self.period.seconds();
-        let (demanded, sign) = match self.demands[axis] {
-            Demand::Change(change) => (change.abs() / self.group(axis, change).acceleration, change),
-            Demand::Torque(torque) => {
-                let most = self.group(axis, torque).push.torque[axis].abs();
-                (torque.abs() / most * period, torque)
-            }
-            Demand::Moment(_) => (0.0, 0.0),
-        };
-        if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(demanded, period) }
+        let pair = jet_pair(&self.groups, axis, self.period, self.width);
+        match self.demands[axis] {
+            Demand::Change(change) => pair.on_time_of_change(change),
+            Demand::Torque(torque) => pair.on_time_of_torque(torque),
+            Demand::Moment(_) => 0.0,
+        }
     }
 
     /// Begins a cycle with the current demands.
@@ -212,6 +222,11 @@ impl PulsedActuator for JetsState {
 
     fn pending_pulses(&self) -> Vec<Pulse> {
         self.pulses(self.waiting)
+    }
+
+    fn commanded_on_times(&self) -> Option<[f64; 3]> {
+        let own = self.next.is_none();
+        own.then_some(if self.delayed { self.waiting } else { self.executed })
     }
 
     fn cycle_impulse(&self) -> Vector {

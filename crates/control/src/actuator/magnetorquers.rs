@@ -4,6 +4,7 @@
 //! (\[Wertz78\]).
 
 use flexsc_dynamics::wrench::Wrench;
+use flexsc_flight::b_dot::limited_moment;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
@@ -120,7 +121,7 @@ impl MagnetorquersState {
     fn hold(&mut self, demands: &[Demand]) {
         for (axis, demand) in demands.iter().enumerate().take(3) {
             let demanded = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
-            self.moment[axis] = demanded.clamp(-self.limits[axis], self.limits[axis]);
+            self.moment[axis] = limited_moment(demanded, self.limits[axis]);
         }
         self.demanded = self.torque_in_field();
     }

@@ -61,7 +61,7 @@ pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
 pub use jet_allocation::AllocatedJets;
 pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEffect, ThrusterGroups};
-pub use jets_state::{JetsState, Pulse};
+pub use jets_state::{JetsState, Pulse, jet_pair};
 pub use magnetorquers::{Magnetorquers, MagnetorquersState};
 pub use per_wheel::PerWheel;
 pub use placement::{ActuatorAuthority, ActuatorPlacement, CommandResponse, LinearDrive};

@@ -43,6 +43,7 @@ pub use envelope_monitor::{EnvelopeWindow, WindowedEnvelope};
 pub use kalman::{FrequencyTracking, Kalman};
 pub use objective_meter::{MotionSample, ObjectiveMeter, ObjectiveWindow};
 pub use rigid_rate::RigidRate;
+pub use sampled::{LinearFilter, linear_filters};
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -147,6 +148,12 @@ pub trait Estimator: Part {
 
     /// Shifts the angle estimates by `by` (rad, about each axis) after a change of the target.
     fn shift_origin(&mut self, _by: [f64; 3]) {}
+
+    /// Returns the known inputs about the axes with which filters have predicted the last sample: of Kalman filters the mean
+    /// reduced moments (rad/s²), of filters of the rigid rate the changes of the rate by pulses (rad/s).
+    fn known_inputs(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
 
     /// Returns true about each axis whose filter has lost lock.
     fn lock_lost(&self) -> [bool; 3] {

@@ -1,6 +1,7 @@
 //! Rigid rate estimator: predicted by the actuator's pulses and a steady torque, corrected slightly by the measured
 //! rates.
 
+use flexsc_flight::rigid_rate::RigidRateFilter;
 use flexsc_numerics::quantity::{Finite, Fraction};
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::axes::PerAxis;
@@ -30,10 +31,10 @@ pub struct RigidRate {
 /// Run-time state of the rigid rate estimator.
 #[derive(Clone, Debug)]
 pub struct RigidRateState {
-    correction: f64,
-    rates: Vec<f64>,
-    /// Rate change per sample due to a steady torque (rad/s).
-    drifts: Vec<f64>,
+    /// Filter about each axis.
+    filters: Vec<RigidRateFilter>,
+    /// Change of the rate about each axis by the pulses before the last sample (rad/s).
+    pushed: [f64; 3],
     applied_pulses: AppliedPulses,
 }
 
@@ -44,26 +45,18 @@ impl RigidRate {
         needs.require(Rule::Filter, is_one, "rate", ONE_NUMBER);
     }
 
+    /// Returns the filter about an axis before the first sample, as flight code has it.
+    pub fn flight_filter(&self, axis: usize) -> RigidRateFilter {
+        RigidRateFilter { correction: self.correction.get(), rate: self.rate.about(axis).get(), drift: 0.0 }
+    }
+
     /// Returns the estimator's state at the start of a run of a body with `axes` axes.
     pub fn start(&self, axes: usize) -> RigidRateState {
         RigidRateState {
-            correction: self.correction.get(),
-            rates: (0..axes).map(|axis| self.rate.about(axis).get()).collect(),
-            drifts: vec![0.0; axes],
+            filters: (0..axes).map(|axis| self.flight_filter(axis)).collect(),
+            pushed: [0.0; 3],
             applied_pulses: AppliedPulses::default(),
         }
-    }
-}
-
-impl RigidRateState {
-    /// Updates the estimate about an axis with the measured rate (rad/s), if any, and the rate change `pushed` (rad/s)
-    /// by the pulses since the last sample. Returns the estimated rigid rate (rad/s).
-    fn step(&mut self, axis: usize, measured: Option<f64>, pushed: f64) -> f64 {
-        let predicted = self.rates[axis] + pushed + self.drifts[axis];
-        let innovation = measured.map_or(0.0, |measured| measured - predicted);
-        self.rates[axis] = predicted + self.correction * innovation;
-        self.drifts[axis] += 0.25 * self.correction * self.correction * innovation;
-        self.rates[axis]
     }
 }
 
@@ -79,11 +72,19 @@ impl Estimator for RigidRateState {
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             let own = pulses.iter().filter(|pulse| pulse.input == axis);
             let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();
-            state_estimate.rate = self.step(axis, context.measured.map(|measured| measured[axis][1]), pushed);
-            if let Some(measured) = context.measured {
-                state_estimate.angle = measured[axis][0];
+            self.pushed[axis] = pushed;
+            let measured = context.measured.map(|measured| measured[axis]);
+            let [angle, rate] = measured.unwrap_or_default();
+            self.filters[axis].take(measured.is_some(), rate, pushed);
+            state_estimate.rate = self.filters[axis].rate;
+            if measured.is_some() {
+                state_estimate.angle = angle;
             }
         }
+    }
+
+    fn known_inputs(&self) -> [f64; 3] {
+        self.pushed
     }
 
     fn copy(&self) -> Box<dyn Estimator> {
@@ -100,11 +101,12 @@ mod tests {
     fn rates_do_not_stay_behind_a_steady_torque() {
         let correction = Fraction::new(0.01).expect("a fraction");
         for change in [1e-6, 0.0, -2e-6] {
-            let mut filter = RigidRate { correction, rate: PerAxis::default() }.start(1);
+            let mut filter = RigidRate { correction, rate: PerAxis::default() }.flight_filter(0);
             let (mut rate, mut behind) = (0.0, 0.0_f64);
             for _ in 0..3000 {
                 rate += change;
-                behind = rate - filter.step(0, Some(rate), 0.0);
+                filter.take(true, rate, 0.0);
+                behind = rate - filter.rate;
             }
             assert!(behind.abs() <= 2e-3 * change.abs(), "{behind:e} after {change:e} a cycle");
         }

@@ -2,6 +2,7 @@
 
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
+use flexsc_flight::kalman::total;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Estimates, ModeEstimate, Report};
@@ -32,6 +33,31 @@ struct AxisEstimator {
     /// Time of the last sample.
     sampled: Option<Instant>,
     innovation: Innovation,
+    /// Mean reduced moment over the period before the last sample (rad/s²).
+    mean_moment: f64,
+}
+
+/// Linear Kalman filter about an axis before its first sample.
+#[derive(Clone, Debug)]
+pub struct LinearFilter {
+    /// Filter.
+    pub filter: KalmanFilter,
+    /// Estimates that the law reads.
+    pub feeds: EstimateOutputs,
+}
+
+/// Returns the linear Kalman filters that the laws read, one about each axis; `None` with another estimator, or if the dominant
+/// mode of a filter may change.
+pub fn linear_filters(known: &EstimatorContext<'_>, seed: Seed) -> Option<Vec<LinearFilter>> {
+    let Some(EstimatorKind::Kalman(spec)) = known.estimator else { return None };
+    let filter = |axis: AxisEstimator| match axis.method {
+        AxisMethod::Filter(filter) if !filter.ranks_by_amplitude() => {
+            Some(LinearFilter { filter: *filter, feeds: axis.feeds })
+        }
+        _ => None,
+    };
+    let all = (!spec.watch_only).then(|| AxisEstimators::new(known, seed)).flatten()?;
+    all.0.into_iter().map(filter).collect()
 }
 
 /// Estimation method of an axis.
@@ -107,6 +133,12 @@ impl Estimator for AxisEstimators {
         }
     }
 
+    fn known_inputs(&self) -> [f64; 3] {
+        let mut moments = [0.0; 3];
+        self.0.iter().zip(&mut moments).for_each(|(track, moment)| *moment = track.mean_moment);
+        moments
+    }
+
     fn lock_lost(&self) -> [bool; 3] {
         let mut lost = [false; 3];
         for (track, lost) in self.0.iter().zip(&mut lost) {
@@ -166,6 +198,7 @@ impl AxisEstimator {
             impulse: 0.0,
             sampled: None,
             innovation: Innovation::default(),
+            mean_moment: 0.0,
         })
     }
 
@@ -204,7 +237,8 @@ impl AxisEstimator {
             AxisMethod::Filter(filter) => {
                 self.innovation = filter.lane_innovation().unwrap_or_else(|| {
                     if let Some(period) = period {
-                        filter.predict(impulse / period);
+                        self.mean_moment = impulse / period;
+                        filter.predict(self.mean_moment);
                     }
                     filter.update(context.measured.map(|measured| measured[axis].into()))
                 });
@@ -213,9 +247,8 @@ impl AxisEstimator {
                 match self.feeds {
                     EstimateOutputs::Modes => {}
                     EstimateOutputs::Hub => {
-                        let sum = |from: usize| {
-                            mean.iter().skip(from).step_by(2).take(1 + self.frequencies.len()).sum()
-                        };
+                        let motion = 2 + 2 * self.frequencies.len();
+                        let sum = |from: usize| total(mean.as_slice(), from, motion);
                         (state_estimate.angle, state_estimate.rate) = (sum(0), sum(1));
                     }
                     EstimateOutputs::Rigid => {

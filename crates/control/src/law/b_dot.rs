@@ -4,6 +4,7 @@
 //! -k (dB/dt) x B, which is -k B² times the part of w perpendicular to the field. Each axis needs only its own
 //! component of the field, as a magnetometer measures it.
 
+use flexsc_flight::b_dot::opposing_moment;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
@@ -82,7 +83,7 @@ impl Law for BDotState {
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
         ControlOutput {
-            command: Command::Moment(-self.gain * state_estimate.field_rate),
+            command: Command::Moment(opposing_moment(self.gain, state_estimate.field_rate)),
             until: Some(now + self.law.period),
             guards: Guards::NONE,
         }

@@ -7,7 +7,7 @@ use flexsc_record::Report;
 use super::axes_laws::AxesLaws;
 use super::mode_laws::ModeLaws;
 use super::{
-    Authority, Command, ControlOutput, DampingStatus, DecisionCause, LawKind, LawState, Phase,
+    Authority, Command, ControlOutput, DampingStatus, DecisionCause, Guards, LawKind, LawState, Phase,
     ReferenceNeeds, Setpoint, ThreeAxisInput, ThreeAxisOutput,
 };
 use crate::custom::PartError;
@@ -42,6 +42,8 @@ pub struct AxisDecision {
     pub estimate: StateEstimate,
     /// Output.
     pub output: ControlOutput,
+    /// Speeds of the wheels that a law about three axes together reads (rad/s); empty of other laws.
+    pub wheel_speeds: Vec<f64>,
 }
 
 impl Part for Controllers {
@@ -147,6 +149,13 @@ impl Controllers {
             let input = ThreeAxisInput { setpoints, estimates: state_estimates, wheel_speeds };
             *output = law.decide(now, cause, &input);
             self.until = output.until;
+            if let Some(trace) = &mut self.trace {
+                for (axis, (goal, command)) in setpoints.into_iter().zip(output.commands).enumerate() {
+                    let output = ControlOutput { command, until: output.until, guards: Guards::NONE };
+                    let (estimate, wheel_speeds) = (state_estimates[axis].clone(), wheel_speeds());
+                    trace.push(AxisDecision { axis, cause, goal, estimate, output, wheel_speeds });
+                }
+            }
             return Some(reported(cause));
         }
         let mut first = None;
@@ -165,8 +174,8 @@ impl Controllers {
                 let goal = goal(axis, held.law.reference_needs());
                 held.hold = held.law.decide(now, cause, &goal, state_estimate);
                 if let Some(trace) = &mut self.trace {
-                    let (estimate, output) = (state_estimate.clone(), held.hold);
-                    trace.push(AxisDecision { axis, cause, goal, estimate, output });
+                    let (estimate, output, wheel_speeds) = (state_estimate.clone(), held.hold, Vec::new());
+                    trace.push(AxisDecision { axis, cause, goal, estimate, output, wheel_speeds });
                 }
                 first = first.or(Some(reported(cause)));
             }

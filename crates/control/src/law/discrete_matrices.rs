@@ -34,6 +34,16 @@ pub fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix
 }
 
 impl DiscreteMatrices {
+    /// Returns matrices of zeros for these numbers of states, inputs and outputs.
+    pub fn zeros(order: usize, inputs: usize, outputs: usize) -> Self {
+        Self {
+            a: DMatrix::zeros(order, order),
+            b: DMatrix::zeros(order, inputs),
+            c: DMatrix::zeros(outputs, order),
+            d: DMatrix::zeros(outputs, inputs),
+        }
+    }
+
     /// Discretises the matrices for samples `h` (s) apart, with the input held between them.
     pub fn held(self, h: f64) -> Self {
         let (order, inputs) = (self.a.nrows(), self.b.ncols());

@@ -5,7 +5,7 @@ use flexsc_numerics::attitude::tensor;
 use flexsc_numerics::time::Span;
 use nalgebra::{DMatrix, Matrix3, dmatrix};
 
-use super::three_axis_state_space::CompensatorInput;
+use super::compensator_input::CompensatorInput;
 use super::{AttitudeLaw, Differentiation, LawKind, OutputQuantity, Pd, StateSpace};
 use crate::linear_block::{BlockState, LinearBlock};
 

@@ -15,10 +15,11 @@ use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::compensator_input::CompensatorInput;
 use super::discrete_matrices::{DiscreteMatrices, matrix};
 use super::one_axis_state_space::OneAxisStateSpace;
 use super::output_quantity::OutputQuantity;
-use super::three_axis_state_space::{CompensatorInput, ThreeAxisStateSpace, states_topic};
+use super::three_axis_state_space::{ThreeAxisStateSpace, states_topic};
 use super::{
     Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable,
 };
@@ -286,42 +287,22 @@ impl LawSpec for StateSpace {
     }
 
     fn start(&self, _: &Authority) -> Box<dyn Law> {
-        // Invalid matrices were rejected before.
-        let none = || DiscreteMatrices {
-            a: DMatrix::zeros(0, 0),
-            b: DMatrix::zeros(0, 1),
-            c: DMatrix::zeros(1, 0),
-            d: DMatrix::zeros(1, 1),
-        };
-        let matrices = self.sampled().unwrap_or_else(|_| none());
         Box::new(OneAxisStateSpace {
-            state: DMatrix::zeros(matrices.a.nrows(), 1),
+            compensator: self.flight_law(),
             period: self.period,
-            command: self.command,
-            gain: self.gain.get(),
             tuned: f64::NAN,
-            limit: self.limit.map_or(f64::INFINITY, Positive::get),
             track: self.track,
             active: false,
-            matrices,
         })
     }
 
     fn start_three_axis(&self, _: &[Authority]) -> Option<Box<dyn ThreeAxisLaw>> {
-        // Invalid names and matrices were rejected before.
-        let inputs = self.named_inputs().ok().filter(|_| self.is_three_axis())?;
-        let (outputs, matrices) = (self.named_outputs().ok()?, self.sampled().ok()?);
+        let compensator = self.is_three_axis().then(|| self.flight_law())?;
         Some(Box::new(ThreeAxisStateSpace {
-            state: DMatrix::zeros(matrices.a.nrows(), 1),
-            inputs,
-            outputs,
+            topic: states_topic(compensator.state.len().max(self.logged)),
+            compensator,
             period: self.period,
-            command: self.command,
-            gain: self.gain.get(),
             tuned: f64::NAN,
-            limit: self.limit.map_or(f64::INFINITY, Positive::get),
-            topic: states_topic(matrices.a.nrows().max(self.logged)),
-            matrices,
         }))
     }
 

@@ -1,5 +1,6 @@
 //! Inputs and outputs of the control system at each of its calls, for replays by flight code.
 
+use flexsc_control::actuator::PulsedActuator;
 use flexsc_control::law::AxisDecision;
 use flexsc_control::sensor::{Orientation, Reading};
 use flexsc_numerics::attitude::{Vector, rotation};
@@ -26,6 +27,13 @@ pub struct SensorSample {
     pub readings: Vec<Option<Reading>>,
     /// True attitude; `None` of a body with one axis.
     pub attitude: Option<Quaternion<f64>>,
+    /// Measured angle (rad) and rate (rad/s) about each axis; `None` without a measurement.
+    pub measured: Option<Vec<[f64; 2]>>,
+    /// Known inputs about the axes with which filters have predicted the sample: of Kalman filters the mean reduced moments
+    /// (rad/s²), of filters of the rigid rate the changes of the rate by pulses (rad/s).
+    pub known_inputs: [f64; 3],
+    /// Shift of the angles (rad) by a target that began since the last call; `None` without one.
+    pub shift: Option<[f64; 3]>,
 }
 
 /// Decision of the laws at one instant.
@@ -41,8 +49,12 @@ pub struct ControlDecision {
     pub stored_momentum: [f64; 3],
     /// Torque that the actuator is asked for about each axis (N m).
     pub demanded_torque: [f64; 3],
+    /// Signed on-times about the axes (s) of jets in groups that fire once in a period of the law; `None` of other actuators.
+    pub on_times: Option<[f64; 3]>,
     /// Torque of each wheel on its rotor after the command (N m); empty without wheels.
     pub wheel_torques: Vec<f64>,
+    /// Shift of the angles (rad) by a target that began since the last call; `None` without one.
+    pub shift: Option<[f64; 3]>,
 }
 
 impl Simulation {
@@ -58,7 +70,8 @@ impl Simulation {
     }
 
     /// Records a sample that was just taken.
-    pub(super) fn trace_sample(&mut self, now: Instant) {
+    pub(super) fn trace_sample(&mut self, now: Instant, is_measured: bool) {
+        let shift = self.estimation.last_shift.take();
         let Some(trace) = &mut self.laws.trace else { return };
         let origin = self.estimation.origin();
         let attitude = if let Orientation::Attitude(target) = origin {
@@ -68,7 +81,16 @@ impl Simulation {
             None
         };
         let readings = self.sensors.new_readings.clone();
-        trace.push(ControlCall::Sample(SensorSample { now, readings, attitude }));
+        let measured = is_measured.then(|| self.sensors.measured.clone());
+        let known_inputs = self.estimation.estimator.known_inputs();
+        trace.push(ControlCall::Sample(SensorSample {
+            now,
+            readings,
+            attitude,
+            measured,
+            known_inputs,
+            shift,
+        }));
     }
 
     /// Records the decisions that the actuator has just taken.
@@ -77,6 +99,7 @@ impl Simulation {
         if axes.is_empty() {
             return;
         }
+        let shift = self.estimation.last_shift.take();
         let (actuator, rigid) = (&self.loads.actuator, self.plant.truth().rigid_rate);
         let abilities = actuator.capabilities();
         let wheels = abilities.momentum.map(|storage| storage.wheels(now, rigid)).unwrap_or_default();
@@ -91,6 +114,8 @@ impl Simulation {
             stored_momentum: abilities.stored_momentum(now),
             demanded_torque,
             wheel_torques: wheels.iter().map(|wheel| wheel.torque_nm).collect(),
+            on_times: abilities.pulses.and_then(PulsedActuator::commanded_on_times),
+            shift,
         };
         if let Some(trace) = &mut self.laws.trace {
             trace.push(ControlCall::Decision(decision));

@@ -33,6 +33,8 @@ pub struct Estimation {
     origin: Orientation,
     next_origin_change: Option<Instant>,
     pub monitor: Option<WindowedEnvelope>,
+    /// Shift of the angles (rad) by the last change of their origin, until it is taken.
+    pub last_shift: Option<[f64; 3]>,
 }
 
 impl Estimation {
@@ -46,6 +48,7 @@ impl Estimation {
             origin: guidance.origin(Instant::START),
             next_origin_change: guidance.next_change(Instant::START),
             monitor: scenario.monitor(seed),
+            last_shift: None,
         }
     }
 
@@ -88,6 +91,7 @@ impl Estimation {
             estimate.angle += by[axis];
         }
         self.origin = origin;
+        self.last_shift = Some(by);
         self.next_origin_change = guidance.next_change(now);
     }
 

@@ -221,7 +221,7 @@ impl Simulation {
         let measured = self.sensors.sample(now, &self.plant, self.estimation.origin());
         let lead_time = self.laws.lead_time();
         self.estimation.update(now, measured, &self.sensors, &self.plant, &self.loads, lead_time);
-        self.trace_sample(now);
+        self.trace_sample(now, measured);
         let (run, recorder) = self.view();
         Ok(recorder.record_estimates(&run, record)?)
     }

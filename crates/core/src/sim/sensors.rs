@@ -3,7 +3,9 @@
 use flexsc_control::custom::PartError;
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{Orientation, Reading, SensorKind, Truth};
+use flexsc_flight::b_dot::FieldRate;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, Report};
@@ -27,9 +29,9 @@ pub struct Sensors {
     pub reading: Option<Reading>,
     /// Latest measured angle (rad) and rate (rad/s) about each axis.
     pub measured: Vec<[f64; 2]>,
-    /// Instant and value of the last measured magnetic field in body axes (T).
-    field: Option<(Instant, Vector)>,
-    /// Rate of change of `field` (T/s); `None` before the second sample.
+    /// Last measured magnetic field with its rate of change.
+    field: FieldRate,
+    /// Rate of change of the measured magnetic field in body axes (T/s); `None` before the second sample.
     pub field_rate: Option<Vector>,
     /// Next sampling instant of all sensors; `None` with a continuous sensor.
     next: Option<Instant>,
@@ -71,7 +73,7 @@ impl Sensors {
             new_readings: vec![None; sensors.len()],
             reading: None,
             measured: vec![[0.0; 2]; axes],
-            field: None,
+            field: FieldRate::NONE,
             field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             schedules: sensors,
@@ -192,9 +194,8 @@ impl Sensors {
             any = true;
             self.last_readings[index] = now;
             if let Some(sight) = reading.sight.filter(|_| due.is_field_source) {
-                let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
-                self.field_rate =
-                    before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());
+                self.field.take(now.ticks(), &to_vector3(&sight.vector));
+                self.field_rate = self.field.has_rate.then(|| from_vector3(&self.field.rate));
             }
             let rates = reading.rate.or_else(|| due.differentiated_rates(now, reading, &truth));
             if due.provides_attitude {
@@ -243,7 +244,7 @@ impl Sensors {
 
     /// Returns the last measured magnetic field in body axes (T).
     pub fn measured_field(&self) -> Option<Vector> {
-        self.field.map(|(_, field)| field)
+        self.field.has_field.then(|| from_vector3(&self.field.field))
     }
 
     /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
@@ -254,8 +255,8 @@ impl Sensors {
     /// Returns the magnetic field in body axes for the actuator (T): the last measured one, or the true one if no sensor
     /// measures it; `None` without a field.
     pub fn magnetic_field(&self, truth: &Truth) -> Option<Vector> {
-        let measured = self.field.map(|(_, field)| field);
-        measured.or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.environment.field?)))
+        self.measured_field()
+            .or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.environment.field?)))
     }
 }
 

@@ -1,7 +1,11 @@
 //! Control system of a scenario: its plain laws about each axis, and what distributes their commands.
 
 mod attitude_unit;
+mod b_dot;
 mod channel;
+mod kalman_unit;
+mod laws_of_axes;
+mod rate_unit;
 mod relays;
 mod sampled_laws;
 
@@ -12,9 +16,13 @@ use flexsc_core::control::law::LawKind;
 use flexsc_flight::ticks::Ticks;
 
 pub use attitude_unit::{AttitudeUnit, Corrector};
+pub use b_dot::BDotLaws;
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
+pub use kalman_unit::{AxisFilter, KalmanUnit};
+pub use laws_of_axes::{LawsOfAxes, WheelDistribution};
+pub use rate_unit::RateUnit;
 pub use relays::Relays;
-pub use sampled_laws::{LawsOfAxes, SampledLaws, WheelDistribution};
+pub use sampled_laws::SampledLaws;
 
 /// Reason for which a scenario's control system cannot be exported.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,6 +55,8 @@ pub enum ControlSystem {
     Relays(Relays),
     /// Laws that decide at their period.
     Sampled(Box<SampledLaws>),
+    /// B-dot laws, which read the change of the magnetic field.
+    BDot(BDotLaws),
 }
 
 impl ControlSystem {
@@ -69,6 +79,7 @@ impl ControlSystem {
         }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
+            Some(LawKind::BDot(_)) => Ok(Self::BDot(BDotLaws::new(scenario, &laws)?)),
             _ => Ok(Self::Sampled(Box::new(SampledLaws::new(scenario, &laws)?))),
         }
     }
@@ -78,6 +89,7 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.calls(),
             Self::Sampled(laws) => laws.calls(),
+            Self::BDot(laws) => laws.calls(),
         }
     }
 
@@ -86,6 +98,7 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.call(call, now, inputs),
             Self::Sampled(laws) => laws.call(call, now, inputs),
+            Self::BDot(laws) => laws.call(call, now, inputs),
         }
     }
 
@@ -94,6 +107,7 @@ impl ControlSystem {
         match self {
             Self::Relays(_) => 0.1,
             Self::Sampled(laws) => laws.period,
+            Self::BDot(laws) => laws.period,
         }
     }
 }

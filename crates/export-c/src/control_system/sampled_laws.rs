@@ -1,48 +1,25 @@
 //! Laws that decide at their period: estimates and references in, torques about the axes and of wheels out.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::actuator::ActuatorKind;
-use flexsc_core::control::law::{Authority, LawKind};
+use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::flight_types::to_matrix3;
-use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::numerics::time::Span;
 use flexsc_flight::active_damping::ElasticRateEstimate;
-use flexsc_flight::attitude_law::AttitudeFeedback;
 use flexsc_flight::axis_motion::{AxisMotion, AxisReference, total_angle};
-use flexsc_flight::biquad::BiquadFilter;
-use flexsc_flight::gain_schedule::SchedulePoint;
+use flexsc_flight::compensator::CompensatorQuantity;
+use flexsc_flight::jet_pulses::JetPair;
 use flexsc_flight::matrix3::Matrix3;
-use flexsc_flight::pd::PdLaw;
 use flexsc_flight::phase_plane::PhasePlaneLaw;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::torque_distribution;
 use flexsc_flight::vector3::Vector3;
-use flexsc_flight::wheel_allocation::{AllocatedWheel, allocate, limit_torques};
+use flexsc_flight::wheel_allocation::{allocate, limit_torques};
 
 use super::attitude_unit::{AttitudeUnit, quaternion};
-use super::{CallLayout, Channel, NotExportable, WordReader, all_of_kind};
-
-/// Laws about the axes, all of one kind.
-#[derive(Clone, Debug)]
-pub enum LawsOfAxes {
-    /// PD laws, each with the points of the gain of its extra loop.
-    Pd(Vec<(PdLaw, Vec<SchedulePoint>)>),
-    /// Phase-plane laws, and the largest number of modes that active damping reads about an axis.
-    PhasePlane(Vec<PhasePlaneLaw>, usize),
-    /// Attitude laws, each with its filters.
-    Attitude(Vec<(AttitudeFeedback, Vec<BiquadFilter>)>),
-}
-
-/// WheelDistribution of torques to reaction wheels.
-#[derive(Clone, Debug)]
-pub struct WheelDistribution {
-    /// Wheels.
-    pub wheels: Vec<AllocatedWheel>,
-    /// Largest torque of a wheel (N m).
-    pub limit: f64,
-    /// True if the largest torque is minimised.
-    pub is_least_largest: bool,
-}
+use super::kalman_unit::KalmanUnit;
+use super::laws_of_axes::{LawsOfAxes, WheelDistribution, compensator_commands, jets, laws_of_axes, wheels};
+use super::rate_unit::RateUnit;
+use super::{CallLayout, Channel, NotExportable, WordReader};
 
 /// Laws of a scenario that decide at their period.
 #[derive(Clone, Debug)]
@@ -55,8 +32,14 @@ pub struct SampledLaws {
     pub inertia: Matrix3,
     /// Wheels that give the torque about three axes, if the actuator consists of them.
     pub wheels: Option<WheelDistribution>,
+    /// Groups of jets that give the commands about three axes, if the actuator consists of them.
+    pub jets: Option<Vec<JetPair>>,
     /// Attitude filter that the laws read; without one the estimates are inputs.
     pub estimator: Option<AttitudeUnit>,
+    /// Kalman filters that the laws read; without them and an attitude filter the estimates are inputs.
+    pub filter: Option<KalmanUnit>,
+    /// Filters of the rigid rates that the laws read.
+    pub rate_filter: Option<RateUnit>,
 }
 
 impl SampledLaws {
@@ -64,17 +47,22 @@ impl SampledLaws {
     pub(super) fn new(scenario: &Scenario, laws: &[&LawKind]) -> Result<Self, NotExportable> {
         let authorities = &scenario.study.authorities;
         let of_axes = laws_of_axes(laws, authorities, scenario)?;
-        let periods: Vec<f64> = laws.iter().filter_map(|law| law.period()).map(Span::seconds).collect();
-        let Some(period) = periods.first().copied() else {
+        let periods: Vec<Span> = laws.iter().filter_map(|law| law.period()).collect();
+        let Some(cycle) = periods.first().copied() else {
             return Err(NotExportable::new("law", "has no period"));
         };
-        if periods.iter().any(|other| *other != period) {
+        if periods.iter().any(|other| *other != cycle) {
             let reason = "has laws with different periods: give them one period";
             return Err(NotExportable::new("law.per_axis", reason));
         }
         let inertia = to_matrix3(scenario.study.distribution(scenario).inertia());
         let estimator = AttitudeUnit::new(scenario).filter(|_| laws.len() == 3);
-        Ok(Self { period, laws: of_axes, inertia, wheels: wheels(scenario), estimator })
+        let (period, jets) = (cycle.seconds(), jets(scenario, cycle));
+        let (wheels, rate_filter) = (wheels(scenario), RateUnit::new(scenario, laws.len()));
+        let mut laws =
+            Self { period, laws: of_axes, inertia, wheels, jets, estimator, filter: None, rate_filter };
+        laws.filter = KalmanUnit::new(scenario, laws.reads_mode());
+        Ok(laws)
     }
 
     /// Returns the number of axes.
@@ -83,7 +71,32 @@ impl SampledLaws {
             LawsOfAxes::Pd(laws) => laws.len(),
             LawsOfAxes::PhasePlane(laws, _) => laws.len(),
             LawsOfAxes::Attitude(laws) => laws.len(),
+            LawsOfAxes::StateSpace(laws) => {
+                laws.first().map_or(0, |law| if law.sources.is_empty() { laws.len() } else { 3 })
+            }
         }
+    }
+
+    /// Returns true if the laws command accelerations.
+    pub fn is_acceleration(&self) -> bool {
+        match &self.laws {
+            LawsOfAxes::Attitude(_) => true,
+            LawsOfAxes::StateSpace(laws) => laws.iter().any(|law| law.is_acceleration),
+            LawsOfAxes::Pd(_) | LawsOfAxes::PhasePlane(..) => false,
+        }
+    }
+
+    /// Returns true if one compensator acts about three axes together.
+    pub fn is_together(&self) -> bool {
+        matches!(&self.laws, LawsOfAxes::StateSpace(laws) if laws.iter().any(|law| !law.sources.is_empty()))
+    }
+
+    /// Returns the number of wheels whose speeds a compensator reads.
+    pub fn speed_count(&self) -> usize {
+        let LawsOfAxes::StateSpace(laws) = &self.laws else { return 0 };
+        let sources = laws.iter().flat_map(|law| &law.sources);
+        let speeds = sources.filter(|source| source.quantity == CompensatorQuantity::WheelSpeed);
+        speeds.map(|source| source.index + 1).max().unwrap_or(0)
     }
 
     /// Returns true if the extra loop on the dominant mode acts about any axis.
@@ -99,16 +112,26 @@ impl SampledLaws {
     /// Returns the functions.
     pub(super) fn calls(&self) -> Vec<CallLayout> {
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
-        estimator.chain([self.layout()]).collect()
+        let filter = self.filter.iter().flat_map(KalmanUnit::calls);
+        let rates = self.rate_filter.iter().map(RateUnit::layout);
+        estimator.chain(filter).chain(rates).chain([self.layout()]).collect()
     }
 
     /// Returns the index of the step among the functions.
     pub fn step_index(&self) -> usize {
-        if self.estimator.is_some() { 2 } else { 0 }
+        let filter = self.filter.as_ref().map_or(0, KalmanUnit::call_count);
+        if self.estimator.is_some() { 2 } else { filter + usize::from(self.rate_filter.is_some()) }
     }
 
     /// Calls the function with this index, and returns the words of its outputs.
     pub(super) fn call(&mut self, call: usize, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        let step = self.step_index();
+        if let Some(filter) = self.filter.as_mut().filter(|_| call < step) {
+            return filter.call(call, inputs);
+        }
+        if let Some(filter) = self.rate_filter.as_mut().filter(|_| call < step) {
+            return filter.sample(inputs);
+        }
         match (&mut self.estimator, call) {
             (Some(estimator), 0) => estimator.start(now, inputs),
             (Some(estimator), 1) => estimator.sample(now, inputs),
@@ -121,13 +144,15 @@ impl SampledLaws {
         let axes = self.axis_count();
         let mut inputs = if self.estimator.is_some() {
             vec![Channel::real("target_attitude", "Target attitude: quaternion w, x, y, z", 4, 1.0)]
+        } else if self.filter.is_some() {
+            Vec::new()
         } else {
-            vec![
-                Channel::real("angle", "Estimated angle from the target about each axis (rad)", axes, 1e-2),
-                Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1e-3),
-            ]
+            let about = "Estimated angle from the target about each axis (rad)";
+            let rate = Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1e-3);
+            let rate = Some(rate).filter(|_| self.rate_filter.is_none());
+            [Channel::real("angle", about, axes, 1e-2)].into_iter().chain(rate).collect()
         };
-        if self.reads_mode() {
+        if self.reads_mode() && self.filter.is_none() {
             inputs.push(Channel::real("displacement", "Displacement of the dominant mode (rad)", axes, 1e-3));
             inputs.push(Channel::real("displacement_rate", "Rate of the displacement (rad/s)", axes, 1e-3));
             inputs.push(Channel::real("frequency", "Frequency of the dominant mode (rad/s)", axes, 2.0));
@@ -153,28 +178,21 @@ impl SampledLaws {
         inputs.push(Channel::real("reference_angle", "Reference: angle from the target (rad)", axes, 1e-2));
         inputs.push(Channel::real("reference_rate", "Reference: rate (rad/s)", axes, 1e-3));
         let mut outputs = Vec::new();
-        match &self.laws {
-            LawsOfAxes::Pd(_) => {}
-            LawsOfAxes::PhasePlane(..) => {
-                outputs.push(Channel::real(
-                    "rate_change",
-                    "Change of the rate by pulses about each axis (rad/s)",
-                    axes,
-                    1.0,
-                ));
-            }
-            LawsOfAxes::Attitude(_) => {
-                let about = "Reference: acceleration (rad/s\u{b2})";
-                inputs.push(Channel::real("reference_acceleration", about, axes, 1e-4));
-                let about = "Momentum stored in the rotors, body axes (N m s)";
-                inputs.push(Channel::real("stored_momentum", about, 3, 1.0));
-                outputs.push(Channel::real(
-                    "acceleration",
-                    "Acceleration about each axis (rad/s\u{b2})",
-                    axes,
-                    1.0,
-                ));
-            }
+        if matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
+            let about = "Change of the rate by pulses about each axis (rad/s)";
+            outputs.push(Channel::real("rate_change", about, axes, 1.0));
+        }
+        if self.is_acceleration() {
+            let about = "Reference: acceleration (rad/s\u{b2})";
+            inputs.push(Channel::real("reference_acceleration", about, axes, 1e-4));
+            let about = "Momentum stored in the rotors, body axes (N m s)";
+            inputs.push(Channel::real("stored_momentum", about, 3, 1.0));
+            let about = "Acceleration about each axis (rad/s\u{b2})";
+            outputs.push(Channel::real("acceleration", about, axes, 1.0));
+        }
+        if self.speed_count() > 0 {
+            let about = "Speed of each wheel (rad/s)";
+            inputs.push(Channel::real("wheel_speed", about, self.speed_count(), 100.0));
         }
         if !matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
             outputs.push(Channel::real("torque", "Torque about each axis (N m)", axes, 1.0));
@@ -183,28 +201,44 @@ impl SampledLaws {
             let about = "Torque of the motor of each wheel on its rotor (N m)";
             outputs.push(Channel::real("wheel_torque", about, wheels.wheels.len(), 1.0));
         }
+        if self.jets.is_some() {
+            let about = "Time for which the jets about each axis fire (s), negative for those of the negative direction";
+            outputs.push(Channel::real("on_time", about, axes, 1.0));
+        }
         let about = "Decides on the commands of a period.";
         CallLayout { name: "step", about, is_start: false, inputs, outputs }
     }
 
-    /// Decides on the commands of a period, and returns the words of the outputs.
-    fn step(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let axes = self.axis_count();
-        let mut words = WordReader::new(inputs);
-        let (reads_mode, modes) = (self.reads_mode(), self.mode_count());
+    /// Reads the estimated motion about each axis from the estimator or from the inputs.
+    fn motions(&self, now: Ticks, words: &mut WordReader<'_>) -> Vec<AxisMotion> {
+        let (axes, reads_mode) = (self.axis_count(), self.reads_mode());
         let mut motions = vec![AxisMotion::default(); axes];
         let set = |values: Vec<f64>, motions: &mut [AxisMotion], member: fn(&mut AxisMotion) -> &mut f64| {
             motions.iter_mut().zip(values).for_each(|(motion, value)| *member(motion) = value);
         };
         if let Some(unit) = &self.estimator {
-            let target = quaternion(&mut words);
+            let target = quaternion(words);
             let angle = target.rotation_to(&unit.estimator.attitude(now, &unit.entries));
             let rate = unit.estimator.rate(&unit.entries);
             set(vec![angle.x, angle.y, angle.z], &mut motions, |motion| &mut motion.angle);
             set(vec![rate.x, rate.y, rate.z], &mut motions, |motion| &mut motion.rate);
+        } else if let Some(unit) = &self.filter {
+            for (motion, axis) in motions.iter_mut().zip(&unit.axes) {
+                (motion.angle, motion.rate) = (axis.estimate.angle, axis.estimate.rate);
+                if reads_mode {
+                    let estimate = &axis.estimate;
+                    (motion.displacement, motion.displacement_rate) =
+                        (estimate.displacement, estimate.displacement_rate);
+                    motion.frequency = axis.frequency;
+                }
+            }
         } else {
             set(words.list(axes), &mut motions, |motion| &mut motion.angle);
-            set(words.list(axes), &mut motions, |motion| &mut motion.rate);
+            let rates = match &self.rate_filter {
+                Some(unit) => unit.axes.iter().map(|filter| filter.rate).collect(),
+                None => words.list(axes),
+            };
+            set(rates, &mut motions, |motion| &mut motion.rate);
         }
         if let [roll, pitch, yaw] = &motions[..] {
             let total = total_angle(roll.angle, pitch.angle, yaw.angle);
@@ -212,7 +246,7 @@ impl SampledLaws {
                 motion.total_angle = total;
             }
         }
-        if reads_mode {
+        if reads_mode && self.filter.is_none() {
             set(words.list(axes), &mut motions, |motion| &mut motion.displacement);
             set(words.list(axes), &mut motions, |motion| &mut motion.displacement_rate);
             set(words.list(axes), &mut motions, |motion| &mut motion.frequency);
@@ -220,6 +254,14 @@ impl SampledLaws {
         if matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
             set(words.list(axes), &mut motions, |motion| &mut motion.queued_rate);
         }
+        motions
+    }
+
+    /// Decides on the commands of a period, and returns the words of the outputs.
+    fn step(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
+        let (axes, modes) = (self.axis_count(), self.mode_count());
+        let mut words = WordReader::new(inputs);
+        let motions = self.motions(now, &mut words);
         let elastic = (words.list(axes * modes), words.list(axes * modes), words.list(axes * modes));
         let trusted: Vec<bool> = (0..if modes > 0 { axes } else { 0 }).map(|_| words.flag()).collect();
         let mut references = vec![AxisReference::default(); axes];
@@ -228,15 +270,21 @@ impl SampledLaws {
         };
         set(words.list(axes), |reference| &mut reference.angle);
         set(words.list(axes), |reference| &mut reference.rate);
-        let mut outputs = Vec::new();
-        let torque = match &mut self.laws {
+        let mut stored = Vector3::ZERO;
+        if self.is_acceleration() {
+            set(words.list(axes), |reference| &mut reference.acceleration);
+            let [x, y, z] = words.reals();
+            stored = Vector3 { x, y, z };
+        }
+        let speeds = words.list(self.speed_count());
+        let commands: Vec<f64> = match &mut self.laws {
             LawsOfAxes::Pd(laws) => {
                 let laws = laws.iter_mut().zip(&motions).zip(&references);
                 laws.map(|(((law, schedule), motion), reference)| law.step(motion, reference, schedule))
                     .collect()
             }
             LawsOfAxes::PhasePlane(laws, _) => {
-                for (axis, law) in laws.iter_mut().enumerate() {
+                let about = |(axis, law): (usize, &mut PhasePlaneLaw)| {
                     let mode = |mode: usize| {
                         let index = axis * modes + mode;
                         let (rate, frequency, influence) =
@@ -245,90 +293,43 @@ impl SampledLaws {
                     };
                     let own: Vec<ElasticRateEstimate> = (0..modes).map(mode).collect();
                     let is_trusted = trusted.get(axis).copied().unwrap_or(false);
-                    outputs.push(law.step(&motions[axis], &references[axis], &own, is_trusted));
-                }
-                Vec::new()
+                    law.step(&motions[axis], &references[axis], &own, is_trusted)
+                };
+                laws.iter_mut().enumerate().map(about).collect()
             }
             LawsOfAxes::Attitude(laws) => {
-                set(words.list(axes), |reference| &mut reference.acceleration);
-                let [x, y, z] = words.reals();
-                let stored = Vector3 { x, y, z };
-                let (mut acceleration, mut rate) = ([0.0; 3], [0.0; 3]);
-                for (axis, (law, filters)) in laws.iter_mut().enumerate() {
-                    acceleration[axis] = law.step(&motions[axis], &references[axis], filters);
-                    rate[axis] = motions[axis].rate;
-                }
-                outputs.extend_from_slice(&acceleration[..axes]);
-                let [acceleration, rate] = [acceleration, rate].map(|[x, y, z]| Vector3 { x, y, z });
-                let torque = torque_distribution::torque(&self.inertia, &acceleration, &rate, &stored);
-                [torque.x, torque.y, torque.z][..axes].to_vec()
+                let laws = laws.iter_mut().zip(&motions).zip(&references);
+                laws.map(|(((law, filters), motion), reference)| law.step(motion, reference, filters))
+                    .collect()
             }
+            LawsOfAxes::StateSpace(laws) => compensator_commands(laws, &motions, &references, &speeds),
         };
-        outputs.extend_from_slice(&torque);
+        let mut outputs = commands.clone();
+        let mut torque = commands;
+        if self.is_acceleration() {
+            let vector = |component: &dyn Fn(usize) -> f64| {
+                let [x, y, z] = [0, 1, 2].map(|axis| if axis < axes { component(axis) } else { 0.0 });
+                Vector3 { x, y, z }
+            };
+            let (acceleration, rate) = (vector(&|axis| torque[axis]), vector(&|axis| motions[axis].rate));
+            let of_axes = torque_distribution::torque(&self.inertia, &acceleration, &rate, &stored);
+            torque = [of_axes.x, of_axes.y, of_axes.z][..axes].to_vec();
+            outputs.extend_from_slice(&torque);
+        }
         if let (Some(own), [x, y, z]) = (&mut self.wheels, &torque[..]) {
             let demanded = Vector3::ZERO.minus(&Vector3 { x: *x, y: *y, z: *z });
             allocate(&mut own.wheels, &demanded, own.is_least_largest);
             limit_torques(&mut own.wheels, own.limit);
             outputs.extend(own.wheels.iter().map(|wheel| wheel.torque));
         }
+        let is_change = matches!(self.laws, LawsOfAxes::PhasePlane(..));
+        for (pair, demand) in self.jets.iter().flatten().zip(&torque) {
+            outputs.push(if is_change {
+                pair.on_time_of_change(*demand)
+            } else {
+                pair.on_time_of_torque(*demand)
+            });
+        }
         outputs.into_iter().map(f64::to_bits).collect()
     }
-}
-
-/// Returns the laws about the axes.
-fn laws_of_axes(
-    laws: &[&LawKind],
-    authorities: &[Authority],
-    scenario: &Scenario,
-) -> Result<LawsOfAxes, NotExportable> {
-    let about = |axis: usize| &authorities[axis];
-    match laws.first() {
-        Some(LawKind::Pd(_)) => Ok(LawsOfAxes::Pd(all_of_kind(laws, |law| {
-            if let LawKind::Pd(law) = law { Some((law.flight_law(), law.schedule())) } else { None }
-        })?)),
-        Some(LawKind::PhasePlane(_)) => {
-            let all =
-                all_of_kind(
-                    laws,
-                    |law| if let LawKind::PhasePlane(law) = law { Some(law.clone()) } else { None },
-                )?;
-            let has_damping = all.iter().any(|law| law.damping.is_some());
-            let observers = scenario.study.adaptive.as_deref().filter(|_| has_damping);
-            let modes = observers
-                .and_then(|design| design.axes.iter().map(|axis| axis.start.len()).max())
-                .unwrap_or(0);
-            let each = all.iter().enumerate().map(|(axis, law)| law.flight_law(about(axis)));
-            Ok(LawsOfAxes::PhasePlane(each.collect(), modes))
-        }
-        Some(LawKind::Attitude(_)) => {
-            let all =
-                all_of_kind(
-                    laws,
-                    |law| if let LawKind::Attitude(law) = law { Some(law.clone()) } else { None },
-                )?;
-            let each =
-                all.iter().enumerate().map(|(axis, law)| (law.flight_law(about(axis)), law.flight_filters()));
-            Ok(LawsOfAxes::Attitude(each.collect()))
-        }
-        law => {
-            let kind = law.map_or("open", |law| law.kind());
-            let reason = "has no code for flight: the laws `relay`, `pd`, `phase_plane` and `attitude` have";
-            Err(NotExportable::new(format!("law.{kind}"), reason))
-        }
-    }
-}
-
-/// Returns the distribution of torques to the wheels of a scenario; `None` if other actuators act too, or if the drives add
-/// torques of their own.
-fn wheels(scenario: &Scenario) -> Option<WheelDistribution> {
-    let ActuatorKind::Wheels(wheels) = scenario.actuator.only_actuator()? else { return None };
-    let allocation = scenario.study.wheels.as_ref()?;
-    if wheels.speed_bias.is_some() || wheels.compensation.is_some() || wheels.unloading.is_some() {
-        return None;
-    }
-    Some(WheelDistribution {
-        wheels: allocation.flight_wheels().to_vec(),
-        limit: wheels.torque.map_or(f64::INFINITY, Positive::get),
-        is_least_largest: allocation.is_least_largest(),
-    })
 }

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use flexsc_flight::gain_schedule::SchedulePoint;
 
 use super::initialiser::initialiser;
-use super::signature::signature;
-use super::{Plan, estimator_calls};
+use super::signature::{about, signature};
+use super::{Plan, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, rate_calls};
 use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
 /// Names of the axes of a body with three.
@@ -18,13 +18,9 @@ pub fn functions(plan: &Plan<'_>) -> String {
     match plan.system {
         ControlSystem::Relays(relays) => of_relays(plan, relays, &mut text),
         ControlSystem::Sampled(laws) => of_laws(plan, laws, &mut text),
+        ControlSystem::BDot(laws) => b_dot_calls::functions(plan, laws, &mut text),
     }
     text
-}
-
-/// Returns a member of the inputs, outputs or state about an axis.
-fn about(name: &str, axis: usize, axes: usize) -> String {
-    if axes == 1 { name.to_owned() } else { format!("{name}[{axis}]") }
 }
 
 /// Writes the functions of relays.
@@ -73,6 +69,9 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.estimator {
         estimator_calls::start(plan, unit, text);
     }
+    if let Some(unit) = &laws.filter {
+        kalman_calls::start(plan, unit, text);
+    }
     let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
     if laws.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
@@ -81,6 +80,11 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
             text,
             "    memset(state, 0, sizeof *state);\n    start_filter(state, {identity}, {zero});"
         );
+    } else if let LawsOfAxes::StateSpace(_) = &laws.laws {
+        text.push_str("    memset(state, 0, sizeof *state);\n");
+    }
+    if let Some(unit) = &laws.filter {
+        kalman_calls::init(unit, text);
     }
     let mut set = |member: String, type_name: &str, value: String| {
         let _ = writeln!(text, "    state->{member} = ({prefix}_{type_name}){value};");
@@ -88,6 +92,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     for axis in 0..axes {
         let member = about("law", axis, axes);
         match &laws.laws {
+            LawsOfAxes::StateSpace(_) => {}
             LawsOfAxes::Pd(own) => set(member, "pd_law", initialiser(&own[axis].0, prefix)),
             LawsOfAxes::PhasePlane(own, _) => set(member, "phase_plane_law", initialiser(&own[axis], prefix)),
             LawsOfAxes::Attitude(own) => {
@@ -98,12 +103,21 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
             }
         }
     }
+    for (axis, filter) in laws.rate_filter.iter().flat_map(|unit| &unit.axes).enumerate() {
+        set(about("rate_filter", axis, axes), "rigid_rate_filter", initialiser(filter, prefix));
+    }
     for (index, wheel) in laws.wheels.iter().flat_map(|wheels| &wheels.wheels).enumerate() {
         set(format!("wheels[{index}]"), "allocated_wheel", initialiser(wheel, prefix));
     }
     text.push_str("}\n\n");
     if let Some(unit) = &laws.estimator {
         estimator_calls::functions(plan, unit, text);
+    }
+    if let Some(unit) = &laws.filter {
+        kalman_calls::functions(plan, unit, text);
+    }
+    if let Some(unit) = &laws.rate_filter {
+        rate_calls::sample(plan, unit, text);
     }
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[laws.step_index()]));
     if let Some(unit) = &laws.estimator {
@@ -116,6 +130,29 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
             entries = unit.entries.len()
         );
     }
+    if let LawsOfAxes::StateSpace(own) = &laws.laws {
+        let estimate = |name: &str, axis: usize| estimate(laws, name, axis);
+        if laws.is_together() {
+            compensator_calls::step_together(plan, &own[0], laws.speed_count(), estimate, text);
+        } else {
+            for (axis, law) in own.iter().enumerate() {
+                compensator_calls::step_about(plan, law, (axis, axes), estimate, text);
+            }
+        }
+    } else {
+        steps(plan, laws, text);
+    }
+    if laws.is_acceleration() {
+        torque(plan, laws, text);
+    }
+    wheels(plan, laws, text);
+    jets(laws, text);
+    text.push_str("}\n");
+}
+
+/// Writes the steps of the laws about the axes.
+fn steps(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
+    let (prefix, axes) = (plan.prefix, laws.axis_count());
     if axes == 3 {
         let [roll, pitch, yaw] = [0, 1, 2].map(|axis| estimate(laws, "angle", axis));
         let _ =
@@ -128,17 +165,16 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     for axis in 0..axes {
         step_about(plan, laws, axis, text);
     }
-    if let LawsOfAxes::Attitude(_) = &laws.laws {
-        torque(plan, laws, text);
-    }
-    wheels(plan, laws, text);
-    text.push_str("}\n");
 }
 
 /// Returns the estimated angle or rate about an axis: a component of the filter's estimate, or an input.
 fn estimate(laws: &SampledLaws, name: &str, axis: usize) -> String {
     if laws.estimator.is_some() {
         format!("{name}.{}", ["x", "y", "z"][axis])
+    } else if laws.filter.is_some() {
+        format!("state->{}.{name}", about("estimate", axis, laws.axis_count()))
+    } else if laws.rate_filter.is_some() && name == "rate" {
+        format!("state->{}.rate", about("rate_filter", axis, laws.axis_count()))
     } else {
         format!("input->{}", about(name, axis, laws.axis_count()))
     }
@@ -161,7 +197,20 @@ fn constants(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
             );
         }
     }
-    if let LawsOfAxes::Attitude(_) = &laws.laws {
+    if let Some(pairs) = &laws.jets {
+        let rows: Vec<String> =
+            pairs.iter().map(|pair| format!("    {}", initialiser(pair, prefix))).collect();
+        let _ = writeln!(
+            text,
+            "/* Groups of jets about the axes. */\nstatic const {prefix}_jet_pair jets[{}] = {{\n{}\n}};\n",
+            rows.len(),
+            rows.join(",\n")
+        );
+    }
+    if let LawsOfAxes::StateSpace(own) = &laws.laws {
+        compensator_calls::constants(plan, own, text);
+    }
+    if laws.is_acceleration() {
         let _ = writeln!(
             text,
             "/* Inertia tensor (kg m^2). */\nstatic const {prefix}_matrix3 inertia = {};\n",
@@ -179,7 +228,14 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
         let _ = writeln!(text, "\n    /* {} */", AXES[axis]);
     }
     let total = if axes == 3 { "total_angle" } else { "0.0" };
-    let (mode, is_phase_plane) = (laws.reads_mode(), matches!(laws.laws, LawsOfAxes::PhasePlane(..)));
+    // A mode is an input, or an estimate of the filter.
+    let mode = |name: &str| match &laws.filter {
+        _ if !laws.reads_mode() => "0.0".to_owned(),
+        Some(unit) if name == "frequency" => initialiser(&unit.axes[axis].frequency, prefix),
+        Some(_) => estimate(laws, name, axis),
+        None => input(name),
+    };
+    let is_phase_plane = matches!(laws.laws, LawsOfAxes::PhasePlane(..));
     let _ = writeln!(
         text,
         "    motion = ({prefix}_axis_motion){{ .angle = {}, .total_angle = {total}, .rate = {}, .queued_rate = {},\n        \
@@ -187,9 +243,9 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
         estimate(laws, "angle", axis),
         estimate(laws, "rate", axis),
         given(is_phase_plane, "queued_rate"),
-        given(mode, "displacement"),
-        given(mode, "displacement_rate"),
-        given(mode, "frequency"),
+        mode("displacement"),
+        mode("displacement_rate"),
+        mode("frequency"),
     );
     let is_attitude = matches!(laws.laws, LawsOfAxes::Attitude(_));
     let _ = writeln!(
@@ -201,6 +257,8 @@ fn step_about(plan: &Plan<'_>, laws: &SampledLaws, axis: usize, text: &mut Strin
     );
     let law = format!("&state->{}", about("law", axis, axes));
     match &laws.laws {
+        // They have steps of their own.
+        LawsOfAxes::StateSpace(_) => {}
         LawsOfAxes::Pd(own) => {
             let points = own[axis].1.len();
             let schedule = if points == 0 { "NULL".to_owned() } else { format!("schedule_{axis}") };
@@ -285,4 +343,20 @@ fn wheels(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
          for (size_t wheel = 0; wheel < {count}; ++wheel) {{\n        output->wheel_torque[wheel] = state->wheels[wheel].torque;\n    }}",
         own.is_least_largest
     );
+}
+
+/// Writes the on-times of jets.
+fn jets(laws: &SampledLaws, text: &mut String) {
+    let Some(pairs) = &laws.jets else { return };
+    let (function, demand) = match &laws.laws {
+        LawsOfAxes::PhasePlane(..) => ("change", "rate_change"),
+        _ => ("torque", "torque"),
+    };
+    text.push_str("\n    /* pulses of the jets */\n");
+    for axis in 0..pairs.len() {
+        let _ = writeln!(
+            text,
+            "    output->on_time[{axis}] = jet_pair_on_time_of_{function}(&jets[{axis}], output->{demand}[{axis}]);"
+        );
+    }
 }

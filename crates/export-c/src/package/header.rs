@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, estimator_calls};
+use super::{Plan, compensator_calls, estimator_calls, kalman_calls};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
@@ -50,16 +50,21 @@ fn state(plan: &Plan<'_>, text: &mut String) {
         ControlSystem::Relays(relays) => {
             member("Relay about each axis.", "PolledRelay", &format!("relay{}", array(relays.axes.len())));
         }
+        ControlSystem::BDot(_) => member("Rate of change of the magnetic field.", "FieldRate", "field"),
         ControlSystem::Sampled(laws) => {
             let axes = array(laws.axis_count());
             let (name, filters) = match &laws.laws {
-                LawsOfAxes::Pd(_) => ("PdLaw", 0),
-                LawsOfAxes::PhasePlane(..) => ("PhasePlaneLaw", 0),
-                LawsOfAxes::Attitude(own) => {
-                    ("AttitudeFeedback", own.iter().map(|(_, filters)| filters.len()).max().unwrap_or(0))
-                }
+                LawsOfAxes::Pd(_) => (Some("PdLaw"), 0),
+                LawsOfAxes::PhasePlane(..) => (Some("PhasePlaneLaw"), 0),
+                LawsOfAxes::StateSpace(_) => (None, 0),
+                LawsOfAxes::Attitude(own) => (
+                    Some("AttitudeFeedback"),
+                    own.iter().map(|(_, filters)| filters.len()).max().unwrap_or(0),
+                ),
             };
-            member("Law about each axis.", name, &format!("law{axes}"));
+            if let Some(name) = name {
+                member("Law about each axis.", name, &format!("law{axes}"));
+            }
             if filters > 0 {
                 member(
                     "Filters of each law.",
@@ -72,8 +77,21 @@ fn state(plan: &Plan<'_>, text: &mut String) {
                     member(about, name, &declared);
                 }
             }
+            if laws.rate_filter.is_some() {
+                member(
+                    "Filter of the rate about each axis.",
+                    "RigidRateFilter",
+                    &format!("rate_filter{axes}"),
+                );
+            }
             if let Some(own) = &laws.wheels {
                 member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));
+            }
+            if let Some(unit) = &laws.filter {
+                kalman_calls::members(plan, unit, text);
+            }
+            if let LawsOfAxes::StateSpace(own) = &laws.laws {
+                compensator_calls::members(own, text);
             }
         }
     }

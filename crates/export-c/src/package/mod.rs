@@ -1,11 +1,15 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
+mod b_dot_calls;
 mod calls;
+mod compensator_calls;
 mod driver;
 mod estimator_calls;
 mod guests;
 mod header;
 mod initialiser;
+mod kalman_calls;
+mod rate_calls;
 mod signature;
 mod source;
 mod static_files;

@@ -16,7 +16,12 @@ pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
 /// Returns true if the functions read the time.
 pub fn has_time(plan: &Plan<'_>) -> bool {
     match plan.system {
-        ControlSystem::Relays(_) => true,
+        ControlSystem::Relays(_) | ControlSystem::BDot(_) => true,
         ControlSystem::Sampled(laws) => laws.estimator.is_some(),
     }
+}
+
+/// Returns a member of the inputs, outputs or state about an axis.
+pub fn about(name: &str, axis: usize, axes: usize) -> String {
+    if axes == 1 { name.to_owned() } else { format!("{name}[{axis}]") }
 }

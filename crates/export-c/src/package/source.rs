@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
+use super::{Plan, b_dot_calls, compensator_calls, kalman_calls, rate_calls};
 use crate::control_system::{ControlSystem, LawsOfAxes};
 use crate::translate::Translation;
 
@@ -14,16 +14,19 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
     }
     match system {
         ControlSystem::Relays(_) => roots.extend(["relay::RelayLaw::decide", "relay::PolledRelay::step"]),
+        ControlSystem::BDot(_) => roots.extend(b_dot_calls::ROOTS),
         ControlSystem::Sampled(laws) => {
-            if laws.axis_count() == 3 {
+            if laws.axis_count() == 3 && !matches!(laws.laws, LawsOfAxes::StateSpace(_)) {
                 roots.push("axis_motion::total_angle");
             }
-            match laws.laws {
+            match &laws.laws {
                 LawsOfAxes::Pd(_) => roots.push("pd::PdLaw::step"),
                 LawsOfAxes::PhasePlane(..) => roots.push("phase_plane::PhasePlaneLaw::step"),
-                LawsOfAxes::Attitude(_) => {
-                    roots.extend(["attitude_law::AttitudeFeedback::step", "torque_distribution::torque"]);
-                }
+                LawsOfAxes::Attitude(_) => roots.push("attitude_law::AttitudeFeedback::step"),
+                LawsOfAxes::StateSpace(own) => roots.extend(compensator_calls::roots(own)),
+            }
+            if laws.is_acceleration() {
+                roots.push("torque_distribution::torque");
             }
             if laws.estimator.is_some() {
                 roots.extend([
@@ -35,6 +38,22 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
                     "attitude_filter::AttitudeBiasFilter::new",
                     "quaternion::Quaternion::rotation_to",
                 ]);
+            }
+            if laws.filter.is_some() {
+                let is_called =
+                    |root: &&str| !root.ends_with("shift") || functions.contains("kalman_axis_shift");
+                roots.extend(kalman_calls::ROOTS.into_iter().filter(is_called));
+            }
+            if laws.rate_filter.is_some() {
+                roots.push(rate_calls::ROOT);
+            }
+            if laws.jets.is_some() {
+                let is_change = matches!(laws.laws, LawsOfAxes::PhasePlane(..));
+                roots.push(if is_change {
+                    "jet_pulses::JetPair::on_time_of_change"
+                } else {
+                    "jet_pulses::JetPair::on_time_of_torque"
+                });
             }
             if laws.wheels.is_some() {
                 roots.extend(["wheel_allocation::allocate", "wheel_allocation::limit_torques"]);

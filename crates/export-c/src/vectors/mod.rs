@@ -1,6 +1,9 @@
 //! Test vectors: the calls of the control system in a run of the engine, with the outputs of the plain laws, compared with the
 //! engine's own.
 
+mod b_dot;
+mod kalman;
+mod rate;
 mod samples;
 
 use std::fmt;
@@ -142,12 +145,17 @@ fn replay(
         }
         return Ok(());
     }
-    // Before its setpoint begins a law gives nothing.
-    if decision.axes.iter().any(|axis| decision.now < axis.goal.from) {
+    if let ControlSystem::BDot(_) = system {
+        return b_dot::step(system, decision, vectors);
+    }
+    // Before its setpoint begins a law about one axis gives nothing.
+    let is_together = matches!(&*system, ControlSystem::Sampled(laws) if laws.is_together());
+    if !is_together && decision.axes.iter().any(|axis| decision.now < axis.goal.from) {
         return Ok(());
     }
+    kalman::shift(system, now, decision.shift, vectors);
     let ControlSystem::Sampled(laws) = &*system else { return Ok(()) };
-    let (inputs, call) = (step_inputs(laws, decision), laws.step_index());
+    let (inputs, call, has_jets) = (step_inputs(laws, decision), laws.step_index(), laws.jets.is_some());
     let outputs = system.call(call, now, &inputs);
     let number = vectors.len();
     for axis in &decision.axes {
@@ -162,6 +170,11 @@ fn replay(
                 compare(number, "the torque", decision.demanded_torque[axis.axis], torque)?;
             }
             Command::Moment(_) => {}
+        }
+    }
+    if let (Some(engine), [.., roll, pitch, yaw]) = (decision.on_times, &outputs[..]) {
+        for (engine, plain) in engine.into_iter().zip([roll, pitch, yaw]).filter(|_| has_jets) {
+            compare(number, "the on-time", engine, f64::from_bits(*plain))?;
         }
     }
     vectors.push(CallVector { call, now, inputs, outputs });
@@ -190,6 +203,10 @@ fn step_inputs(laws: &SampledLaws, decision: &ControlDecision) -> Vec<u64> {
             "reference_rate" => words.extend(references.iter().map(|reference| reference.rate)),
             "reference_acceleration" => {
                 words.extend(references.iter().map(|reference| reference.acceleration));
+            }
+            "wheel_speed" => {
+                let known = axes.first().map_or(&[][..], |axis| &axis.wheel_speeds);
+                words.extend((0..channel.count).map(|wheel| known.get(wheel).copied().unwrap_or(0.0)));
             }
             "stored_momentum" => words.extend(decision.stored_momentum),
             "mode_rate" | "mode_frequency" | "mode_influence" => {

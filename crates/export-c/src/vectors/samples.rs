@@ -9,7 +9,7 @@ use flexsc_core::{Scenario, SensorSample};
 use flexsc_flight::attitude_estimator::observation_exposure;
 use flexsc_flight::attitude_observation::ObservationKind;
 
-use super::CallVector;
+use super::{CallVector, b_dot, kalman, rate};
 use crate::control_system::{AttitudeUnit, ControlSystem};
 
 /// Calls the attitude filter with the readings of a sample, and adds the calls; at the first sample the filter is started as in
@@ -20,7 +20,16 @@ pub(super) fn replay(
     sample: &SensorSample,
     vectors: &mut Vec<CallVector>,
 ) {
+    if let ControlSystem::BDot(_) = &*system {
+        return b_dot::sample(system, sample, vectors);
+    }
     let ControlSystem::Sampled(laws) = &*system else { return };
+    if laws.filter.is_some() {
+        return kalman::sample(system, sample, vectors);
+    }
+    if laws.rate_filter.is_some() {
+        return rate::sample(system, sample, vectors);
+    }
     let Some(unit) = &laws.estimator else { return };
     let now = sample.now.ticks();
     let start = vectors.is_empty().then(|| start_inputs(scenario, sample)).flatten();

@@ -4,9 +4,10 @@ mod lane_step;
 mod lanes;
 mod modes;
 
+use flexsc_flight::filter_lock::FilterLock;
+use flexsc_flight::kalman::{self, KalmanSample};
 use nalgebra::{DMatrix, DVector};
 
-use super::lock::Lock;
 use super::model::FilterModel;
 use super::{Ranking, sigma};
 use crate::state_estimate::DominantMode;
@@ -68,7 +69,11 @@ pub struct KalmanFilter {
     room: DMatrix<f64>,
     /// Mean and covariance before the current step.
     before: (DVector<f64>, DMatrix<f64>),
-    lock: Lock,
+    /// Model of a linear filter in the form of flight code; empty of other filters.
+    linear: Vec<f64>,
+    /// Buffer of flight code.
+    buffer: Vec<f64>,
+    lock: FilterLock,
     /// True if the distribution could not be propagated.
     broken: bool,
     mode: usize,
@@ -101,7 +106,9 @@ impl KalmanFilter {
             tangent: DMatrix::zeros(order, order),
             room: DMatrix::zeros(order, order),
             before: (DVector::zeros(order), DMatrix::zeros(order, order)),
-            lock: Lock::new(1 + usize::from(tuning.rate_noise.is_some())),
+            linear: Vec::new(),
+            buffer: vec![0.0; order * (1 + 2 * order)],
+            lock: FilterLock::new(1 + u32::from(tuning.rate_noise.is_some())),
             broken: false,
             mode: 0,
             gated: false,
@@ -116,6 +123,10 @@ impl KalmanFilter {
             for (offset, density) in filter.tuning.ratio_noise.iter().enumerate() {
                 filter.noise[(index + offset, index + offset)] = density * filter.tuning.period;
             }
+        }
+        if let Prediction::Linear(transition, input) = &filter.tuning.prediction {
+            let parts = [transition.as_slice(), input.as_slice(), filter.noise.as_slice()];
+            filter.linear = parts.concat();
         }
         filter.mode = filter.most_excitable_mode();
         filter.trusted.frequency = filter.tuning.model.frequency(filter.mode, filter.mean.as_slice());
@@ -135,6 +146,21 @@ impl KalmanFilter {
     /// Returns the numbers of states and of measurements in a sample.
     pub fn dimensions(&self) -> [f64; 2] {
         [self.mean.len() as f64, 1.0 + f64::from(u8::from(self.tuning.rate_noise.is_some()))]
+    }
+
+    /// Returns the model of a linear filter in the form of flight code; empty of other filters.
+    pub fn linear_model(&self) -> &[f64] {
+        &self.linear
+    }
+
+    /// Returns the standard deviations of the measured angle (rad) and, if there is a gyro, of the measured rate (rad/s).
+    pub fn measurement_noise(&self) -> (f64, Option<f64>) {
+        (self.tuning.angle_noise, self.tuning.rate_noise)
+    }
+
+    /// Returns true if the dominant mode may change.
+    pub fn ranks_by_amplitude(&self) -> bool {
+        self.tuning.ranking == Ranking::Amplitude
     }
 
     /// Returns the mean of the state.
@@ -164,7 +190,7 @@ impl KalmanFilter {
 
     /// Returns true if the filter has lost lock: its innovations are improbable, or it cannot be propagated.
     pub fn lock_lost(&self) -> bool {
-        self.broken || self.lock.is_lost()
+        self.broken || self.lock.is_lost
     }
 
     /// Returns true if the dominant mode moves too little for its frequency to be observable.
@@ -180,17 +206,19 @@ impl KalmanFilter {
 
     /// Predicts the state over one period with the mean reduced moment `moment` (rad/s²).
     pub fn predict(&mut self, moment: f64) {
+        if !self.linear.is_empty() {
+            let Self { linear, mean, covariance, buffer, .. } = self;
+            let (mean, covariance) = (mean.as_mut_slice(), covariance.as_mut_slice());
+            self.broken |= !kalman::predict(linear, moment, mean, covariance, buffer);
+            return;
+        }
         let moment = if moment.is_finite() { moment } else { 0.0 };
         self.keep();
         let Self { tuning, mean, covariance, noise, tangent, room, gated, .. } = self;
         let (model, period) = (&tuning.model, tuning.period);
         let carried = match &tuning.prediction {
-            Prediction::Linear(transition, input) => {
-                *mean = transition * &*mean + input * moment;
-                transition.mul_to(covariance, room);
-                room.mul_to(&transition.transpose(), covariance);
-                Some(())
-            }
+            // It is predicted by flight code.
+            Prediction::Linear(..) => Some(()),
             Prediction::Extended => {
                 tangent.fill_with_identity();
                 model.propagate(period, moment, mean.as_mut_slice(), Some(tangent));
@@ -222,25 +250,27 @@ impl KalmanFilter {
     /// Updates the state by the measured angle (rad) and, if the filter has a gyro, the measured rate (rad/s); `None`:
     /// no measurement.
     pub fn update(&mut self, measured: Option<(f64, f64)>) -> Innovation {
-        self.keep();
         let gated = self.is_still();
-        let innovation = measured.map_or(0.0, |(angle, _)| angle - self.observed(0));
-        let mut nis = measured.and_then(|(angle, rate)| {
-            let nis = self.learn(0, angle, self.tuning.angle_noise, gated)?;
-            let Some(noise) = self.tuning.rate_noise else { return Some(nis) };
-            Some(nis + self.learn(1, rate, noise, gated)?)
-        });
-        if nis.is_none() || !self.is_sound() {
-            self.restore();
-            nis = None;
-        }
-        self.settle(gated, innovation, nis).0
+        let (angle, rate) = measured.unwrap_or_default();
+        let sample = KalmanSample {
+            is_measured: measured.is_some(),
+            angle,
+            rate,
+            angle_noise: self.tuning.angle_noise,
+            has_rate: self.tuning.rate_noise.is_some(),
+            rate_noise: self.tuning.rate_noise.unwrap_or(0.0),
+            motion: self.tuning.model.motion_states(),
+            is_gated: gated,
+        };
+        let (mean, covariance) = (self.mean.as_mut_slice(), self.covariance.as_mut_slice());
+        let found = kalman::update(&sample, mean, covariance, &mut self.buffer);
+        self.settle(gated, found.angle, found.is_accepted.then_some(found.square)).0
     }
 
     /// Completes an update: gate, lock, bounds and dominant mode. Returns true if the ratios' rates were set to 0.
     fn settle(&mut self, gated: bool, innovation: f64, nis: Option<f64>) -> (Innovation, bool) {
         let rests = self.rest(gated);
-        self.lock.update(nis.map(|nis| (nis, innovation)));
+        self.lock.update(nis.is_some(), nis.unwrap_or(0.0), innovation);
         self.hold_ratios();
         self.choose_mode();
         self.trust();
@@ -257,49 +287,9 @@ impl KalmanFilter {
         self.covariance.copy_from(&self.before.1);
     }
 
-    /// Returns the sum of every other component: of the angles from 0 on, of the rates from 1 on.
-    fn observed(&self, first: usize) -> f64 {
-        (first..self.tuning.model.motion_states()).step_by(2).map(|i| self.mean[i]).sum()
-    }
-
-    /// Updates by a scalar measurement, the sum of every other component. Returns its normalised innovation squared, if
-    /// valid.
-    fn learn(&mut self, first: usize, measured: f64, noise: f64, gated: bool) -> Option<f64> {
-        let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion_states());
-        let innovation = measured - self.observed(first);
-        let mut observation = DVector::zeros(order);
-        for i in (first..motion).step_by(2) {
-            observation += self.covariance.column(i);
-        }
-        let variance = (first..motion).step_by(2).map(|i| observation[i]).sum::<f64>() + noise * noise;
-        let nis = innovation * innovation / variance;
-        // A variance that is not positive, or an innovation that is NaN, fails here too.
-        if !(variance > 0.0 && nis <= FARTHEST * FARTHEST) {
-            return None;
-        }
-        let mut gain = &observation / variance;
-        if gated {
-            gain.rows_mut(motion, order - motion).fill(0.0);
-        }
-        self.mean.axpy(innovation, &gain, 1.0);
-        // Joseph's form, (1 - K H) P (1 - K H)' + K R K', valid for any gain, with its products written out.
-        for column in 0..order {
-            for row in 0..=column {
-                let value = self.covariance[(row, column)]
-                    - (gain[row] * observation[column] + observation[row] * gain[column])
-                    + variance * gain[row] * gain[column];
-                self.covariance[(row, column)] = value;
-                self.covariance[(column, row)] = value;
-            }
-        }
-        Some(nis)
-    }
-
     /// Returns true if mean and covariance are finite, and no variance is negative.
     fn is_sound(&self) -> bool {
-        self.mean.iter().all(|m| m.is_finite())
-            && self.covariance.iter().all(|p| p.is_finite())
-            && (0..self.mean.len()).all(|i| self.covariance[(i, i)] >= 0.0)
+        kalman::is_sound(self.mean.as_slice(), self.covariance.as_slice())
     }
 
     fn is_still(&self) -> bool {

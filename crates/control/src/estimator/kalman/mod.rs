@@ -5,7 +5,6 @@
 
 mod filter;
 mod frequency_bounds;
-mod lock;
 mod model;
 mod sigma;
 mod steady_state;

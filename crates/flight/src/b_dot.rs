@@ -1,0 +1,56 @@
+//! The B-dot law: magnetic moments against the change of the measured magnetic field.
+
+use crate::maths::clamp;
+use crate::ticks::Ticks;
+use crate::vector3::Vector3;
+
+/// Rate of change of the magnetic field, by the difference of its last two samples.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct FieldRate {
+    /// True from the first sample on.
+    pub has_field: bool,
+    /// Time of the last sample.
+    pub at: Ticks,
+    /// Field of the last sample, body axes (T).
+    pub field: Vector3,
+    /// True if the last two samples have a difference.
+    pub has_rate: bool,
+    /// Rate of change (T/s); 0 before the second sample.
+    pub rate: Vector3,
+}
+
+impl FieldRate {
+    /// Rate before the first sample.
+    pub const NONE: Self = Self {
+        has_field: false,
+        at: Ticks { whole: 0, part: 0 },
+        field: Vector3::ZERO,
+        has_rate: false,
+        rate: Vector3::ZERO,
+    };
+
+    /// Takes a sample of the field in body axes (T). One at the time of the last sample replaces it.
+    pub fn take(&mut self, now: Ticks, field: &Vector3) {
+        self.has_rate = self.has_field && self.at.is_before(now);
+        if self.has_rate {
+            let change: Vector3 = field.minus(&self.field);
+            let span: Ticks = now.since(self.at);
+            self.rate = change.divided(span.seconds());
+        }
+        self.has_field = true;
+        self.at = now;
+        self.field = *field;
+    }
+}
+
+/// Returns the magnetic moment along an axis (A m²) for a gain (A m² s/T) and the rate of change of the field along it (T/s).
+#[inline]
+pub fn opposing_moment(gain: f64, field_rate: f64) -> f64 {
+    -gain * field_rate
+}
+
+/// Returns the moment that a torquer gives for a demanded one, within its largest (A m²).
+#[inline]
+pub fn limited_moment(demanded: f64, limit: f64) -> f64 {
+    clamp(demanded, -limit, limit)
+}
