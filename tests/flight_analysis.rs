@@ -123,7 +123,7 @@ fn optimised_rust_has_no_panic_but_of_bounds() {
     let (mut functions, mut checks, mut current) = (BTreeSet::new(), 0, String::new());
     let assembly = dir.text("flight.s");
     for line in assembly.lines() {
-        if let Some(label) = line.strip_suffix(':').filter(|label| label.starts_with("_")) {
+        if let Some(label) = line.strip_suffix(':').filter(|label| label.starts_with('_')) {
             label.clone_into(&mut current);
         }
         // Calls and jumps, in the assembly of any processor.
