@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 36;
+const COUNT: usize = 40;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -40,6 +40,9 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "maths",
         "matrix3",
         "matrix6",
+        "mode_condition",
+        "mode_readings",
+        "mode_supervisor",
         "payne_hanek",
         "pd",
         "phase_plane",
@@ -49,6 +52,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "relay",
         "square_root",
         "stumpff",
+        "supervised_mode",
         "switching_lines",
         "ticks",
         "torque_distribution",

@@ -2,6 +2,8 @@
 
 mod attitude_unit;
 mod channel;
+mod mode_inputs;
+mod mode_system;
 mod relays;
 mod sampled_laws;
 
@@ -13,6 +15,8 @@ use flexsc_flight::ticks::Ticks;
 
 pub use attitude_unit::{AttitudeUnit, Corrector};
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
+pub use mode_inputs::{ModeInputs, ReadingFormula};
+pub use mode_system::{LawsOfMode, ModeSystem};
 pub use relays::Relays;
 pub use sampled_laws::{LawsOfAxes, SampledLaws, WheelDistribution};
 
@@ -47,6 +51,8 @@ pub enum ControlSystem {
     Relays(Relays),
     /// Laws that decide at their period.
     Sampled(Box<SampledLaws>),
+    /// Laws of modes of operation under a supervisor, or stages of a law.
+    Modes(Box<ModeSystem>),
 }
 
 impl ControlSystem {
@@ -57,15 +63,12 @@ impl ControlSystem {
     pub fn new(scenario: &Scenario) -> Result<Self, NotExportable> {
         let axes = scenario.study.axes.len();
         let laws: Vec<&LawKind> = (0..axes).map(|axis| scenario.law.about(axis)).collect();
-        if !scenario.mode.is_empty() {
-            return Err(NotExportable::new(
-                "mode",
-                "changes the laws in a run: choose one with `--mode NAME`",
-            ));
-        }
         if scenario.adaptation.is_some() {
             let reason = "tunes the law in a run: leave it out, and write the value that it reaches";
             return Err(NotExportable::new("adaptation", reason));
+        }
+        if !scenario.mode.is_empty() || matches!(scenario.law, LawKind::Stages(_)) {
+            return Ok(Self::Modes(Box::new(ModeSystem::new(scenario)?)));
         }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
@@ -78,6 +81,7 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.calls(),
             Self::Sampled(laws) => laws.calls(),
+            Self::Modes(modes) => modes.calls(),
         }
     }
 
@@ -86,6 +90,25 @@ impl ControlSystem {
         match self {
             Self::Relays(relays) => relays.call(call, now, inputs),
             Self::Sampled(laws) => laws.call(call, now, inputs),
+            Self::Modes(modes) => modes.call(call, now, inputs),
+        }
+    }
+
+    /// Returns laws that decide at their period without their attitude filter: they read estimates.
+    #[must_use]
+    pub fn on_estimates(mut self) -> Self {
+        if let Self::Sampled(laws) = &mut self {
+            laws.estimator = None;
+        }
+        self
+    }
+
+    /// Returns the attitude filter, if the laws read one.
+    pub fn estimator(&self) -> Option<&AttitudeUnit> {
+        match self {
+            Self::Relays(_) => None,
+            Self::Sampled(laws) => laws.estimator.as_ref(),
+            Self::Modes(modes) => modes.estimator.as_ref(),
         }
     }
 
@@ -94,6 +117,7 @@ impl ControlSystem {
         match self {
             Self::Relays(_) => 0.1,
             Self::Sampled(laws) => laws.period,
+            Self::Modes(modes) => modes.period(),
         }
     }
 }

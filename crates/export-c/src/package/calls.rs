@@ -18,6 +18,8 @@ pub fn functions(plan: &Plan<'_>) -> String {
     match plan.system {
         ControlSystem::Relays(relays) => of_relays(plan, relays, &mut text),
         ControlSystem::Sampled(laws) => of_laws(plan, laws, &mut text),
+        // The laws of each mode are a control system of their own.
+        ControlSystem::Modes(_) => {}
     }
     text
 }

@@ -5,6 +5,7 @@ mod driver;
 mod estimator_calls;
 mod header;
 mod initialiser;
+mod modes;
 mod signature;
 mod source;
 mod static_files;
@@ -86,12 +87,15 @@ pub fn export(scenario: &Scenario, origin: &str, prefix: &str, most: usize) -> R
     let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
     let plan = Plan { prefix, origin, system: &system, calls: &calls };
-    let functions = calls::functions(&plan);
+    let (functions, state) = match &system {
+        ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
+        _ => (calls::functions(&plan), header::state(&plan)),
+    };
     let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
         .map_err(ExportError::Translation)?;
     let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
     let mut files = vec![
-        text(format!("{prefix}.h"), header::header(&plan, &translation)),
+        text(format!("{prefix}.h"), header::header(&plan, &translation, &state)),
         text(format!("{prefix}.c"), source::source(&plan, &translation, &functions)),
         text("driver.c".to_owned(), driver::driver(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),

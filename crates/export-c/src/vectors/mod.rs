@@ -1,6 +1,7 @@
 //! Test vectors: the calls of the control system in a run of the engine, with the outputs of the plain laws, compared with the
 //! engine's own.
 
+mod mode_calls;
 mod samples;
 
 use std::fmt;
@@ -11,7 +12,7 @@ use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{ControlCall, ControlDecision, Scenario, Simulation, SimulationError};
 use flexsc_flight::ticks::Ticks;
 
-use crate::control_system::{ControlSystem, NotExportable, SampledLaws};
+use crate::control_system::{Channel, ControlSystem, NotExportable};
 
 /// First word of a file of vectors: `flexscV1` as bytes.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"flexscV1");
@@ -101,6 +102,7 @@ pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<CallVector>, Vecto
             }
             match call {
                 ControlCall::Decision(decision) => replay(&mut system, &decision, &mut vectors)?,
+                ControlCall::Mode(trial) => mode_calls::replay_trial(&mut system, &trial, &mut vectors)?,
                 ControlCall::Sample(sample) => {
                     samples::replay(&mut system, scenario, &sample, &mut vectors);
                 }
@@ -117,6 +119,9 @@ fn replay(
     vectors: &mut Vec<CallVector>,
 ) -> Result<(), VectorError> {
     let now = decision.now.ticks();
+    if let ControlSystem::Modes(_) = system {
+        return mode_calls::replay_decision(system, decision, vectors);
+    }
     if let ControlSystem::Relays(_) = system {
         for axis in &decision.axes {
             let event = match axis.cause {
@@ -147,9 +152,15 @@ fn replay(
         return Ok(());
     }
     let ControlSystem::Sampled(laws) = &*system else { return Ok(()) };
-    let (inputs, call) = (step_inputs(laws, decision), laws.step_index());
+    let (inputs, call) = (step_inputs(&laws.layout().inputs, decision), laws.step_index());
     let outputs = system.call(call, now, &inputs);
-    let number = vectors.len();
+    compare_commands(vectors.len(), decision, &outputs)?;
+    vectors.push(CallVector { call, now, inputs, outputs });
+    Ok(())
+}
+
+/// Fails if the laws' outputs in a decision differ from the engine's commands.
+fn compare_commands(number: usize, decision: &ControlDecision, outputs: &[u64]) -> Result<(), VectorError> {
     for axis in &decision.axes {
         let found = f64::from_bits(outputs[axis.axis]);
         match axis.output.command {
@@ -164,16 +175,15 @@ fn replay(
             Command::Moment(_) => {}
         }
     }
-    vectors.push(CallVector { call, now, inputs, outputs });
     Ok(())
 }
 
 /// Returns the words of the inputs of a step.
-fn step_inputs(laws: &SampledLaws, decision: &ControlDecision) -> Vec<u64> {
+fn step_inputs(channels: &[Channel], decision: &ControlDecision) -> Vec<u64> {
     let axes = &decision.axes;
     let references: Vec<_> = axes.iter().map(|axis| axis.goal.flight_reference(decision.now)).collect();
     let mut words = Vec::new();
-    for channel in laws.layout().inputs {
+    for channel in channels {
         match channel.name.as_str() {
             "target_attitude" => {
                 if let Orientation::Attitude(q) = decision.origin {

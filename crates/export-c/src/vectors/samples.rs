@@ -20,8 +20,7 @@ pub(super) fn replay(
     sample: &SensorSample,
     vectors: &mut Vec<CallVector>,
 ) {
-    let ControlSystem::Sampled(laws) = &*system else { return };
-    let Some(unit) = &laws.estimator else { return };
+    let Some(unit) = system.estimator() else { return };
     let now = sample.now.ticks();
     let start = vectors.is_empty().then(|| start_inputs(scenario, sample)).flatten();
     let inputs = sample_inputs(unit, scenario, sample);
