@@ -5,7 +5,11 @@ use crate::util::Dir;
 #[test]
 fn two_exports_have_equal_bytes() {
     let dir = Dir::with(&["relay-fixed", "earth-observer"]);
-    for (scenario, options) in [("relay-fixed", ""), ("earth-observer", "--fmi 2 --part plant")] {
+    for (scenario, options) in [
+        ("relay-fixed", ""),
+        ("earth-observer", "--fmi 2 --part plant"),
+        ("earth-observer", "--part controller"),
+    ] {
         for out in ["a.fmu", "b.fmu"] {
             dir.run(&format!("export-fmu {scenario}.toml {options} -o {out} --force")).exits(0);
         }
@@ -30,7 +34,7 @@ fn what_cannot_be_exported_is_refused_and_nothing_is_written() {
     let refused = |options: &str, words: &[&str]| {
         dir.run(&format!("export-fmu relay-fixed.toml {options}")).exits(2).says(words);
     };
-    refused("--part controller -o a.fmu", &["controller", "hint"]);
+    refused("--part controller -o a.fmu", &["law.relay", "controller", "hint"]);
     refused("-o a.zip", &["-o a.zip", ".fmu"]);
     refused("-o a.fmu --library absent.so", &["absent.so"]);
     refused("-o a.fmu --set law.relay.k_t=-1", &["k_t"]);

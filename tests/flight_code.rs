@@ -206,12 +206,17 @@ fn the_self_test_reaches_limits_and_not_a_number() {
 #[test]
 fn scenarios_without_plain_laws_are_refused_at_their_key() {
     let dir = Dir::with(&["rotation-thrusters", "safe-mode", "relay-sampled"]);
+    let mixed = "law.per_axis = { roll.attitude = { period = 1.0, bandwidth = 0.03 }, pitch.open = {}, yaw.open = {} }";
+    let own = "law.attitude = { period = 1.0, bandwidth = 0.03, damping = 0.8, rate_limit = 3e-3 }";
+    let modes =
+        dir.text("safe-mode.toml").replace("law.b_dot = { period = 1.0, gain = 8e5 }", "law.open = {}");
+    dir.write("mixed.toml", modes.replace(own, mixed));
     for (command, words) in [
         (
             "export-c rotation-thrusters.toml -o out",
             ["rotation-thrusters.toml", "`law.open`", "has no code for flight"],
         ),
-        ("export-c safe-mode.toml -o out", ["safe-mode.toml", "`mode`", "choose one with `--mode NAME`"]),
+        ("export-c mixed.toml -o out", ["mixed.toml:", "`mode[2].law", "(in the mode `safe`)"]),
         (
             "vectors rotation-thrusters.toml -o out.bin",
             ["rotation-thrusters.toml", "`law.open`", "`relay`, `pd`"],

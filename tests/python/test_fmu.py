@@ -17,7 +17,11 @@ PARTS: list[Literal["loop", "plant"]] = ["loop", "plant"]
 
 
 def exported(
-    tmp_path: Path, name: str, fmi: Literal[2, 3] = 3, part: Literal["loop", "plant"] = "loop", **keys: Any
+    tmp_path: Path,
+    name: str,
+    fmi: Literal[2, 3] = 3,
+    part: Literal["loop", "plant", "controller"] = "loop",
+    **keys: Any,
 ) -> str:
     """The FMU of a shipped scenario."""
     path = tmp_path / f"{name}-{fmi}-{part}.fmu"
@@ -106,6 +110,76 @@ def test_two_exports_have_equal_bytes(tmp_path: Path) -> None:
         assert Path(first).read_bytes() == Path(second).read_bytes()
         with zipfile.ZipFile(first) as archive:
             assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+
+
+LAWS = [("wheel-fixed-gain", 0.3), ("earth-observer", 0.25), ("station-keeping", 0.5)]
+
+
+def slave(path: str, fmi: Literal[2, 3]) -> tuple[Any, dict[str, int]]:
+    """An initialized instance of an FMU for co-simulation, with points on a grid of 1 ns, and its references by name."""
+    described = fmpy.read_model_description(path)
+    references = {variable.name: variable.valueReference for variable in described.modelVariables}
+    arguments = {
+        "guid": described.guid,
+        "unzipDirectory": fmpy.extract(path),
+        "modelIdentifier": described.coSimulation.modelIdentifier,
+        "instanceName": "part",
+    }
+    if fmi == 2:
+        instance = fmpy.fmi2.FMU2Slave(**arguments)
+        instance.instantiate()
+        instance.setReal([references["snap_ns"]], [1.0])
+        instance.setupExperiment(startTime=0.0)
+    else:
+        instance = fmpy.fmi3.FMU3Slave(**arguments)
+        instance.instantiate()
+        instance.enterConfigurationMode()
+        instance.setUInt64([references["snap_ns"]], [1])
+        instance.exitConfigurationMode()
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
+    return instance, references
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize(("name", "period"), LAWS)
+def test_plant_and_controller_equal_the_closed_loop(
+    tmp_path: Path, name: str, period: float, fmi: Literal[2, 3]
+) -> None:
+    from fmpy.validation import validate_fmu
+
+    count = 60
+    parts: list[Literal["plant", "controller"]] = ["plant", "controller"]
+    paths = {part: exported(tmp_path, name, fmi, part, duration=40.0) for part in parts}
+    assert all(validate_fmu(path) == [] for path in paths.values())
+    (plant, plant_names), (laws, law_names) = slave(paths["plant"], fmi), slave(paths["controller"], fmi)
+    described = fmpy.read_model_description(paths["controller"])
+    inputs = [of.name for of in described.modelVariables if of.causality == "input" and of.name in plant_names]
+    commands = [of.name for of in described.modelVariables if of.name.split("[")[0] == "command"]
+    axes = "" if len(commands) == 1 else "[1]"
+    read, write = ("getReal", "setReal") if fmi == 2 else ("getFloat64", "setFloat64")
+
+    def copy(source: Any, own: dict[str, int], to: Any, others: dict[str, int], names: list[str]) -> None:
+        values = getattr(source, read)([own[variable] for variable in names])
+        getattr(to, write)([others[variable] for variable in names], list(values))
+
+    states, step = [], "state.rate" + axes
+    for index in range(count):
+        now, size = index * period, (index + 1) * period - index * period
+        copy(plant, plant_names, laws, law_names, inputs)
+        laws.doStep(now, size)
+        copy(laws, law_names, plant, plant_names, commands)
+        plant.doStep(now, size)
+        states.append(getattr(plant, read)([plant_names[step]])[0])
+    for instance in (plant, laws):
+        instance.terminate()
+        instance.freeInstance()
+    run = flexsc.Simulator(shipped(name).with_("duration", 40.0))
+    expected = []
+    for index in range(count):
+        run.run_until(round((index + 1) * period, 9))
+        expected.append(float(np.atleast_1d(run.state["rate"])[0]))
+    assert states == expected
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

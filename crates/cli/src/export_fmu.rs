@@ -57,7 +57,7 @@ enum Part {
     Loop,
     /// The spacecraft with its sensors and actuators
     Plant,
-    /// The laws and estimators
+    /// The laws, whose estimates and references are inputs
     Controller,
 }
 

@@ -66,6 +66,7 @@ pub use flexsc_spacecraft as spacecraft;
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
 pub use sim::{
-    ControlCall, ControlDecision, ObservationField, ObservationGroup, SensorSample, SensorTelemetry,
-    Simulation, SimulationError, StopAt, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor,
+    ControlCall, ControlDecision, ModeTrial, ObservationField, ObservationGroup, SensorSample,
+    SensorTelemetry, Simulation, SimulationError, StopAt, Telemetry, TelemetryField, TelemetryLayout,
+    TelemetrySensor,
 };

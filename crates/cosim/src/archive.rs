@@ -7,10 +7,10 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use crate::content::{FmuContent, PART, SCENARIO};
-use crate::cosimulation::CoSimulation;
 use crate::description::model_description;
 use crate::error::CoSimulationError;
 use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
+use crate::fmu_run::FmuRun;
 
 /// Returns the bytes of an FMU with this library.
 ///
@@ -21,7 +21,7 @@ pub fn fmu_bytes(
     library: &[u8],
     version: FmiVersion,
 ) -> Result<Vec<u8>, CoSimulationError> {
-    let run = CoSimulation::new(content.clone())?;
+    let run = FmuRun::new(content.clone())?;
     let description = model_description(run.scenario(), run.table(), &content.token(), version);
     let binary =
         format!("binaries/{}/{MODEL_IDENTIFIER}{}", version.platform()?, std::env::consts::DLL_SUFFIX);

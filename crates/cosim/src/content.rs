@@ -10,6 +10,7 @@ use flexsc_core::numerics::random::fnv1a_of;
 use flexsc_core::{LONGEST, Scenario};
 
 use crate::error::CoSimulationError;
+use crate::flight_laws::laws_alone;
 
 /// Name of the scenario among the resources of an FMU.
 pub const SCENARIO: &str = "scenario.toml";
@@ -23,31 +24,29 @@ pub enum FmuPart {
     Loop,
     /// The spacecraft with its sensors and actuators; the importer commands the torque.
     Plant,
+    /// The laws, which decide on estimates and references of the importer.
+    Controller,
 }
 
 impl FmuPart {
     /// All parts with their names.
-    pub const ALL: [(&'static str, Self); 2] = [("loop", Self::Loop), ("plant", Self::Plant)];
+    pub const ALL: [(&'static str, Self); 3] =
+        [("loop", Self::Loop), ("plant", Self::Plant), ("controller", Self::Controller)];
 
     /// Returns the name of the part.
     pub fn name(self) -> &'static str {
         match self {
             Self::Loop => "loop",
             Self::Plant => "plant",
+            Self::Controller => "controller",
         }
     }
 
     /// Returns the part of a name.
     ///
     /// # Errors
-    /// Fails for any other name; the controller alone is refused with the reason.
+    /// Fails for any other name.
     pub fn from_name(name: &str) -> Result<Self, CoSimulationError> {
-        if name == "controller" {
-            return Err(CoSimulationError::refused(
-                "part `controller`: laws and estimators run only with the spacecraft that they control, so a controller alone \
-                 cannot be exported\n\nhint: `plant` takes the commands of a controller outside, `loop` is the closed loop",
-            ));
-        }
         let found = Self::ALL.into_iter().find(|(own, _)| *own == name);
         found.map(|(_, part)| part).ok_or_else(|| {
             CoSimulationError::refused(format!("part must be `loop`, `plant` or `controller`, got `{name}`"))
@@ -68,12 +67,15 @@ impl FmuContent {
     /// Creates the content for a part of a scenario.
     ///
     /// # Errors
-    /// Fails for a scenario with custom parts, which no file can contain.
+    /// Fails for a scenario with custom parts, which no file can contain, and for laws that cannot run alone.
     pub fn new(scenario: &Scenario, part: FmuPart) -> Result<Self, CoSimulationError> {
         if scenario.has_custom_parts() {
             let roles = scenario.custom_parts().each().join(", ");
             let why = format!("{}: has custom parts ({roles}), which no FMU can contain", scenario.name);
             return Err(CoSimulationError::refused(why));
+        }
+        if part == FmuPart::Controller {
+            laws_alone(scenario)?;
         }
         Ok(Self { toml: scenario.self_contained().to_toml(), part })
     }

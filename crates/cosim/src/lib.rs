@@ -18,10 +18,14 @@
 mod archive;
 mod communication_point;
 mod content;
+mod controller_run;
+mod controller_table;
 mod cosimulation;
 mod description;
 mod error;
+mod flight_laws;
 mod fmi_version;
+mod fmu_run;
 mod journal;
 mod library;
 mod parameters;
@@ -33,9 +37,11 @@ mod xml;
 
 pub use archive::fmu_bytes;
 pub use content::{FmuContent, FmuPart};
+pub use controller_run::ControllerRun;
 pub use cosimulation::{CoSimulation, StepResult};
 pub use error::CoSimulationError;
 pub use fmi_version::FmiVersion;
+pub use fmu_run::FmuRun;
 pub use library::find_library;
 pub use variable::{Causality, ClockRole, ValueKind, Variable, VariableStart};
 pub use variable_table::VariableTable;

@@ -46,6 +46,12 @@ pub enum Quantity {
     Time,
     /// Value at this index of the observation.
     Observed(usize),
+    /// Value at this index of the estimates and references that laws read.
+    LawInput(usize),
+    /// Output of laws alone at this index.
+    LawOutput(usize),
+    /// Momentum stored in the rotors about this axis.
+    StoredMomentum(usize),
     /// Torque commanded about this axis.
     Commanded(usize),
     /// Mean envelope over the last window.

@@ -20,25 +20,42 @@ pub struct VariableTable {
     pub(crate) axes: usize,
     /// Number of values of the observation.
     pub(crate) observed: usize,
+    /// Number of values of the estimates and references that laws read, of a plant.
+    pub(crate) law_inputs: usize,
     /// True if the importer commands the torque.
     pub(crate) is_commanded: bool,
+    /// Number of inputs.
+    inputs: usize,
+}
+
+/// Returns the unit of a command of the scenario's actuator; empty for one in units of its own.
+pub(crate) fn command_unit(scenario: &Scenario) -> &'static str {
+    let is_torque = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).is_none();
+    if is_torque { scenario.model.commanded_quantity().1 } else { "" }
 }
 
 impl VariableTable {
     /// Creates the table for a part of a scenario, before or during a run.
     pub fn new(scenario: &Scenario, simulation: &Simulation, part: FmuPart) -> Self {
         let axes = scenario.axis_count();
-        let mut table =
-            Self { variables: Vec::new(), axes, observed: 0, is_commanded: part == FmuPart::Plant };
+        let is_commanded = part == FmuPart::Plant;
+        let mut table = Self::empty(axes, axes * if is_commanded { 2 } else { 1 });
+        table.is_commanded = is_commanded;
         table.push("time", "Time since the start".to_owned(), "s", Causality::Independent, Quantity::Time);
         let texts = Texts::new();
         table.add_observation(scenario, simulation, &texts);
+        table.add_law_inputs(scenario, simulation);
         table.add_loop(scenario, simulation, part, &texts);
         table.add_counts();
         table.add_inputs(scenario);
         table.add_parameters(scenario);
         table.add_clocks(scenario, part);
         table
+    }
+
+    /// Creates a table without variables.
+    pub(crate) fn empty(axes: usize, inputs: usize) -> Self {
+        Self { variables: Vec::new(), axes, observed: 0, law_inputs: 0, is_commanded: true, inputs }
     }
 
     /// Returns all variables, in the order of their references.
@@ -56,12 +73,12 @@ impl VariableTable {
         self.variables.iter().find(|variable| variable.name == name)
     }
 
-    /// Returns the number of inputs: external torques, then commands.
+    /// Returns the number of inputs: of a spacecraft, external torques, then commands.
     pub(crate) fn input_count(&self) -> usize {
-        self.axes * if self.is_commanded { 2 } else { 1 }
+        self.inputs
     }
 
-    fn push(
+    pub(crate) fn push(
         &mut self,
         name: impl Into<String>,
         text: String,
@@ -131,8 +148,38 @@ impl VariableTable {
         }
     }
 
+    /// Adds the estimates and references that laws read, of a plant, as far as they are not outputs already.
+    fn add_law_inputs(&mut self, scenario: &Scenario, simulation: &Simulation) {
+        if !self.is_commanded {
+            return;
+        }
+        for field in simulation.telemetry_layout(scenario).law_inputs {
+            let is_new =
+                !self.variables.iter().any(|known| known.name.split('[').next() == Some(field.name.as_str()));
+            for index in 0..field.width() {
+                let quantity = Quantity::LawInput(self.law_inputs);
+                self.law_inputs += 1;
+                if is_new {
+                    let place =
+                        if field.components.is_empty() { String::new() } else { format!("[{}]", index + 1) };
+                    let mut text = field.meaning.to_owned();
+                    text[..1].make_ascii_uppercase();
+                    let name = format!("{}{place}", field.name);
+                    self.push(name, text, field.unit, Causality::Output, quantity);
+                }
+            }
+        }
+        if self.axes > 1 {
+            for axis in 0..3 {
+                let text = "Momentum stored in the rotors, as available to the drives, body axes".to_owned();
+                let name = format!("stored_momentum[{}]", axis + 1);
+                self.push(name, text, "N m s", Causality::Output, Quantity::StoredMomentum(axis));
+            }
+        }
+    }
+
     /// Adds the exact times and the counts.
-    fn add_counts(&mut self) {
+    pub(crate) fn add_counts(&mut self) {
         self.push_count("time_whole_s", "Whole seconds of the exact time", "s", Quantity::TimeWhole);
         let text = "Femtoseconds of the exact time past the whole second";
         self.push_count("time_fs", text, "", Quantity::TimeFemtoseconds);
@@ -158,8 +205,7 @@ impl VariableTable {
         if !self.is_commanded {
             return;
         }
-        let is_torque = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).is_none();
-        let unit = if is_torque { scenario.model.commanded_quantity().1 } else { "" };
+        let unit = command_unit(scenario);
         for axis in 0..self.axes {
             let name = self.about_axis("command", axis);
             let text = "Command that the actuator executes".to_owned();
@@ -169,9 +215,7 @@ impl VariableTable {
 
     /// Adds the grid of communication points, the seed, and the numbers of the scenario.
     fn add_parameters(&mut self, scenario: &Scenario) {
-        let text = "Grid (ns) to which communication points are rounded; 0 for none".to_owned();
-        let grid = self.push("snap_ns", text, "", Causality::Parameter, Quantity::Grid);
-        (grid.kind, grid.start) = (ValueKind::Structural, VariableStart::Integer(0));
+        self.add_grid();
         let text = "Seed of all random numbers".to_owned();
         let seed = self.push("seed", text, "", Causality::Parameter, Quantity::Seed);
         (seed.kind, seed.start) = (ValueKind::Integer, VariableStart::Integer(scenario.seed as i64));
@@ -182,6 +226,13 @@ impl VariableTable {
             let variable = self.push(name, text, unit, Causality::Parameter, Quantity::Key(key.path));
             variable.start = VariableStart::Float(key.value);
         }
+    }
+
+    /// Adds the grid of communication points.
+    pub(crate) fn add_grid(&mut self) {
+        let text = "Grid (ns) to which communication points are rounded; 0 for none".to_owned();
+        let grid = self.push("snap_ns", text, "", Causality::Parameter, Quantity::Grid);
+        (grid.kind, grid.start) = (ValueKind::Structural, VariableStart::Integer(0));
     }
 
     /// Adds the clocks.

@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 43;
+const COUNT: usize = 47;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -46,6 +46,9 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "maths",
         "matrix3",
         "matrix6",
+        "mode_condition",
+        "mode_readings",
+        "mode_supervisor",
         "payne_hanek",
         "pd",
         "phase_plane",
@@ -56,6 +59,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "rigid_rate",
         "square_root",
         "stumpff",
+        "supervised_mode",
         "switching_lines",
         "ticks",
         "torque_distribution",

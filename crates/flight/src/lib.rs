@@ -47,6 +47,9 @@ pub mod kalman_axis;
 pub mod maths;
 pub mod matrix3;
 pub mod matrix6;
+pub mod mode_condition;
+pub mod mode_readings;
+pub mod mode_supervisor;
 pub mod payne_hanek;
 pub mod pd;
 pub mod phase_plane;
@@ -59,6 +62,7 @@ pub mod rigid_rate;
 #[cfg_attr(feature = "std", path = "processor/square_root.rs")]
 pub mod square_root;
 pub mod stumpff;
+pub mod supervised_mode;
 pub mod switching_lines;
 pub mod ticks;
 pub mod torque_distribution;

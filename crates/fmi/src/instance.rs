@@ -4,7 +4,7 @@ use std::ffi::c_int;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use flexsc_cosim::{CoSimulation, CoSimulationError, FmuContent};
+use flexsc_cosim::{CoSimulationError, FmuContent, FmuRun};
 
 use crate::boundary::Held;
 use crate::logger::Logger;
@@ -54,7 +54,7 @@ pub struct InstanceOptions {
 
 /// Run with its mode.
 pub struct Instance {
-    pub run: CoSimulation,
+    pub run: FmuRun,
     pub mode: InstanceMode,
     pub options: InstanceOptions,
     /// Stop time (s) that the importer has stated.
@@ -66,7 +66,7 @@ pub struct Instance {
 /// Snapshot of an instance.
 #[derive(Clone)]
 pub struct InstanceState {
-    run: CoSimulation,
+    run: FmuRun,
     mode: InstanceMode,
 }
 
@@ -103,7 +103,7 @@ impl Instance {
             ));
         }
         Ok(Self {
-            run: CoSimulation::new(content.clone())?,
+            run: FmuRun::new(content.clone())?,
             mode: InstanceMode::Instantiated,
             options,
             stop_time: None,
@@ -148,7 +148,7 @@ impl Instance {
 
     /// Resets the instance to its state after the creation.
     pub fn reset(&mut self) -> Outcome {
-        self.run = CoSimulation::new(self.content.clone())?;
+        self.run = FmuRun::new(self.content.clone())?;
         self.mode = InstanceMode::Instantiated;
         self.stop_time = None;
         Ok(())

@@ -2,6 +2,7 @@
 
 mod condition;
 mod mode_condition;
+mod mode_tables;
 mod operating_mode;
 mod parser;
 mod quantity;
@@ -9,6 +10,7 @@ mod sequence;
 
 pub use condition::{Comparison, ConditionFault, Expression, ModeReadings, Vocabulary};
 pub use mode_condition::ModeCondition;
+pub use mode_tables::{ModeReading, ModeTables, WrittenExit};
 pub use operating_mode::{ModeExit, ModeTarget, OperatingMode, SlewStart};
 pub use quantity::ModeQuantity;
-pub use sequence::{ModeChange, ModeSequence, SequencedMode};
+pub use sequence::{ModeChange, ModeSequence};

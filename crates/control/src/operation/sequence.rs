@@ -1,34 +1,11 @@
-//! Sequence of modes during a run: the active one, when its conditions are tested, and the changes.
+//! Sequence of modes during a run: the supervisor of flight code, and the exact instants of conditions on the truth.
 
+use flexsc_flight::mode_supervisor::{ModeSupervisor, ModeTest, SupervisedExit};
 use flexsc_numerics::time::{Instant, Span};
 
-use super::condition::{Expression, ModeReadings, Vocabulary};
-use super::operating_mode::OperatingMode;
+use super::condition::{Expression, ModeReadings};
+use super::mode_tables::{ModeReading, ModeTables};
 use super::quantity::ModeQuantity;
-
-/// Mode with its conditions, ready for a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SequencedMode {
-    /// Name of the mode.
-    pub name: String,
-    /// Period of the samples at which its conditions are tested.
-    period: Span,
-    exits: Vec<SequencedExit>,
-}
-
-/// End of a mode, with its condition read.
-#[derive(Clone, Debug, PartialEq)]
-struct SequencedExit {
-    /// Index of the mode that follows.
-    to: usize,
-    text: String,
-    condition: Expression,
-    dwell: Span,
-    /// Instants at which quantities of the sky pass numbers of the condition, in order.
-    crossings: Vec<Instant>,
-    /// True if the condition reads the truth, and is tested at exact instants.
-    is_exact: bool,
-}
 
 /// Change of the mode.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,39 +16,30 @@ pub struct ModeChange {
     pub to: usize,
     /// Condition that was met, as written; empty at the start.
     pub cause: String,
+    /// True if the mode stays, because it has changed too often in the last second.
+    pub is_chatter: bool,
 }
 
 /// State of the sequence.
 #[derive(Clone, Debug)]
 pub struct ModeSequence {
-    modes: Vec<SequencedMode>,
-    active: usize,
-    /// Instant at which the mode was entered.
-    entered: Instant,
-    /// Number of times that each mode was entered.
-    entries: Vec<u64>,
-    /// Instant of the next test at a sample.
-    next: Instant,
-    /// Last instant at which conditions were tested.
-    tested: Instant,
-    /// Since when the condition of each end of the mode has held.
-    held: Vec<Option<Instant>>,
+    /// Lists of the supervisor; of those that a run changes, the numbers of the run.
+    tables: ModeTables,
+    supervisor: ModeSupervisor,
+    /// For each end, the instants at which quantities of the sky pass numbers of the condition, in order.
+    crossings: Vec<Vec<Instant>>,
 }
 
-impl SequencedMode {
-    /// Reads the conditions of modes, which were checked before, on sensors of these kinds; a mode whose law has no period
-    /// is tested at `shortest`. `crossings` returns the instants at which a quantity of the sky passes a number.
-    pub fn from_modes(
-        modes: &[OperatingMode],
-        sensors: &[&str],
-        shortest: Span,
+impl ModeSequence {
+    /// Creates the sequence at the start of a run, in the first mode; `None` without modes. `crossings` returns the instants at
+    /// which a quantity of the sky passes a number.
+    pub fn new(
+        mut tables: ModeTables,
         crossings: &dyn Fn(ModeQuantity, f64) -> Vec<Instant>,
-    ) -> Vec<Self> {
-        let known = Vocabulary {
-            sensors: sensors.to_vec(),
-            modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
-            numbers: None,
-        };
+    ) -> Option<Self> {
+        if tables.modes.is_empty() {
+            return None;
+        }
         let passed = |condition: &Expression| {
             let of_sky = condition.leaves().into_iter().filter(|(quantity, _)| quantity.is_of_sky());
             let mut instants: Vec<Instant> =
@@ -79,126 +47,97 @@ impl SequencedMode {
             instants.sort_unstable();
             instants
         };
-        let each = modes.iter().map(|mode| {
-            let exits = mode.leave.iter().filter_map(|exit| {
-                let condition = exit.read(&known).ok()?;
-                Some(SequencedExit {
-                    to: known.modes.iter().position(|name| *name == exit.to)?,
-                    text: exit.when.text().to_owned(),
-                    is_exact: condition.reads_truth(),
-                    crossings: passed(&condition),
-                    condition,
-                    dwell: exit.dwell(),
-                })
-            });
-            Self {
-                name: mode.name.clone(),
-                period: mode.law.period().unwrap_or(shortest),
-                exits: exits.collect(),
-            }
-        });
-        each.collect()
+        let crossings = tables.written.iter().map(|exit| passed(&exit.condition)).collect();
+        let supervisor = ModeSupervisor::start(&mut tables.modes, &mut tables.exits);
+        Some(Self { tables, supervisor, crossings })
     }
-}
 
-impl SequencedExit {
-    /// Returns the instants at which the truth may make the condition true or false, of those of the sky the next one after
-    /// `tested`.
-    fn exact_instants(&self, entered: Instant, tested: Instant) -> impl Iterator<Item = Instant> {
+    /// Returns the index of the active mode.
+    pub fn active(&self) -> usize {
+        self.supervisor.active
+    }
+
+    /// Returns the instant at which the active mode was entered.
+    pub fn entered(&self) -> Instant {
+        Instant::from_ticks(self.supervisor.entered)
+    }
+
+    /// Returns the name of a mode.
+    pub fn name(&self, mode: usize) -> &str {
+        self.tables.names.get(mode).map_or("", String::as_str)
+    }
+
+    /// Returns the next instant at which conditions are tested; `None` for a mode without an end.
+    pub fn due(&self) -> Option<Instant> {
+        let ModeTables { modes, exits, .. } = &self.tables;
+        let due = self.supervisor.due(modes, exits);
+        let tested = Instant::from_ticks(self.supervisor.tested);
+        let exact = self.active_exits().flat_map(|exit| self.exact_instants(exit)).filter(|at| *at > tested);
+        exact.chain(due.has_time.then_some(Instant::from_ticks(due.time))).min()
+    }
+
+    /// Iterates over the indices of the ends of the active mode.
+    fn active_exits(&self) -> std::ops::Range<usize> {
+        let mode = self.tables.modes[self.supervisor.active];
+        mode.first_exit..mode.first_exit + mode.exit_count
+    }
+
+    /// Returns the instants at which the truth may make the condition of an end true or false, of those of the sky the next one
+    /// after the last test.
+    fn exact_instants(&self, exit: usize) -> impl Iterator<Item = Instant> {
+        let (entered, tested) = (self.entered(), Instant::from_ticks(self.supervisor.tested));
         let instant = move |(quantity, limit): (ModeQuantity, Option<f64>)| {
             let origin = if quantity == ModeQuantity::TrueTime { entered } else { Instant::START };
             Some(origin + Span::from_seconds(limit?))
         };
+        let is_exact = self.tables.exits.get(exit).is_some_and(|exit| exit.is_exact);
+        let written = self.tables.written.get(exit).filter(|_| is_exact);
         // A time is above its limit from the next tick on.
-        let leaves = if self.is_exact { self.condition.leaves() } else { Vec::new() };
+        let leaves = written.map(|exit| exit.condition.leaves()).unwrap_or_default();
         let reads_sky = leaves.iter().any(|(quantity, _)| quantity.is_of_sky());
-        let next = self.crossings.get(self.crossings.partition_point(|at| *at <= tested)).copied();
+        let crossings = self.crossings.get(exit).map_or(&[][..], |crossings| crossings);
+        let next = crossings.get(crossings.partition_point(|at| *at <= tested)).copied();
         // The sky may meet the condition from the start of the mode on.
         let of_sky = next.into_iter().chain(reads_sky.then_some(entered + Span::TICK));
         let clocks = leaves.into_iter().filter(|(quantity, _)| !quantity.is_of_sky());
         clocks.filter_map(instant).flat_map(|at| [at, at + Span::TICK]).chain(of_sky)
     }
-}
 
-impl ModeSequence {
-    /// Creates the sequence at the start of a run, in the first mode; `None` without modes.
-    pub fn new(modes: Vec<SequencedMode>) -> Option<Self> {
-        let first = modes.first()?;
-        let mut entries = vec![0; modes.len()];
-        entries[0] = 1;
-        Some(Self {
-            active: 0,
-            entered: Instant::START,
-            entries,
-            next: Instant::START + first.period,
-            tested: Instant::START,
-            held: vec![None; first.exits.len()],
-            modes,
-        })
-    }
-
-    /// Returns the index of the active mode.
-    pub fn active(&self) -> usize {
-        self.active
-    }
-
-    /// Returns the instant at which the active mode was entered.
-    pub fn entered(&self) -> Instant {
-        self.entered
-    }
-
-    /// Returns the number of times that a mode was entered.
-    pub fn entries(&self, mode: usize) -> u64 {
-        self.entries.get(mode).copied().unwrap_or(0)
-    }
-
-    /// Returns the name of a mode.
-    pub fn name(&self, mode: usize) -> &str {
-        self.modes.get(mode).map_or("", |mode| &mode.name)
-    }
-
-    /// Returns the next instant at which conditions are tested; `None` for a mode without an end.
-    pub fn due(&self) -> Option<Instant> {
-        let exits = &self.modes[self.active].exits;
-        let sampled = exits.iter().any(|exit| !exit.is_exact).then_some(self.next);
-        let exact = exits.iter().zip(&self.held).flat_map(|(exit, held)| {
-            let dwelt = held.filter(|_| exit.is_exact).map(|since| since + exit.dwell);
-            exit.exact_instants(self.entered, self.tested).chain(dwelt).filter(|at| *at > self.tested)
-        });
-        exact.chain(sampled).min()
+    /// Returns the readings of the supervisor that conditions of the active mode compare at `now`; NaN of all others.
+    pub fn read(&self, now: Instant, readings: &dyn ModeReadings) -> Vec<f64> {
+        let is_sample = now.ticks() >= self.supervisor.next;
+        let mut values = vec![f64::NAN; self.tables.readings.len()];
+        let place = |reading: ModeReading| self.tables.readings.iter().position(|known| *known == reading);
+        for index in self.active_exits() {
+            let (SupervisedExit { is_exact, .. }, written) =
+                (self.tables.exits[index], &self.tables.written[index]);
+            if is_exact {
+                if let Some(place) = place(ModeReading::Truth(index)) {
+                    values[place] = f64::from(u8::from(written.condition.holds(readings)));
+                }
+            } else if is_sample {
+                for (quantity, _) in written.condition.leaves() {
+                    if let Some(place) = place(ModeReading::Known(quantity)) {
+                        values[place] = readings.value(quantity);
+                    }
+                }
+            }
+        }
+        values
     }
 
     /// Tests the conditions that are due at `now`, in their order, and changes the mode if one is met.
-    pub fn test(&mut self, now: Instant, readings: &dyn ModeReadings) -> Option<ModeChange> {
-        let is_sample = now >= self.next;
-        let mode = &self.modes[self.active];
-        if is_sample {
-            self.next = now + mode.period;
-        }
-        self.tested = now;
-        let mut met = None;
-        for (index, exit) in mode.exits.iter().enumerate() {
-            if !exit.is_exact && !is_sample {
-                continue;
-            }
-            let held = &mut self.held[index];
-            *held = exit.condition.holds(readings).then(|| held.unwrap_or(now));
-            if held.is_some_and(|since| now.since(since) >= exit.dwell) {
-                met = met.or(Some(index));
-            }
-        }
-        let exit = &mode.exits[met?];
-        let change = ModeChange { from: Some(self.active), to: exit.to, cause: exit.text.clone() };
-        self.enter(now, exit.to);
-        Some(change)
-    }
-
-    fn enter(&mut self, now: Instant, mode: usize) {
-        self.active = mode;
-        self.entered = now;
-        self.entries[mode] += 1;
-        self.next = now + self.modes[mode].period;
-        self.held = vec![None; self.modes[mode].exits.len()];
+    pub fn test(&mut self, now: Instant, readings: &[f64]) -> Option<ModeChange> {
+        let ModeTables { modes, exits, steps, written, .. } = &mut self.tables;
+        let from = self.supervisor.active;
+        let ModeTest { has_changed, is_chattering, exit } =
+            self.supervisor.test(now.ticks(), readings, modes, exits, steps);
+        (has_changed || is_chattering).then(|| ModeChange {
+            from: Some(from),
+            to: exits[exit].to,
+            cause: written[exit].text.clone(),
+            is_chatter: is_chattering,
+        })
     }
 }
 
@@ -206,6 +145,7 @@ impl ModeSequence {
 mod tests {
     use std::cell::Cell;
 
+    use super::super::operating_mode::OperatingMode;
     use super::*;
 
     fn at(seconds: f64) -> Instant {
@@ -236,8 +176,8 @@ mod tests {
         }
         let modes = flexsc_formats::document::from_text::<Of>(text).unwrap().mode;
         assert_eq!(OperatingMode::fault(&modes, &[]), None);
-        ModeSequence::new(SequencedMode::from_modes(&modes, &[], Span::from_seconds(1.0), &|_, _| Vec::new()))
-            .unwrap()
+        let tables = ModeTables::from_modes(&modes, &[], Span::from_seconds(1.0));
+        ModeSequence::new(tables, &|_, _| Vec::new()).unwrap()
     }
 
     /// Returns the changes of a run with a rate over time.
@@ -246,7 +186,8 @@ mod tests {
         while let Some(now) = sequence.due().filter(|now| *now <= at(end)) {
             let value = Cell::new(rate(now.seconds()));
             let known = Known { rate: &value, now, entered: sequence.entered() };
-            found.extend(sequence.test(now, &known).map(|change| (now.seconds(), change.to)));
+            let readings = sequence.read(now, &known);
+            found.extend(sequence.test(now, &readings).map(|change| (now.seconds(), change.to)));
         }
         found
     }

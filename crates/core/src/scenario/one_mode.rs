@@ -39,6 +39,25 @@ impl Scenario {
         self.clone().with(|written| written.keep_mode(index))
     }
 
+    /// Returns the scenario in which the law of one stage acts throughout, with its actuators.
+    ///
+    /// # Errors
+    /// Fails without a stage of this index, and if the parts of the stage are inconsistent without the others.
+    pub fn in_stage(&self, index: usize) -> Result<Self, ScenarioError> {
+        let Some(stage) = self.law.stages().get(index).cloned() else {
+            let why = format!("has no stage {index}");
+            return Err(ScenarioError::Key { origin: self.name.clone(), key: "law.stages".to_owned(), why });
+        };
+        self.clone().with(|written| {
+            let acts =
+                |_: usize, of: &AssignedActuator| of.unloads.is_some() || stage.selects(of.kind.kind());
+            written.actuator.retain(acts);
+            written.law = stage.law;
+            written.uncertain.clear();
+            written.correlated.clear();
+        })
+    }
+
     /// Returns the error of an analysis of one loop, for a scenario with several, one in each mode.
     pub fn mode_choice_fault(&self) -> Option<ConfigError> {
         let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();

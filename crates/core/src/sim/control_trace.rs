@@ -14,8 +14,33 @@ use super::Simulation;
 pub enum ControlCall {
     /// Sample of the sensors, which the estimator takes.
     Sample(SensorSample),
+    /// Test of the conditions of a mode of operation, before the decision of the same instant.
+    Mode(ModeTrial),
     /// Decision of the laws, whose commands the actuator takes.
     Decision(ControlDecision),
+}
+
+/// Test of the conditions of a mode of operation, with what the control system knew.
+#[derive(Clone, Debug)]
+pub struct ModeTrial {
+    /// Time of the test.
+    pub now: Instant,
+    /// Index of the mode after the test.
+    pub mode: usize,
+    /// Values that conditions of the mode before compare, in the order of the mode tables; NaN of all others.
+    pub readings: Vec<f64>,
+    /// Estimated angle (rad) and rate (rad/s) about each axis.
+    pub estimates: Vec<[f64; 2]>,
+    /// Angle (rad) and rate (rad/s) of the reference about each axis.
+    pub reference: Vec<[f64; 2]>,
+    /// Target attitude from which angles are counted.
+    pub origin: Orientation,
+    /// Momentum stored in the rotors, as available to the drives (N m s).
+    pub stored_momentum: [f64; 3],
+    /// Speed of each wheel (rad/s).
+    pub wheel_speeds: Vec<f64>,
+    /// Last measured magnetic field (T) and its change by the last two readings (T/s); NaN before.
+    pub field: [[f64; 3]; 2],
 }
 
 /// Sample of the sensors.
@@ -91,6 +116,30 @@ impl Simulation {
             known_inputs,
             shift,
         }));
+    }
+
+    /// Records a test of the mode's conditions with these readings, and the mode after it, before its target is taken.
+    pub(super) fn trace_mode(&mut self, now: Instant, mode: usize, readings: Vec<f64>) {
+        if self.laws.trace.is_none() {
+            return;
+        }
+        let run = self.read_view();
+        let angles = run.estimation.estimates.iter().map(|estimate| estimate.angle);
+        let field = [run.sensors.measured_field(), run.sensors.field_rate];
+        let trial = ModeTrial {
+            now,
+            mode,
+            readings,
+            estimates: angles.zip(run.rates()).map(|(angle, rate)| [angle, rate]).collect(),
+            reference: run.reference(),
+            origin: *run.estimation.origin(),
+            stored_momentum: run.loads.actuator.capabilities().stored_momentum(now),
+            wheel_speeds: run.loads.wheel_speeds(now, run.plant.truth().rigid_rate),
+            field: field.map(|vector| vector.map_or([f64::NAN; 3], Into::into)),
+        };
+        if let Some(trace) = &mut self.laws.trace {
+            trace.push(ControlCall::Mode(trial));
+        }
     }
 
     /// Records the decisions that the actuator has just taken.

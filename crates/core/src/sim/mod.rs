@@ -39,7 +39,7 @@ use flexsc_record::Record;
 use crate::relay_setup::{self, RunSetup};
 use crate::scenario::Scenario;
 
-pub use control_trace::{ControlCall, ControlDecision, SensorSample};
+pub use control_trace::{ControlCall, ControlDecision, ModeTrial, SensorSample};
 pub use error::SimulationError;
 pub use observation::{ObservationField, ObservationGroup};
 pub(crate) use plant::AppliedTorque;

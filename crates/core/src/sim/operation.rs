@@ -1,12 +1,13 @@
 //! Modes of operation of a run: their conditions on what the laws know, and the changes of laws, targets, sensors and
 //! actuators.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use flexsc_control::actuator::ActuatorEvent;
-use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence, SequencedMode};
+use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence, ModeTables};
 use flexsc_control::sensor::SensorKind;
+use flexsc_flight::mode_readings::{distance, largest_size, norm};
+use flexsc_flight::mode_supervisor::MOST_CHANGES;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
 
@@ -15,17 +16,12 @@ use super::run_view::RunView;
 use super::{Simulation, SimulationError};
 use crate::scenario::Scenario;
 
-/// Largest number of changes in a second; more are chatter.
-const MOST_CHANGES: usize = 32;
-
 /// Modes of operation of a run.
 #[derive(Clone, Debug)]
 pub struct Operation {
     sequence: Option<ModeSequence>,
     /// For each mode, which sensors are in use.
     in_use: Vec<Vec<bool>>,
-    /// Instants of the last changes.
-    changes: VecDeque<Instant>,
     /// Sky of the conditions.
     sky: Arc<ModeSky>,
 }
@@ -40,15 +36,11 @@ struct KnownQuantities<'a> {
 impl Operation {
     /// Creates the modes of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
-        let kinds: Vec<&str> = scenario.sensor.iter().map(SensorKind::kind).collect();
-        let shortest = scenario.study.assessment_period;
         let sky = ModeSky::new(scenario);
         let crossings = |quantity: ModeQuantity, limit: f64| sky.crossings(quantity, limit);
-        let modes = SequencedMode::from_modes(&scenario.mode, &kinds, shortest, &crossings);
         Self {
-            sequence: ModeSequence::new(modes),
+            sequence: ModeSequence::new(scenario.mode_tables(), &crossings),
             in_use: (0..scenario.mode.len()).map(|mode| scenario.sensors_in_use(mode)).collect(),
-            changes: VecDeque::new(),
             sky: Arc::new(sky),
         }
     }
@@ -61,8 +53,20 @@ impl Operation {
 
     /// Returns the row of the first mode, at the start of a run with modes.
     pub fn first_event(&self, now: Instant) -> Option<ModeEvent> {
-        let change = ModeChange { from: None, to: self.sequence.as_ref()?.active(), cause: String::new() };
+        let to = self.sequence.as_ref()?.active();
+        let change = ModeChange { from: None, to, cause: String::new(), is_chatter: false };
         self.event(now, change)
+    }
+
+    /// Returns the error of modes that change without end.
+    fn chatter(&self, now: Instant, change: &ModeChange) -> SimulationError {
+        let name = |mode: usize| self.sequence.as_ref().map_or("", |sequence| sequence.name(mode)).to_owned();
+        SimulationError::ModeChatter {
+            at: now,
+            count: MOST_CHANGES + 1,
+            before: change.from.map_or_else(String::new, name),
+            after: name(change.to),
+        }
     }
 
     fn event(&self, now: Instant, change: ModeChange) -> Option<ModeEvent> {
@@ -78,22 +82,13 @@ impl Operation {
             cause: change.cause,
         })
     }
+}
 
-    /// Counts a change at `now`; fails if the modes change without end.
-    fn count_change(&mut self, now: Instant, event: &ModeEvent) -> Result<(), SimulationError> {
-        self.changes.push_back(now);
-        while self.changes.front().is_some_and(|first| now.since(*first) > Span::from_seconds(1.0)) {
-            self.changes.pop_front();
-        }
-        if self.changes.len() <= MOST_CHANGES {
-            return Ok(());
-        }
-        Err(SimulationError::ModeChatter {
-            at: now,
-            count: self.changes.len(),
-            before: event.before.clone(),
-            after: event.mode.clone(),
-        })
+impl Scenario {
+    /// Returns the modes of operation as lists of numbers, before a run.
+    pub fn mode_tables(&self) -> ModeTables {
+        let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
+        ModeTables::from_modes(&self.mode, &kinds, self.study.assessment_period)
     }
 }
 
@@ -106,11 +101,16 @@ impl Simulation {
             return Ok(());
         }
         let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
-        let before = sequence.clone();
-        let sky = &self.operation.sky;
-        let change = sequence.test(now, &KnownQuantities { run: self.read_view(), sequence: &before, sky });
+        let (before, sky) = (sequence.active(), &self.operation.sky);
+        let readings =
+            sequence.read(now, &KnownQuantities { run: self.read_view(), sequence: &sequence, sky });
+        let change = sequence.test(now, &readings);
+        self.trace_mode(now, sequence.active(), readings);
         self.operation.sequence = Some(sequence);
         let Some(change) = change else { return Ok(()) };
+        if change.is_chatter {
+            return Err(self.operation.chatter(now, &change));
+        }
         let (mode, mut start) = (change.to, None);
         self.laws.enter_mode(mode);
         self.sensors.set_in_use(now, &self.operation.in_use[mode]);
@@ -118,14 +118,13 @@ impl Simulation {
         let estimates = &self.estimation.estimates;
         let angles = std::array::from_fn(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.angle));
         let estimated = self.estimation.origin().rotated_by(angles);
-        if self.guidance.enter_mode(now, [before.active(), mode], &estimated) {
+        if self.guidance.enter_mode(now, [before, mode], &estimated) {
             self.estimation.move_origin(now, &self.guidance);
             let errors = self.plant.truth().orientation.error_from(&self.guidance.target(now));
             let distance = f64::sqrt(errors.iter().map(|error| error * error).sum());
             start = Some(ModeTargetStart { mode, distance });
         }
         let Some(event) = self.operation.event(now, change) else { return Ok(()) };
-        self.operation.count_change(now, &event)?;
         self.recorder.record_mode(now, &event, record)?;
         if let Some(start) = start {
             let mut report = Report::new();
@@ -138,28 +137,33 @@ impl Simulation {
 
 impl ModeReadings for KnownQuantities<'_> {
     fn value(&self, quantity: ModeQuantity) -> f64 {
-        let norm = |values: &[f64]| f64::sqrt(values.iter().map(|value| value * value).sum());
         let run = &self.run;
         let (now, estimates) = (run.now, &run.estimation.estimates);
         match quantity {
             ModeQuantity::Rate => norm(&run.rates()),
             ModeQuantity::RateError => {
-                let reference = run.reference();
-                norm(&run.rates().iter().zip(reference).map(|(rate, [_, of])| rate - of).collect::<Vec<_>>())
+                let reference: Vec<f64> = run.reference().into_iter().map(|[_, rate]| rate).collect();
+                distance(&run.rates(), &reference)
             }
             ModeQuantity::AttitudeError => {
-                let errors = estimates.iter().zip(run.reference());
-                norm(&errors.map(|(estimate, [angle, _])| estimate.angle - angle).collect::<Vec<_>>())
+                let angles: Vec<f64> = estimates.iter().map(|estimate| estimate.angle).collect();
+                let reference: Vec<f64> = run.reference().into_iter().map(|[angle, _]| angle).collect();
+                distance(&angles, &reference)
             }
             ModeQuantity::Momentum => norm(&run.loads.actuator.capabilities().stored_momentum(now)),
             ModeQuantity::WheelSpeed => {
                 let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid_rate);
-                speeds.into_iter().map(f64::abs).reduce(f64::max).unwrap_or(f64::NAN)
+                if speeds.is_empty() { f64::NAN } else { largest_size(&speeds) }
             }
-            ModeQuantity::Field => run.sensors.measured_field().map_or(f64::NAN, |field| field.norm()),
-            ModeQuantity::FieldRate => run.sensors.field_rate.map_or(f64::NAN, |change| change.norm()),
+            ModeQuantity::Field => {
+                run.sensors.measured_field().map_or(f64::NAN, |field| norm(field.as_slice()))
+            }
+            ModeQuantity::FieldRate => {
+                run.sensors.field_rate.map_or(f64::NAN, |change| norm(change.as_slice()))
+            }
             ModeQuantity::Silent(sensor) => run.sensors.silence(now, sensor).seconds(),
-            ModeQuantity::Entries(mode) => self.sequence.entries(mode) as f64,
+            // The supervisor counts entries itself.
+            ModeQuantity::Entries(_) => f64::NAN,
             ModeQuantity::LockLost => {
                 f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
             }
@@ -179,13 +183,13 @@ impl ModeReadings for KnownQuantities<'_> {
 
 impl RunView<'_> {
     /// Returns the estimated rate about each axis (rad/s).
-    fn rates(&self) -> Vec<f64> {
+    pub(super) fn rates(&self) -> Vec<f64> {
         self.estimation.estimates.iter().map(|estimate| estimate.rate).collect()
     }
 
     /// Returns the angle (rad) of the reference about each axis, from which the estimated angles differ by the error, and
     /// its rate (rad/s).
-    fn reference(&self) -> Vec<[f64; 2]> {
+    pub(super) fn reference(&self) -> Vec<[f64; 2]> {
         let estimates = &self.estimation.estimates;
         if estimates.len() == 1 {
             let (angle, rate) = self.guidance.manoeuvre_state(self.now);

@@ -219,6 +219,11 @@ impl Simulation {
 }
 
 impl Simulation {
+    /// Returns the momentum stored in the rotors, as available to the drives (N m s, body axes).
+    pub fn stored_momentum(&self) -> [f64; 3] {
+        self.loads.actuator.capabilities().stored_momentum(self.clock.now())
+    }
+
     /// Returns the attitude (w, x, y, z) by the estimate of the last sample, or of now with a continuous sensor; `None` for
     /// one axis.
     ///

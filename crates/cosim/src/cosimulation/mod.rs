@@ -42,6 +42,8 @@ pub struct CoSimulation {
     is_complete: bool,
     /// Observation at the current instant, if it was read there.
     observed: Option<Vec<f64>>,
+    /// Estimates and references that laws read at the current instant, if they were read there.
+    law_inputs: Option<Vec<f64>>,
     /// Error that ended the run.
     failure: Option<String>,
 }
@@ -75,6 +77,7 @@ impl CoSimulation {
             has_begun: false,
             is_complete: false,
             observed: None,
+            law_inputs: None,
             failure: None,
         })
     }
@@ -134,6 +137,7 @@ impl CoSimulation {
         self.simulation = Simulation::new(&scenario, 0);
         self.scenario = scenario;
         self.observed = None;
+        self.law_inputs = None;
         Ok(())
     }
 
@@ -277,6 +281,7 @@ impl CoSimulation {
             return Err(CoSimulationError::refused(why));
         }
         self.observed = None;
+        self.law_inputs = None;
         action(&mut self.simulation).map_err(|source| {
             self.failure = Some(format!("{}: {source}", self.scenario.name));
             CoSimulationError::Run { name: self.scenario.name.clone(), source }

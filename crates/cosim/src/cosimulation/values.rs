@@ -18,6 +18,8 @@ impl CoSimulation {
         match variable.quantity {
             Quantity::Time => Ok(self.time()),
             Quantity::Observed(index) => self.observe().map(|row| row[index]),
+            Quantity::LawInput(index) => self.law_inputs().map(|values| values[index]),
+            Quantity::StoredMomentum(axis) => Ok(self.simulation.stored_momentum()[axis]),
             Quantity::Commanded(axis) => Ok(self.simulation.commanded_torque()[axis]),
             Quantity::WindowMean => Ok(self.simulation.window_mean().unwrap_or(f64::NAN)),
             Quantity::Input(index) => Ok(f64::from_bits(self.journal.inputs[index])),
@@ -130,6 +132,17 @@ impl CoSimulation {
             self.observed = Some(row);
         }
         Ok(self.observed.as_deref().unwrap_or_default())
+    }
+
+    /// Returns the estimates and references that laws read at the current instant.
+    fn law_inputs(&mut self) -> Result<&[f64], CoSimulationError> {
+        if self.law_inputs.is_none() {
+            let layout = self.simulation.telemetry_layout(&self.scenario);
+            self.guarded(|simulation| simulation.open(&mut ()))?;
+            let telemetry = self.guarded(|simulation| simulation.telemetry(&layout))?;
+            self.law_inputs = Some(telemetry.law_inputs);
+        }
+        Ok(self.law_inputs.as_deref().unwrap_or_default())
     }
 
     fn not_settable(&self, reference: u32) -> CoSimulationError {

@@ -6,6 +6,8 @@ mod channel;
 mod kalman_unit;
 mod laws_of_axes;
 mod rate_unit;
+mod mode_inputs;
+mod mode_system;
 mod relays;
 mod sampled_laws;
 
@@ -21,6 +23,8 @@ pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use kalman_unit::{AxisFilter, KalmanUnit};
 pub use laws_of_axes::{LawsOfAxes, WheelDistribution};
 pub use rate_unit::RateUnit;
+pub use mode_inputs::{ModeInputs, ReadingFormula};
+pub use mode_system::{LawsOfMode, ModeSystem};
 pub use relays::Relays;
 pub use sampled_laws::SampledLaws;
 
@@ -57,6 +61,8 @@ pub enum ControlSystem {
     Sampled(Box<SampledLaws>),
     /// B-dot laws, which read the change of the magnetic field.
     BDot(BDotLaws),
+    /// Laws of modes of operation under a supervisor, or stages of a law.
+    Modes(Box<ModeSystem>),
 }
 
 impl ControlSystem {
@@ -67,15 +73,12 @@ impl ControlSystem {
     pub fn new(scenario: &Scenario) -> Result<Self, NotExportable> {
         let axes = scenario.study.axes.len();
         let laws: Vec<&LawKind> = (0..axes).map(|axis| scenario.law.about(axis)).collect();
-        if !scenario.mode.is_empty() {
-            return Err(NotExportable::new(
-                "mode",
-                "changes the laws in a run: choose one with `--mode NAME`",
-            ));
-        }
         if scenario.adaptation.is_some() {
             let reason = "tunes the law in a run: leave it out, and write the value that it reaches";
             return Err(NotExportable::new("adaptation", reason));
+        }
+        if !scenario.mode.is_empty() || matches!(scenario.law, LawKind::Stages(_)) {
+            return Ok(Self::Modes(Box::new(ModeSystem::new(scenario)?)));
         }
         match laws.first() {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
@@ -90,6 +93,7 @@ impl ControlSystem {
             Self::Relays(relays) => relays.calls(),
             Self::Sampled(laws) => laws.calls(),
             Self::BDot(laws) => laws.calls(),
+            Self::Modes(modes) => modes.calls(),
         }
     }
 
@@ -99,6 +103,25 @@ impl ControlSystem {
             Self::Relays(relays) => relays.call(call, now, inputs),
             Self::Sampled(laws) => laws.call(call, now, inputs),
             Self::BDot(laws) => laws.call(call, now, inputs),
+            Self::Modes(modes) => modes.call(call, now, inputs),
+        }
+    }
+
+    /// Returns laws that decide at their period without their estimator and the on-times of jets: they read estimates.
+    #[must_use]
+    pub fn on_estimates(mut self) -> Self {
+        if let Self::Sampled(laws) = &mut self {
+            laws.read_estimates();
+        }
+        self
+    }
+
+    /// Returns the attitude filter, if the laws read one.
+    pub fn estimator(&self) -> Option<&AttitudeUnit> {
+        match self {
+            Self::Relays(_) | Self::BDot(_) => None,
+            Self::Sampled(laws) => laws.estimator.as_ref(),
+            Self::Modes(modes) => modes.estimator.as_ref(),
         }
     }
 
@@ -108,6 +131,7 @@ impl ControlSystem {
             Self::Relays(_) => 0.1,
             Self::Sampled(laws) => laws.period,
             Self::BDot(laws) => laws.period,
+            Self::Modes(modes) => modes.period(),
         }
     }
 }

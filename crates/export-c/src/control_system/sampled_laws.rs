@@ -65,6 +65,11 @@ impl SampledLaws {
         Ok(laws)
     }
 
+    /// Removes the estimator and the on-times of jets: the laws read estimates, and only command.
+    pub(super) fn read_estimates(&mut self) {
+        (self.estimator, self.filter, self.rate_filter, self.jets) = (None, None, None, None);
+    }
+
     /// Returns the number of axes.
     pub fn axis_count(&self) -> usize {
         match &self.laws {

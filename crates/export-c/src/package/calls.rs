@@ -19,6 +19,8 @@ pub fn functions(plan: &Plan<'_>) -> String {
         ControlSystem::Relays(relays) => of_relays(plan, relays, &mut text),
         ControlSystem::Sampled(laws) => of_laws(plan, laws, &mut text),
         ControlSystem::BDot(laws) => b_dot_calls::functions(plan, laws, &mut text),
+        // The laws of each mode are a control system of their own.
+        ControlSystem::Modes(_) => {}
     }
     text
 }

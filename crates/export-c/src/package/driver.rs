@@ -19,7 +19,7 @@ pub fn driver(plan: &Plan<'_>) -> String {
     let most = |words: fn(&CallLayout) -> usize| plan.calls.iter().map(words).max().unwrap_or(0).max(1);
     let _ = writeln!(
         text,
-        "enum {{ CALLS = {}, MOST_INPUTS = {}, MOST_OUTPUTS = {} }};\n\n/* True of a function that is called once, before the others. */\nstatic const bool is_start[CALLS] = {{ {} }};\n",
+        "enum {{ CALLS = {}, MOST_INPUTS = {}, MOST_OUTPUTS = {} }};\n\n/* True of a function that is called once in a block of cycles, before the others. */\nstatic const bool is_start[CALLS] = {{ {} }};\n",
         plan.calls.len(),
         most(CallLayout::input_words),
         most(CallLayout::output_words),
@@ -48,7 +48,7 @@ pub fn driver(plan: &Plan<'_>) -> String {
 fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>, text: &mut String) {
     for call in plan.calls {
         let words = of_call(call).iter().flat_map(|channel| std::iter::repeat_n(channel, channel.count));
-        let rows: Vec<String> = words
+        let mut rows: Vec<String> = words
             .map(|channel| {
                 let (kind, below) = match channel.kind {
                     NumberKind::Real => ('R', 0),
@@ -59,6 +59,10 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
                 format!("    {{ \"{}\", '{kind}', {below}, {scale} }}", channel.name)
             })
             .collect();
+        // An array in C has an element.
+        if rows.is_empty() {
+            rows.push("    { \"unused\", 'F', 2, 0.0 }".to_owned());
+        }
         let _ = writeln!(
             text,
             "static const word_kind {}_{name}s[{}] = {{\n{}\n}};\n",
@@ -100,6 +104,9 @@ fn call(plan: &Plan<'_>, text: &mut String) {
             text,
             "    if (index == {index}) {{\n        {prefix}_{name}_input input;\n        {prefix}_{name}_output output;"
         );
+        if layout.inputs.is_empty() {
+            text.push_str("        input.unused = false;\n");
+        }
         let mut word = 0;
         for channel in &layout.inputs {
             for element in 0..channel.count {

@@ -6,8 +6,8 @@ use super::{Plan, compensator_calls, estimator_calls, kalman_calls};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
-/// Returns the header, with the types of the flight code.
-pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
+/// Returns the header, with the types of the flight code and the struct of the state.
+pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String {
     let prefix = plan.prefix;
     let guard = format!("{}_H", prefix.to_uppercase());
     let mut text = format!(
@@ -21,7 +21,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
     text.push_str("\n\n");
     text.push_str(translation.declarations.trim());
     text.push_str("\n\n");
-    state(plan, &mut text);
+    text.push_str(state);
     for call in plan.calls {
         let _ = writeln!(text, "/* Inputs of `{prefix}_{}`. */", call.name);
         members(&call.inputs, &format!("{prefix}_{}_input", call.name), &mut text);
@@ -39,14 +39,17 @@ pub fn header(plan: &Plan<'_>, translation: &Translation) -> String {
     text
 }
 
-/// Writes the struct of the state.
-fn state(plan: &Plan<'_>, text: &mut String) {
+/// Returns the struct of the state.
+pub fn state(plan: &Plan<'_>) -> String {
+    let mut text = String::new();
     let array = |count: usize| if count == 1 { String::new() } else { format!("[{count}]") };
     text.push_str("/* State of the control system, which its functions change. */\ntypedef struct {\n");
     let mut member = |about: &str, type_name: &str, name: &str| {
         let _ = writeln!(text, "    /* {about} */\n    {} {name};", plan.type_name(type_name));
     };
     match plan.system {
+        // Written beside the laws of each mode.
+        ControlSystem::Modes(_) => {}
         ControlSystem::Relays(relays) => {
             member("Relay about each axis.", "PolledRelay", &format!("relay{}", array(relays.axes.len())));
         }
@@ -88,19 +91,23 @@ fn state(plan: &Plan<'_>, text: &mut String) {
                 member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));
             }
             if let Some(unit) = &laws.filter {
-                kalman_calls::members(plan, unit, text);
+                kalman_calls::members(plan, unit, &mut text);
             }
             if let LawsOfAxes::StateSpace(own) = &laws.laws {
-                compensator_calls::members(own, text);
+                compensator_calls::members(own, &mut text);
             }
         }
     }
     let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
+    text
 }
 
 /// Writes a struct with a member for each channel.
-fn members(channels: &[Channel], name: &str, text: &mut String) {
+pub fn members(channels: &[Channel], name: &str, text: &mut String) {
     text.push_str("typedef struct {\n");
+    if channels.is_empty() {
+        text.push_str("    /* A struct in C has a member. */\n    bool unused;\n");
+    }
     for channel in channels {
         let kind = match channel.kind {
             NumberKind::Real => "double",

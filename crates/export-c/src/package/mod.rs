@@ -10,6 +10,7 @@ mod header;
 mod initialiser;
 mod kalman_calls;
 mod rate_calls;
+mod modes;
 mod signature;
 mod source;
 mod static_files;
@@ -100,12 +101,15 @@ pub fn export(
     let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
     let plan = Plan { prefix, origin, system: &system, calls: &calls };
-    let functions = calls::functions(&plan);
+    let (functions, state) = match &system {
+        ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
+        _ => (calls::functions(&plan), header::state(&plan)),
+    };
     let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
         .map_err(ExportError::Translation)?;
     let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
     let (header, source) =
-        (header::header(&plan, &translation), source::source(&plan, &translation, &functions));
+        (header::header(&plan, &translation, &state), source::source(&plan, &translation, &functions));
     let mut files: Vec<PackageFile> =
         guests.iter().flat_map(|guest| guest.files(&plan, &header, &source)).collect();
     files.extend([

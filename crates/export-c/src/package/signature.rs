@@ -16,7 +16,7 @@ pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
 /// Returns true if the functions read the time.
 pub fn has_time(plan: &Plan<'_>) -> bool {
     match plan.system {
-        ControlSystem::Relays(_) | ControlSystem::BDot(_) => true,
+        ControlSystem::Relays(_) | ControlSystem::BDot(_) | ControlSystem::Modes(_) => true,
         ControlSystem::Sampled(laws) => laws.estimator.is_some(),
     }
 }

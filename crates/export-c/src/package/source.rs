@@ -6,6 +6,32 @@ use super::{Plan, b_dot_calls, compensator_calls, kalman_calls, rate_calls};
 use crate::control_system::{ControlSystem, LawsOfAxes};
 use crate::translate::Translation;
 
+/// Functions of an attitude filter.
+const ESTIMATOR: [&str; 7] = [
+    "attitude_estimator::AttitudeEstimator::start",
+    "attitude_estimator::AttitudeEstimator::take_gyro",
+    "attitude_estimator::AttitudeEstimator::take_observation",
+    "attitude_estimator::AttitudeEstimator::attitude",
+    "attitude_estimator::AttitudeEstimator::rate",
+    "attitude_filter::AttitudeBiasFilter::new",
+    "quaternion::Quaternion::rotation_to",
+];
+
+/// Functions of a supervisor of modes.
+const SUPERVISOR: [&str; 4] = [
+    "mode_supervisor::ModeSupervisor::start",
+    "mode_supervisor::ModeSupervisor::enter",
+    "mode_supervisor::ModeSupervisor::due",
+    "mode_supervisor::ModeSupervisor::test",
+];
+
+/// Functions of the readings of conditions, with their names in C.
+const READINGS: [(&str, &str); 3] = [
+    ("mode_readings::norm", "mode_readings_norm"),
+    ("mode_readings::distance", "mode_readings_distance"),
+    ("mode_readings::largest_size", "mode_readings_largest_size"),
+];
+
 /// Returns the paths of the functions of the flight code that the exported `functions` call.
 pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
     let mut roots = Vec::new();
@@ -13,6 +39,18 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
         roots.push("binary64::infinity");
     }
     match system {
+        ControlSystem::Modes(modes) => {
+            roots.extend(SUPERVISOR);
+            roots.extend(READINGS.iter().filter(|(_, name)| functions.contains(name)).map(|(path, _)| path));
+            if modes.estimator.is_some() {
+                roots.extend(ESTIMATOR);
+            }
+            for laws in super::modes::systems(modes) {
+                roots.extend(self::roots(&laws, ""));
+            }
+            roots.sort_unstable();
+            roots.dedup();
+        }
         ControlSystem::Relays(_) => roots.extend(["relay::RelayLaw::decide", "relay::PolledRelay::step"]),
         ControlSystem::BDot(_) => roots.extend(b_dot_calls::ROOTS),
         ControlSystem::Sampled(laws) => {
@@ -29,15 +67,7 @@ pub fn roots(system: &ControlSystem, functions: &str) -> Vec<&'static str> {
                 roots.push("torque_distribution::torque");
             }
             if laws.estimator.is_some() {
-                roots.extend([
-                    "attitude_estimator::AttitudeEstimator::start",
-                    "attitude_estimator::AttitudeEstimator::take_gyro",
-                    "attitude_estimator::AttitudeEstimator::take_observation",
-                    "attitude_estimator::AttitudeEstimator::attitude",
-                    "attitude_estimator::AttitudeEstimator::rate",
-                    "attitude_filter::AttitudeBiasFilter::new",
-                    "quaternion::Quaternion::rotation_to",
-                ]);
+                roots.extend(ESTIMATOR);
             }
             if laws.filter.is_some() {
                 let is_called =

@@ -4,6 +4,7 @@
 mod b_dot;
 mod kalman;
 mod rate;
+mod mode_calls;
 mod samples;
 
 use std::fmt;
@@ -14,7 +15,7 @@ use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{ControlCall, ControlDecision, Scenario, Simulation, SimulationError};
 use flexsc_flight::ticks::Ticks;
 
-use crate::control_system::{ControlSystem, NotExportable, SampledLaws};
+use crate::control_system::{Channel, ControlSystem, NotExportable};
 
 /// First word of a file of vectors: `flexscV1` as bytes.
 pub const MAGIC: u64 = u64::from_le_bytes(*b"flexscV1");
@@ -104,6 +105,7 @@ pub fn record(scenario: &Scenario, most: usize) -> Result<Vec<CallVector>, Vecto
             }
             match call {
                 ControlCall::Decision(decision) => replay(&mut system, &decision, &mut vectors)?,
+                ControlCall::Mode(trial) => mode_calls::replay_trial(&mut system, &trial, &mut vectors)?,
                 ControlCall::Sample(sample) => {
                     samples::replay(&mut system, scenario, &sample, &mut vectors);
                 }
@@ -120,6 +122,9 @@ fn replay(
     vectors: &mut Vec<CallVector>,
 ) -> Result<(), VectorError> {
     let now = decision.now.ticks();
+    if let ControlSystem::Modes(_) = system {
+        return mode_calls::replay_decision(system, decision, vectors);
+    }
     if let ControlSystem::Relays(_) = system {
         for axis in &decision.axes {
             let event = match axis.cause {
@@ -155,9 +160,21 @@ fn replay(
     }
     kalman::shift(system, now, decision.shift, vectors);
     let ControlSystem::Sampled(laws) = &*system else { return Ok(()) };
-    let (inputs, call, has_jets) = (step_inputs(laws, decision), laws.step_index(), laws.jets.is_some());
+    let (inputs, call) = (step_inputs(&laws.layout().inputs, decision), laws.step_index());
+    let has_jets = laws.jets.is_some();
     let outputs = system.call(call, now, &inputs);
-    let number = vectors.len();
+    compare_commands(vectors.len(), decision, &outputs)?;
+    if let (Some(engine), [.., roll, pitch, yaw]) = (decision.on_times, &outputs[..]) {
+        for (engine, plain) in engine.into_iter().zip([roll, pitch, yaw]).filter(|_| has_jets) {
+            compare(vectors.len(), "the on-time", engine, f64::from_bits(*plain))?;
+        }
+    }
+    vectors.push(CallVector { call, now, inputs, outputs });
+    Ok(())
+}
+
+/// Fails if the laws' outputs in a decision differ from the engine's commands.
+fn compare_commands(number: usize, decision: &ControlDecision, outputs: &[u64]) -> Result<(), VectorError> {
     for axis in &decision.axes {
         let found = f64::from_bits(outputs[axis.axis]);
         match axis.output.command {
@@ -172,21 +189,15 @@ fn replay(
             Command::Moment(_) => {}
         }
     }
-    if let (Some(engine), [.., roll, pitch, yaw]) = (decision.on_times, &outputs[..]) {
-        for (engine, plain) in engine.into_iter().zip([roll, pitch, yaw]).filter(|_| has_jets) {
-            compare(number, "the on-time", engine, f64::from_bits(*plain))?;
-        }
-    }
-    vectors.push(CallVector { call, now, inputs, outputs });
     Ok(())
 }
 
 /// Returns the words of the inputs of a step.
-fn step_inputs(laws: &SampledLaws, decision: &ControlDecision) -> Vec<u64> {
+fn step_inputs(channels: &[Channel], decision: &ControlDecision) -> Vec<u64> {
     let axes = &decision.axes;
     let references: Vec<_> = axes.iter().map(|axis| axis.goal.flight_reference(decision.now)).collect();
     let mut words = Vec::new();
-    for channel in laws.layout().inputs {
+    for channel in channels {
         match channel.name.as_str() {
             "target_attitude" => {
                 if let Orientation::Attitude(q) = decision.origin {

@@ -23,14 +23,15 @@ pub(super) fn replay(
     if let ControlSystem::BDot(_) = &*system {
         return b_dot::sample(system, sample, vectors);
     }
-    let ControlSystem::Sampled(laws) = &*system else { return };
-    if laws.filter.is_some() {
-        return kalman::sample(system, sample, vectors);
+    if let ControlSystem::Sampled(laws) = &*system {
+        if laws.filter.is_some() {
+            return kalman::sample(system, sample, vectors);
+        }
+        if laws.rate_filter.is_some() {
+            return rate::sample(system, sample, vectors);
+        }
     }
-    if laws.rate_filter.is_some() {
-        return rate::sample(system, sample, vectors);
-    }
-    let Some(unit) = &laws.estimator else { return };
+    let Some(unit) = system.estimator() else { return };
     let now = sample.now.ticks();
     let start = vectors.is_empty().then(|| start_inputs(scenario, sample)).flatten();
     let inputs = sample_inputs(unit, scenario, sample);

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::ptr;
 
 use flexsc_core::Scenario;
-use flexsc_cosim::{CoSimulation, FmuContent, FmuPart, VariableTable, find_library};
+use flexsc_cosim::{FmuContent, FmuPart, FmuRun, VariableTable, find_library};
 use tempfile::TempDir;
 
 type Handle = *mut c_void;
@@ -96,7 +96,7 @@ impl Fmu3 {
     /// Unpacks an FMU, and creates an instance, in event mode if `uses_events`.
     pub fn new(scenario: &Scenario, part: FmuPart, uses_events: bool) -> Self {
         let content = FmuContent::new(scenario, part).expect("content");
-        let table = CoSimulation::new(content.clone()).expect("a run").table().clone();
+        let table = FmuRun::new(content.clone()).expect("a run").table().clone();
         let resources = TempDir::new().expect("a directory");
         std::fs::write(resources.path().join("scenario.toml"), &content.toml).expect("written");
         std::fs::write(resources.path().join("part.txt"), content.part.name()).expect("written");

@@ -18,7 +18,7 @@ fn damaged_resources_give_one_error() {
         ("scenario.toml", b"".as_slice(), "token"),
         ("scenario.toml", b"\xff\xfe", "scenario.toml"),
         ("part.txt", b"half", "`half`"),
-        ("part.txt", b"controller", "controller"),
+        ("part.txt", b"controller", "token"),
         ("part.txt", b"plant", "token"),
     ] {
         let mut fmu = Fmu3::new(&scenario, FmuPart::Loop, false);

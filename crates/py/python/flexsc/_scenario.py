@@ -318,8 +318,8 @@ class Scenario(ScenarioAnalysis):
         Args:
             path: The file, which is replaced if it exists.
             fmi: The version of the standard: 3, with exact events, or 2.
-            part: `loop`, the closed loop; or `plant`, the spacecraft with its sensors and actuators, whose
-                commands are inputs. A `controller` alone is refused.
+            part: `loop`, the closed loop; `plant`, the spacecraft with its sensors and actuators, whose
+                commands are inputs; or `controller`, the laws, whose estimates and references are inputs.
             library: The library of FMUs; if omitted, that of this package.
 
         >>> import flexsc, pathlib, tempfile
@@ -330,7 +330,8 @@ class Scenario(ScenarioAnalysis):
         True
 
         Raises:
-            ValueError: The scenario has parts written in Python, or the library is not there.
+            ValueError: The scenario has parts written in Python, its laws cannot run alone as a `controller`, or
+                the library is not there.
         """
         from flexsc._fmi_library import fmi_library
 

@@ -1,0 +1,222 @@
+//! Inputs of a supervisor of modes, and the readings that its conditions compare.
+
+use flexsc_core::Scenario;
+use flexsc_core::control::operation::{ModeQuantity, ModeReading, ModeTables};
+use flexsc_core::control::sensor::SensorKind;
+use flexsc_flight::mode_condition::ConditionSource;
+use flexsc_flight::mode_readings::{distance, largest_size, norm};
+use flexsc_flight::quaternion::Quaternion;
+use flexsc_flight::ticks::Ticks;
+
+use super::attitude_unit::{AttitudeUnit, quaternion};
+use super::{Channel, WordReader};
+
+/// Formula of a reading, with the names of the channels that it reads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReadingFormula {
+    /// Value of an input.
+    Input(String),
+    /// 1 or 0 of an input that is true or false.
+    Flag(String),
+    /// Norm of an array.
+    Norm(String),
+    /// Norm of the difference of two arrays.
+    Distance(String, String),
+    /// Largest size in an array.
+    LargestSize(String),
+}
+
+/// Inputs of a supervisor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeInputs {
+    /// Inputs.
+    pub channels: Vec<Channel>,
+    /// Formula of each reading, over inputs, and over `angle` and `rate` of the attitude filter if there is one.
+    pub formulas: Vec<ReadingFormula>,
+    /// Number of axes.
+    pub axes: usize,
+}
+
+impl ModeInputs {
+    /// Returns the inputs for the readings of modes; `has_filter` is true if an attitude filter gives the estimates.
+    pub(super) fn new(scenario: &Scenario, tables: &ModeTables, has_filter: bool) -> Self {
+        let mut inputs = Self { channels: Vec::new(), formulas: Vec::new(), axes: scenario.study.axes.len() };
+        if has_filter {
+            let about = "Target attitude of the present mode: quaternion w, x, y, z";
+            inputs.add(Channel::real("target_attitude", about, 4, 1.0));
+        }
+        for (index, reading) in tables.readings.iter().enumerate() {
+            let steps = tables.steps.iter();
+            let own = steps.filter(|step| step.source == ConditionSource::Reading && step.index == index);
+            let limit = own.map(|step| step.limit.abs()).fold(0.0, f64::max);
+            let scale = if limit > 0.0 { limit } else { 1.0 };
+            let formula = match *reading {
+                ModeReading::Known(quantity) => inputs.known(scenario, quantity, scale, has_filter),
+                ModeReading::Truth(exit) => inputs.truth(tables, exit),
+            };
+            inputs.formulas.push(formula);
+        }
+        inputs
+    }
+
+    /// Returns the formula of a quantity that the control system knows, and adds its inputs.
+    fn known(
+        &mut self,
+        scenario: &Scenario,
+        quantity: ModeQuantity,
+        scale: f64,
+        has_filter: bool,
+    ) -> ReadingFormula {
+        let axes = self.axes;
+        let sensor_name = |index: usize| {
+            let kinds: Vec<&str> = scenario.sensor.iter().map(SensorKind::kind).collect();
+            let kind = kinds.get(index).copied().unwrap_or("sensor");
+            let same = kinds.iter().filter(|other| **other == kind).count();
+            if same > 1 { format!("{kind}_{index}") } else { kind.to_owned() }
+        };
+        match quantity {
+            ModeQuantity::Rate => {
+                self.rate(scale, has_filter);
+                ReadingFormula::Norm("rate".to_owned())
+            }
+            ModeQuantity::RateError => {
+                self.rate(scale, has_filter);
+                self.add(Channel::real("reference_rate", "Reference: rate (rad/s)", axes, scale));
+                ReadingFormula::Distance("rate".to_owned(), "reference_rate".to_owned())
+            }
+            ModeQuantity::AttitudeError if has_filter => ReadingFormula::Norm("angle".to_owned()),
+            ModeQuantity::AttitudeError => {
+                let about = "Estimated angle from the target of the present mode about each axis (rad)";
+                self.add(Channel::real("angle", about, axes, scale));
+                self.add(Channel::real(
+                    "reference_angle",
+                    "Reference: angle from the target (rad)",
+                    axes,
+                    scale,
+                ));
+                ReadingFormula::Distance("angle".to_owned(), "reference_angle".to_owned())
+            }
+            ModeQuantity::Momentum => {
+                let about = "Momentum stored in the rotors, body axes (N m s)";
+                self.add(Channel::real("stored_momentum", about, 3, scale));
+                ReadingFormula::Norm("stored_momentum".to_owned())
+            }
+            ModeQuantity::WheelSpeed => {
+                let wheels = scenario.study.wheels.as_ref().map_or(1, |wheels| wheels.flight_wheels().len());
+                self.add(Channel::real("wheel_speed", "Speed of each wheel (rad/s)", wheels, scale));
+                ReadingFormula::LargestSize("wheel_speed".to_owned())
+            }
+            ModeQuantity::Field => {
+                let about = "Last measured magnetic field (T); NaN before";
+                self.add(Channel::real("field", about, 3, scale));
+                ReadingFormula::Norm("field".to_owned())
+            }
+            ModeQuantity::FieldRate => {
+                let about = "Change of the field by the last two readings (T/s); NaN before";
+                self.add(Channel::real("field_rate", about, 3, scale));
+                ReadingFormula::Norm("field_rate".to_owned())
+            }
+            ModeQuantity::Silent(sensor) => {
+                let about = "Time since the last reading of the sensor, or since it came into use (s)";
+                self.scalar(&format!("silent_{}", sensor_name(sensor)), about, scale)
+            }
+            ModeQuantity::Elevation(mode) => {
+                let name = scenario.mode.get(mode).map_or("site", |mode| mode.name.as_str());
+                let name = name.to_ascii_lowercase().replace('-', "_");
+                let about = "Elevation above the horizon of the site of a mode, by the ephemeris (rad)";
+                self.scalar(&format!("elevation_{name}"), about, scale)
+            }
+            ModeQuantity::LockLost => {
+                let about = "True while a filter has lost lock";
+                self.add(Channel::flag("lock_lost", about, 1));
+                ReadingFormula::Flag("lock_lost".to_owned())
+            }
+            // Times and entries are the supervisor's own, and the truth has a flag.
+            _ => self.scalar("sunlight", "Part of the Sun's disc in view, by the ephemeris", scale),
+        }
+    }
+
+    fn rate(&mut self, scale: f64, has_filter: bool) {
+        if !has_filter {
+            let about = "Estimated rate about each axis (rad/s)";
+            self.add(Channel::real("rate", about, self.axes, scale));
+        }
+    }
+
+    fn scalar(&mut self, name: &str, about: &str, scale: f64) -> ReadingFormula {
+        self.add(Channel::real(name, about, 1, scale));
+        ReadingFormula::Input(name.to_owned())
+    }
+
+    /// Returns the formula of a condition on the truth: a flag from another part of the flight software.
+    fn truth(&mut self, tables: &ModeTables, exit: usize) -> ReadingFormula {
+        let Some(written) = tables.written.get(exit) else { return ReadingFormula::Flag(String::new()) };
+        let mode = tables.names.get(written.mode).map_or("", String::as_str);
+        let name = format!("truth_{exit}");
+        let about =
+            format!("True while `{}` of the mode `{mode}` is met, from its exact instant on", written.text);
+        self.add(Channel::flag(&name, &about, 1));
+        ReadingFormula::Flag(name)
+    }
+
+    /// Returns the index of the reading that has the value of an input.
+    pub fn index_of(&self, name: &str) -> Option<usize> {
+        let is_own = |formula: &ReadingFormula| matches!(formula, ReadingFormula::Input(own) | ReadingFormula::Flag(own) if own == name);
+        self.formulas.iter().position(is_own)
+    }
+
+    /// Returns true if an input is true or false.
+    pub fn is_flag(&self, name: &str) -> bool {
+        let flag = ReadingFormula::Flag(name.to_owned());
+        self.formulas.contains(&flag)
+    }
+
+    /// Adds an input, if there is none of its name.
+    fn add(&mut self, channel: Channel) {
+        if !self.channels.iter().any(|known| known.name == channel.name) {
+            self.channels.push(channel);
+        }
+    }
+
+    /// Returns the target attitude of the present mode, the first of the inputs with an attitude filter.
+    pub(super) fn target(inputs: &[u64]) -> Quaternion {
+        quaternion(&mut WordReader::new(inputs))
+    }
+
+    /// Returns the readings.
+    pub(super) fn readings(&self, now: Ticks, inputs: &[u64], filter: Option<&AttitudeUnit>) -> Vec<f64> {
+        let given = |name: &str| -> Vec<f64> {
+            let mut words = WordReader::new(inputs);
+            for channel in &self.channels {
+                let values = words.list(channel.count);
+                if channel.name == name {
+                    return values;
+                }
+            }
+            Vec::new()
+        };
+        let array = |name: &str| match (filter, name) {
+            (Some(unit), "rate") => {
+                let rate = unit.estimator.rate(&unit.entries);
+                vec![rate.x, rate.y, rate.z]
+            }
+            (Some(unit), "angle") => {
+                let attitude = unit.estimator.attitude(now, &unit.entries);
+                let angle = Self::target(inputs).rotation_to(&attitude);
+                vec![angle.x, angle.y, angle.z]
+            }
+            _ => given(name),
+        };
+        let value = |formula: &ReadingFormula| match formula {
+            ReadingFormula::Input(name) => given(name).first().copied().unwrap_or(f64::NAN),
+            ReadingFormula::Flag(name) => {
+                let is_set = given(name).first().is_some_and(|value| value.to_bits() != 0);
+                f64::from(u8::from(is_set))
+            }
+            ReadingFormula::Norm(name) => norm(&array(name)),
+            ReadingFormula::Distance(name, other) => distance(&array(name), &array(other)),
+            ReadingFormula::LargestSize(name) => largest_size(&array(name)),
+        };
+        self.formulas.iter().map(value).collect()
+    }
+}

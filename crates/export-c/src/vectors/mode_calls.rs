@@ -1,0 +1,99 @@
+//! Tests of conditions and decisions of modes of operation as calls of their control system.
+
+use flexsc_core::control::sensor::Orientation;
+use flexsc_core::numerics::time::Instant;
+use flexsc_core::{ControlDecision, ModeTrial};
+use flexsc_flight::ticks::Ticks;
+
+use super::{CallVector, VectorError, compare, compare_commands, step_inputs};
+use crate::control_system::{ControlSystem, ModeSystem};
+
+/// Calls the supervisor with what the engine's conditions read, and adds the call.
+pub(super) fn replay_trial(
+    system: &mut ControlSystem,
+    trial: &ModeTrial,
+    vectors: &mut Vec<CallVector>,
+) -> Result<(), VectorError> {
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    let inputs = trial_inputs(modes, trial);
+    supervise(system, trial.now, inputs, vectors)?;
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    compare(vectors.len() - 1, "the mode", trial.mode as f64, modes.supervisor.active as f64)
+}
+
+/// Returns the words of the inputs of the supervisor.
+fn trial_inputs(modes: &ModeSystem, trial: &ModeTrial) -> Vec<u64> {
+    let mut words: Vec<u64> = Vec::new();
+    let mut add = |values: &[f64]| words.extend(values.iter().map(|value| value.to_bits()));
+    let column = |rows: &[[f64; 2]], index: usize| rows.iter().map(|row| row[index]).collect::<Vec<f64>>();
+    for channel in &modes.inputs.channels {
+        match channel.name.as_str() {
+            "angle" => add(&column(&trial.estimates, 0)),
+            "rate" => add(&column(&trial.estimates, 1)),
+            "reference_angle" => add(&column(&trial.reference, 0)),
+            "reference_rate" => add(&column(&trial.reference, 1)),
+            "target_attitude" => {
+                if let Orientation::Attitude(q) = trial.origin {
+                    add(&[q.w, q.i, q.j, q.k]);
+                }
+            }
+            "stored_momentum" => add(&trial.stored_momentum),
+            "wheel_speed" => add(&trial.wheel_speeds),
+            "field" => add(&trial.field[0]),
+            "field_rate" => add(&trial.field[1]),
+            name => {
+                let value = modes.inputs.index_of(name).map_or(f64::NAN, |index| trial.readings[index]);
+                // Truth values are words 0 and 1.
+                let is_flag = modes.inputs.is_flag(name);
+                add(&[if is_flag { f64::from_bits(u64::from(value == 1.0)) } else { value }]);
+            }
+        }
+    }
+    words
+}
+
+/// Calls the supervisor, and adds the call.
+fn supervise(
+    system: &mut ControlSystem,
+    now: Instant,
+    inputs: Vec<u64>,
+    vectors: &mut Vec<CallVector>,
+) -> Result<(), VectorError> {
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    let (call, now) = (modes.call_index("supervise"), now.ticks());
+    let outputs = system.call(call, now, &inputs);
+    vectors.push(CallVector { call, now, inputs, outputs });
+    Ok(())
+}
+
+/// Calls the laws of the present mode with what the engine's laws read, and adds the call. A stage that begins at this time is
+/// entered before.
+pub(super) fn replay_decision(
+    system: &mut ControlSystem,
+    decision: &ControlDecision,
+    vectors: &mut Vec<CallVector>,
+) -> Result<(), VectorError> {
+    if decision.axes.iter().any(|axis| decision.now < axis.goal.from) {
+        return Ok(());
+    }
+    let now: Ticks = decision.now.ticks();
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    if modes.tables.written.is_empty() {
+        let due = modes.supervisor.due(&modes.tables.modes, &modes.tables.exits);
+        if due.has_time && due.time == now {
+            supervise(system, decision.now, Vec::new(), vectors)?;
+        }
+    }
+    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+    let call = modes.call_index("step");
+    let layout = system.calls().swap_remove(call);
+    let inputs = step_inputs(&layout.inputs, decision);
+    let outputs = system.call(call, now, &inputs);
+    if let ControlSystem::Modes(modes) = &*system
+        && let Some(own) = modes.law_outputs(&outputs)
+    {
+        compare_commands(vectors.len(), decision, &own)?;
+    }
+    vectors.push(CallVector { call, now, inputs, outputs });
+    Ok(())
+}

@@ -1,0 +1,181 @@
+//! Laws alone as an FMU: joined with a plant, the closed loop in every bit.
+
+use flexsc_core::Scenario;
+use flexsc_cosim::{Causality, FmuPart};
+
+use crate::importer::{Fmu3, shipped};
+
+/// Plant and laws of a scenario, with the variables that join them.
+struct Pair {
+    plant: Fmu3,
+    laws: Fmu3,
+    /// Inputs of the laws that are outputs of the plant.
+    measured: Vec<String>,
+    /// Inputs of the plant that are outputs of the laws.
+    commanded: Vec<String>,
+}
+
+/// Returns the names of the variables with a causality.
+fn names(fmu: &Fmu3, causality: Causality) -> Vec<String> {
+    let own = fmu.table.variables().iter().filter(|of| of.causality == causality && !of.is_clock());
+    own.map(|of| of.name.clone()).collect()
+}
+
+impl Pair {
+    fn new(scenario: &Scenario, uses_events: bool) -> Self {
+        let [plant, laws] =
+            [FmuPart::Plant, FmuPart::Controller].map(|part| Fmu3::new(scenario, part, uses_events));
+        let joined = |inputs: Vec<String>, outputs: Vec<String>| -> Vec<String> {
+            inputs.into_iter().filter(|name| outputs.contains(name)).collect()
+        };
+        let measured = joined(names(&laws, Causality::Input), names(&plant, Causality::Output));
+        let commanded = joined(names(&plant, Causality::Input), names(&laws, Causality::Output));
+        assert_eq!(measured.len(), names(&laws, Causality::Input).len(), "{measured:?}");
+        for fmu in [&plant, &laws] {
+            fmu.set_grid(1);
+            fmu.begin(None);
+        }
+        Self { plant, laws, measured, commanded }
+    }
+
+    fn measure(&self) {
+        for name in &self.measured {
+            let [value] = self.plant.reals([name]);
+            assert_eq!(self.laws.set(name, value), 0, "{name}");
+        }
+    }
+
+    fn command(&self) {
+        for name in &self.commanded {
+            let [value] = self.laws.reals([name]);
+            assert_eq!(self.plant.set(name, value), 0, "{name}");
+        }
+    }
+}
+
+/// Returns the bits of the motion in the state of a run. Torques at a point are those before the response in a plant, and those after
+/// it in a loop.
+fn state(fmu: &Fmu3) -> Vec<u64> {
+    let is_motion = |name: &String| name.starts_with("state.") && !name.contains("torque");
+    let own = names(fmu, Causality::Output).into_iter().filter(is_motion);
+    own.map(|name| fmu.reals([&name])[0].to_bits()).collect()
+}
+
+const SCENARIOS: [(&str, f64, usize); 4] = [
+    ("wheel-fixed-gain", 0.3, 200),
+    ("wheel-scheduled-gain", 0.3, 200),
+    ("earth-observer", 0.25, 120),
+    ("station-keeping", 0.5, 200),
+];
+
+#[test]
+fn plant_and_laws_equal_the_closed_loop() {
+    for (name, period, count) in SCENARIOS {
+        let scenario = shipped(name, &[("duration", "200.0")]);
+        let native = Fmu3::new(&scenario, FmuPart::Loop, false);
+        native.set_grid(1);
+        native.begin(None);
+        let pair = Pair::new(&scenario, false);
+        for index in 0..count {
+            let from = index as f64 * period;
+            let size = (index + 1) as f64 * period - from;
+            pair.measure();
+            assert_eq!(pair.laws.step(from, size).status, 0);
+            pair.command();
+            assert_eq!(pair.plant.step(from, size).status, 0);
+            native.step(from, size);
+            assert_eq!(state(&pair.plant), state(&native), "{name} at {} s", from + size);
+        }
+        assert_eq!(pair.laws.integers(["events"]), [count as i64]);
+    }
+}
+
+#[test]
+fn laws_return_early_at_their_decisions() {
+    for (name, _, _) in SCENARIOS {
+        let scenario = shipped(name, &[("duration", "40.0")]);
+        let native = Fmu3::new(&scenario, FmuPart::Loop, false);
+        native.begin(None);
+        let pair = Pair::new(&scenario, true);
+        pair.measure();
+        pair.laws.update();
+        pair.command();
+        pair.plant.update();
+        for fmu in [&pair.plant, &pair.laws] {
+            assert_eq!(fmu.mode("fmi3EnterStepMode"), 0);
+        }
+        let (mut at, mut decisions) = (0.0, 0);
+        while at < 30.0 {
+            // The laws say when they decide; the plant goes there through its own events.
+            let decided = pair.laws.step(at, 40.0 - at);
+            assert!(decided.is_event && decided.is_early, "{name} {decided:?}");
+            let mut reached = at;
+            while reached < decided.reached {
+                let stepped = pair.plant.step(reached, decided.reached - reached);
+                assert_eq!(stepped.status, 0, "{name}");
+                reached = stepped.reached;
+                if stepped.is_early {
+                    assert_eq!(pair.plant.mode("fmi3EnterEventMode"), 0);
+                    pair.plant.update();
+                    assert_eq!(pair.plant.mode("fmi3EnterStepMode"), 0);
+                }
+            }
+            for fmu in [&pair.plant, &pair.laws] {
+                assert_eq!(fmu.mode("fmi3EnterEventMode"), 0);
+            }
+            pair.measure();
+            pair.laws.update();
+            pair.command();
+            pair.plant.update();
+            for fmu in [&pair.plant, &pair.laws] {
+                assert_eq!(fmu.mode("fmi3EnterStepMode"), 0);
+            }
+            native.step(at, decided.reached - at);
+            at = decided.reached;
+            decisions += 1;
+            assert_eq!(state(&pair.plant), state(&native), "{name} at {at} s");
+        }
+        assert_eq!(pair.laws.integers(["events"]), [decisions], "{name}");
+    }
+}
+
+#[test]
+fn states_of_laws_are_restored() {
+    let scenario = shipped("wheel-fixed-gain", &[("duration", "60.0")]);
+    let pair = Pair::new(&scenario, false);
+    let steps = |from: usize, to: usize| -> Vec<u64> {
+        let mut found = Vec::new();
+        for index in from..to {
+            for (place, name) in pair.measured.iter().enumerate() {
+                assert_eq!(pair.laws.set(name, 1e-3 * (index * 7 + place) as f64), 0);
+            }
+            let at = index as f64 * 0.3;
+            assert_eq!(pair.laws.step(at, (index + 1) as f64 * 0.3 - at).status, 0);
+            found.extend(pair.commanded.iter().map(|name| pair.laws.reals([name])[0].to_bits()));
+        }
+        found
+    };
+    steps(0, 20);
+    let bytes = pair.laws.bytes(pair.laws.state());
+    let kept = pair.laws.state();
+    let expected = steps(20, 40);
+    pair.laws.restore(kept);
+    assert_eq!(steps(20, 40), expected);
+    let restored = pair.laws.deserialized(&bytes).expect("a state");
+    pair.laws.restore(restored);
+    assert_eq!(steps(20, 40), expected);
+    assert!(pair.laws.deserialized(b"damaged").is_none());
+}
+
+#[test]
+fn laws_that_cannot_run_alone_are_refused() {
+    for (name, words) in [
+        ("relay-fixed", ["law.relay", "crosses a limit"]),
+        ("earth-observer-lqg", ["law.state_space", "controller"]),
+        ("relay-adaptive", ["adaptation", "controller"]),
+    ] {
+        let refused = flexsc_cosim::FmuContent::new(&shipped(name, &[]), FmuPart::Controller);
+        let why = refused.expect_err("a refusal").to_string();
+        assert!(words.iter().all(|word| why.contains(word)), "{name}: {why}");
+    }
+}
