@@ -116,7 +116,7 @@ LAWS = [("wheel-fixed-gain", 0.3), ("earth-observer", 0.25), ("station-keeping",
 
 
 def slave(path: str, fmi: Literal[2, 3]) -> tuple[Any, dict[str, int]]:
-    """An initialized instance of an FMU for co-simulation, with points on a grid of 1 ns, and its references by name."""
+    """An initialized instance of an FMU, with points on a grid of 1 ns, and its references by name."""
     described = fmpy.read_model_description(path)
     references = {variable.name: variable.valueReference for variable in described.modelVariables}
     arguments = {
@@ -154,7 +154,9 @@ def test_plant_and_controller_equal_the_closed_loop(
     assert all(validate_fmu(path) == [] for path in paths.values())
     (plant, plant_names), (laws, law_names) = slave(paths["plant"], fmi), slave(paths["controller"], fmi)
     described = fmpy.read_model_description(paths["controller"])
-    inputs = [of.name for of in described.modelVariables if of.causality == "input" and of.name in plant_names]
+    inputs = [
+        of.name for of in described.modelVariables if of.causality == "input" and of.name in plant_names
+    ]
     commands = [of.name for of in described.modelVariables if of.name.split("[")[0] == "command"]
     axes = "" if len(commands) == 1 else "[1]"
     read, write = ("getReal", "setReal") if fmi == 2 else ("getFloat64", "setFloat64")

@@ -24,9 +24,10 @@ pub fn laws_alone(scenario: &Scenario) -> Result<(ControlSystem, Span), CoSimula
             "law.relay",
             "decides when an angle crosses a limit, between the points of an importer",
         )),
-        ControlSystem::BDot(_) => {
-            Err(refused("law.b_dot", "reads the change of the magnetic field, which a plant does not have as an output"))
-        }
+        ControlSystem::BDot(_) => Err(refused(
+            "law.b_dot",
+            "reads the change of the magnetic field, which a plant does not have as an output",
+        )),
         ControlSystem::Modes(_) => {
             let key = if scenario.mode.is_empty() { "law.stages" } else { "mode" };
             Err(refused(

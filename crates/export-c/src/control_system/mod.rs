@@ -5,9 +5,9 @@ mod b_dot;
 mod channel;
 mod kalman_unit;
 mod laws_of_axes;
-mod rate_unit;
 mod mode_inputs;
 mod mode_system;
+mod rate_unit;
 mod relays;
 mod sampled_laws;
 
@@ -22,9 +22,9 @@ pub use b_dot::BDotLaws;
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use kalman_unit::{AxisFilter, KalmanUnit};
 pub use laws_of_axes::{LawsOfAxes, WheelDistribution};
-pub use rate_unit::RateUnit;
 pub use mode_inputs::{ModeInputs, ReadingFormula};
 pub use mode_system::{LawsOfMode, ModeSystem};
+pub use rate_unit::RateUnit;
 pub use relays::Relays;
 pub use sampled_laws::SampledLaws;
 

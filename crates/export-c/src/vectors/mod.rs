@@ -3,8 +3,8 @@
 
 mod b_dot;
 mod kalman;
-mod rate;
 mod mode_calls;
+mod rate;
 mod samples;
 
 use std::fmt;

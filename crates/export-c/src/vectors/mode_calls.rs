@@ -16,7 +16,7 @@ pub(super) fn replay_trial(
 ) -> Result<(), VectorError> {
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
     let inputs = trial_inputs(modes, trial);
-    supervise(system, trial.now, inputs, vectors)?;
+    supervise(system, trial.now, inputs, vectors);
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
     compare(vectors.len() - 1, "the mode", trial.mode as f64, modes.supervisor.active as f64)
 }
@@ -53,17 +53,11 @@ fn trial_inputs(modes: &ModeSystem, trial: &ModeTrial) -> Vec<u64> {
 }
 
 /// Calls the supervisor, and adds the call.
-fn supervise(
-    system: &mut ControlSystem,
-    now: Instant,
-    inputs: Vec<u64>,
-    vectors: &mut Vec<CallVector>,
-) -> Result<(), VectorError> {
-    let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
+fn supervise(system: &mut ControlSystem, now: Instant, inputs: Vec<u64>, vectors: &mut Vec<CallVector>) {
+    let ControlSystem::Modes(modes) = &*system else { return };
     let (call, now) = (modes.call_index("supervise"), now.ticks());
     let outputs = system.call(call, now, &inputs);
     vectors.push(CallVector { call, now, inputs, outputs });
-    Ok(())
 }
 
 /// Calls the laws of the present mode with what the engine's laws read, and adds the call. A stage that begins at this time is
@@ -81,7 +75,7 @@ pub(super) fn replay_decision(
     if modes.tables.written.is_empty() {
         let due = modes.supervisor.due(&modes.tables.modes, &modes.tables.exits);
         if due.has_time && due.time == now {
-            supervise(system, decision.now, Vec::new(), vectors)?;
+            supervise(system, decision.now, Vec::new(), vectors);
         }
     }
     let ControlSystem::Modes(modes) = &*system else { return Ok(()) };
