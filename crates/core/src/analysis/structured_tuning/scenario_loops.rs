@@ -41,7 +41,13 @@ impl ScenarioLoops {
         table.remove("uncertain");
         table.remove("correlated");
         for name in &keys {
-            number(&table, name).ok_or_else(|| ConfigError::new(name, "is no number of this scenario"))?;
+            let hint = if name.starts_with("mode[") && !table.contains_key("mode") {
+                ": one mode acts throughout, and its law is `law`; conditions do not act"
+            } else {
+                ""
+            };
+            let why = || format!("is no number of this scenario{hint}");
+            number(&table, name).ok_or_else(|| ConfigError::new(name, why()))?;
         }
         let uncertain = if corners { all.keys } else { Vec::new() };
         if let Some(tuned) = uncertain.iter().find(|own| keys.contains(&own.key)) {
