@@ -133,6 +133,8 @@ fn numbers_of_conditions_are_keys() {
     let starts: Vec<_> =
         table(&dir, "swept/runs.csv").iter().map(|row| row["mode_starts_s"].clone()).collect();
     assert_eq!(starts, ["[0.0,3.0]", "[0.0,6.0]", "[0.0,9.0]"]);
+    let tuned = dir.run("tune two.toml --mode a --vary mode[0].leave[0].numbers.after=3:9").exits(2);
+    tuned.says(&["one mode acts throughout, and its law is `law`"]);
     for (from, to, words) in [
         ("after = 4.0", "soon = 4.0", "`mode[0].leave[0].numbers.soon` is not in the condition"),
         ("> last", "> last or truth.time > lately", "`mode[0].leave[0].when`"),

@@ -32,7 +32,7 @@ enum SegmentPath {
     Turn(Slew),
     /// The rate of the reference decays to that of the frame before the turn.
     Moving(RateDecay, Slew),
-    /// The same for modes that are to rest: the decay of the rate, if there is one, and the turn.
+    /// Decay of the rate, if there is one, and turn, which leave modes at rest.
     Shaped(Option<PlannedSlew>, PlannedSlew),
     Table(AttitudeTable),
 }

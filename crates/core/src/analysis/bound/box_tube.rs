@@ -150,7 +150,8 @@ impl BoxPair<'_> {
     fn rate_bound(&self, degree: i32) -> f64 {
         let [by_position, by_rate] = self.pair.weights.map(f64::abs);
         let w = self.frequency.high;
-        (by_position * w.powi(degree - 1) + by_rate * w.powi(degree)) / self.cosine.low
+        let power = (1..degree).fold(1.0, |power, _| power * w);
+        (by_position * power + by_rate * (power * w)) / self.cosine.low
     }
 
     /// Returns the bound of the second derivative of the impulse response to an input, without the decay.
@@ -172,7 +173,7 @@ impl BoxPair<'_> {
         }
         let [by_position, by_rate] = self.pair.weights.map(f64::abs);
         let w = self.frequency.high;
-        let moved = (by_position * w.powi(2) + by_rate * w.powi(3)) / self.cosine.low;
+        let moved = (by_position * (w * w) + by_rate * (w * w * w)) / self.cosine.low;
         (position * moved + rate * self.rate_bound(2) + push * self.rate_bound(1)) * (1.0 + SUMMATION)
     }
 

@@ -79,7 +79,7 @@ impl ExactTube {
         let mut tube =
             Self { poles, start, inputs, curvature: (sizes, rigid), narrowest: until * 1e-12, small: 0.0 };
         tube.small = tube.inputs.iter().map(|input| input.bends[0].iter().sum::<f64>()).fold(0.0, f64::max)
-            * until.powi(3)
+            * (until * until * until)
             * 1e-24;
         tube
     }

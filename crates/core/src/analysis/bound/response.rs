@@ -114,8 +114,8 @@ impl Response {
     /// and returns that of the polynomial, if it is constant.
     pub fn add_derivative(&self, degree: i32, factor: f64, poles: &[ModePole], sizes: &mut [f64]) -> f64 {
         for (pole, amplitude) in &self.terms {
-            let power = poles[*pole].frequency.powi(degree);
-            sizes[*pole] += factor * power * amplitude.re.hypot(amplitude.im);
+            let power = (0..degree).fold(1.0, |power, _| power * poles[*pole].frequency);
+            sizes[*pole] += factor * power * libm::hypot(amplitude.re, amplitude.im);
         }
         factor
             * match degree {

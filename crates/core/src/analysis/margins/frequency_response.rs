@@ -154,7 +154,7 @@ pub fn largest_gain(matrix: &DMatrix<Complex<f64>>) -> f64 {
     }
     let scaled = matrix.map(|entry| entry / size);
     let values = (scaled.adjoint() * scaled).symmetric_eigenvalues();
-    size * libm::sqrt(values.max().max(0.0))
+    size * f64::sqrt(values.max().max(0.0))
 }
 
 /// Returns the direction into which a small matrix has its largest gain: the left singular vector.

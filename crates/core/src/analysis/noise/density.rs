@@ -84,10 +84,10 @@ impl NoisyLoop {
 pub fn cumulative_rms(frequencies: &[f64], density: &[f64]) -> Vec<f64> {
     let Some((first, start)) = frequencies.first().zip(density.first()) else { return Vec::new() };
     let mut sum = first * start;
-    let mut found = vec![libm::sqrt(sum)];
+    let mut found = vec![f64::sqrt(sum)];
     for (f, s) in frequencies.windows(2).zip(density.windows(2)) {
         sum += 0.5 * (f[1] - f[0]) * (s[0] + s[1]);
-        found.push(libm::sqrt(sum));
+        found.push(f64::sqrt(sum));
     }
     found
 }

@@ -100,7 +100,7 @@ impl WheelImbalance {
         let each = lines.len() / speeds.len().max(1);
         let rms = |output: usize| {
             let at = |own: &[WheelLines]| {
-                libm::sqrt(own.iter().map(|lines| lines.outputs[output].mean_square()).sum())
+                f64::sqrt(own.iter().map(|lines| lines.outputs[output].mean_square()).sum())
             };
             lines.chunks(each.max(1)).map(at).collect()
         };

@@ -123,13 +123,13 @@ impl NoiseReport {
         let mut found = Vec::with_capacity(outputs.len());
         for (place, density) in densities.into_iter().enumerate() {
             let output = &noisy.outputs[outputs[place]];
-            let rms = |variances: &[f64]| libm::sqrt(variances.iter().sum());
+            let rms = |variances: &[f64]| f64::sqrt(variances.iter().sum());
             found.push(OutputNoise {
                 output: output.name.clone(),
                 unit: output.unit.clone(),
                 rms: rms(&mean[place]),
                 sample_rms: rms(&sampled[place]),
-                rms_by_source: mean[place].iter().map(|variance| libm::sqrt(*variance)).collect(),
+                rms_by_source: mean[place].iter().map(|variance| f64::sqrt(*variance)).collect(),
                 cumulative_rms: cumulative_rms(&frequency_hz, &density.total),
                 density: density.total,
                 density_by_source: density.by_source,
@@ -202,7 +202,7 @@ impl WindowRms {
     /// Returns the rms of an output over windows, from all sources together.
     fn new(noisy: &NoisyLoop, output: usize, window: Window) -> Result<Self, String> {
         let each = noisy.window_variances(output, window)?;
-        let rms = |value: fn(&WindowVariances) -> f64| libm::sqrt(each.iter().map(value).sum());
+        let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());
         Ok(Self {
             window_s: window.length,
             separation_s: window.separation,

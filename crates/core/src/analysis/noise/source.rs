@@ -163,7 +163,7 @@ impl SourceList {
             let (noise, Some(period)) = (disturbance.noise.get(), disturbance.period) else { continue };
             if noise > 0.0 {
                 let axis = disturbance.about.map_or(0, Axis::index);
-                let deviation = libm::sqrt(noise / period.seconds());
+                let deviation = f64::sqrt(noise / period.seconds());
                 let period = period.leading_femtoseconds();
                 self.found.push(NoiseSource {
                     key: format!("disturbance[{index}].noise"),

@@ -114,7 +114,7 @@ impl NoisyLoop {
         }
         let mean = || Functional::mean(0.0, length, 1.0);
         // Legendre's polynomial of degree 1 over the window, normalised to a mean square of 1.
-        let root = libm::sqrt(3.0) / length;
+        let root = f64::sqrt(3.0) / length;
         let line =
             Functional { lines: vec![([0.0, length], [-root, 2.0 * root / length])], points: Vec::new() };
         let minus_mean = || Functional::mean(0.0, length, -1.0);
@@ -308,7 +308,7 @@ mod tests {
     fn lag(period: f64) -> NoisyLoop {
         let decay = libm::exp(-period / 3.0);
         // Under white noise of the density q held for T, of the variance q/T, with q = 2/3.
-        let deviation = libm::sqrt(2.0 / 3.0 / period);
+        let deviation = f64::sqrt(2.0 / 3.0 / period);
         let a = dmatrix![decay];
         let g = dmatrix![3.0 * (1.0 - decay) * deviation];
         let ticks = (period * 1e15) as i64;

@@ -41,10 +41,13 @@ impl ScenarioLoops {
         table.remove("uncertain");
         table.remove("correlated");
         for name in &keys {
-            let of_mode =
-                if name.starts_with("mode[") { ": the law of the chosen mode is `law`" } else { "" };
-            let why = || ConfigError::new(name, format!("is no number of this scenario{of_mode}"));
-            number(&table, name).ok_or_else(why)?;
+            let hint = if name.starts_with("mode[") && !table.contains_key("mode") {
+                ": one mode acts throughout, and its law is `law`; conditions do not act"
+            } else {
+                ""
+            };
+            let why = || format!("is no number of this scenario{hint}");
+            number(&table, name).ok_or_else(|| ConfigError::new(name, why()))?;
         }
         let uncertain = if corners { all.keys } else { Vec::new() };
         if let Some(tuned) = uncertain.iter().find(|own| keys.contains(&own.key)) {

@@ -10,7 +10,7 @@ const SAMPLES: u64 = 600;
 
 fn error(run: u32, sample: u64) -> Vector {
     let (r, t) = (f64::from(run), sample as f64);
-    let wave = (3.0 + 0.4 * r) * 1e-6 * f64::sin(TAU * t / 37.0 + 0.7 * r);
+    let wave = (3.0 + 0.4 * r) * 1e-6 * libm::sin(TAU * t / 37.0 + 0.7 * r);
     Vector::new(0.0, (r - 4.5) * 2e-6 + (f64::from(run % 3) - 1.0) * 1e-8 * t + wave, 0.0)
 }
 
