@@ -80,6 +80,20 @@ fn limb_and_moon_blind_within_their_angles() {
     assert!(!events.is_empty());
 }
 
+/// Moon and limb silence a tracker as the Sun does.
+#[test]
+fn each_body_silences_a_tracker() {
+    for exclusion in ["{ moon = 1.5 }", "{ limb = 1.3459 }"] {
+        let trace = traced(&scenario(exclusion));
+        let events = column(&trace, "/blinding", "time_s");
+        let blinded = |time: f64| events.iter().filter(|at| **at <= time).count() % 2 == 1;
+        let used = times_used(&trace);
+        assert!(events.len() > 1 && used.len() > 50, "{exclusion}: {events:?}");
+        let wrong: Vec<_> = used.into_iter().filter(|time| blinded(*time)).collect();
+        assert!(wrong.is_empty(), "{exclusion}: {wrong:?}");
+    }
+}
+
 /// While it is blinded, a star tracker gives no sample, and the metric is the time between the events.
 #[test]
 fn a_blinded_tracker_gives_no_sample() {

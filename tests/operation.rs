@@ -61,6 +61,19 @@ const BODY: &str = "duration = 30.0\n[body.planar]\ninertia = 100.0\nangle = 2e-
                     [[actuator]]\nthrusters = { torque = 0.5, period = 0.5 }\n[[actuator]]\nhold = { period = 0.25 }\n";
 const LAW: &str = "law.pd = { k_p = 4.0, k_d = 30.0, period = 0.5 }";
 
+/// Of two conditions that are met at one sample, the first as written ends the mode.
+#[test]
+fn the_first_condition_in_order_ends_the_mode() {
+    for [first, second] in [["b", "c"], ["c", "b"]] {
+        let text = format!(
+            "{BODY}[[mode]]\nname = \"a\"\n{LAW}\n\
+             leave = [{{ to = \"{first}\", when = \"run_time >= 10\" }}, {{ to = \"{second}\", when = \"run_time > 9\", for = 0.5 }}]\n\
+             [[mode]]\nname = \"b\"\n{LAW}\n[[mode]]\nname = \"c\"\n{LAW}\n"
+        );
+        assert_eq!(modes(&traced(&scenario(&text)))[1], (10.0, first.to_owned()));
+    }
+}
+
 #[test]
 fn actuators_change_with_the_mode_as_with_the_stage() {
     let staged = format!(

@@ -69,3 +69,22 @@ impl OrbitEnvironment {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use flexsc_numerics::time::Span;
+
+    /// The Moon seen from an orbit, with its direction and distance of 2026-11-24 by ERFA: the parallax is 0.015 rad.
+    #[test]
+    fn the_moon_has_a_parallax() {
+        let environment = flexsc_formats::document::from_text("orbit = { semi_major_axis = 7e6 }");
+        let epoch = Some(1_795_478_400_000_000_000);
+        let sky = OrbitEnvironment::new(&environment.expect("an orbit"), Span::from_seconds(1e3), epoch);
+        let place = sky.position(0.0).expect("an orbit").position;
+        let moon = Vector::new(0.598_916, 0.695_693, 0.396_625) * 362_491.3e3;
+        let found = sky.angle_to(BrightBody::Moon, &place, 0.0);
+        assert!((found - angle_between(&place, &(moon - place))).abs() < 5e-3, "{found}");
+        assert!((found - angle_between(&place, &moon)).abs() > 1e-2, "{found}");
+    }
+}
