@@ -66,9 +66,9 @@ const LAW: &str = "law.pd = { k_p = 4.0, k_d = 30.0, period = 0.5 }";
 fn the_first_condition_in_order_ends_the_mode() {
     for [first, second] in [["b", "c"], ["c", "b"]] {
         let text = format!(
-            "{BODY}[[mode]]\nname = \"a\"\n{LAW}\n\
+            "{BODY}[[mode]]\nname = \"a\"\n{LAW}\nactuators = [\"thrusters\"]\n\
              leave = [{{ to = \"{first}\", when = \"run_time >= 10\" }}, {{ to = \"{second}\", when = \"run_time > 9\", for = 0.5 }}]\n\
-             [[mode]]\nname = \"b\"\n{LAW}\n[[mode]]\nname = \"c\"\n{LAW}\n"
+             [[mode]]\nname = \"b\"\n{LAW}\nactuators = [\"thrusters\"]\n[[mode]]\nname = \"c\"\n{LAW}\nactuators = [\"thrusters\"]\n"
         );
         assert_eq!(modes(&traced(&scenario(&text)))[1], (10.0, first.to_owned()));
     }

@@ -67,15 +67,15 @@ pub fn members(laws: &[Compensator], text: &mut String) {
 fn advance(plan: &Plan<'_>, index: usize, law: &Compensator, text: &mut String) {
     let (prefix, order) = (plan.prefix, law.state.len());
     let range = initialiser(&law.range, prefix);
-    let buffer = if order > 0 { format!("        double next[{order}];\n") } else { String::new() };
-    let states = if order > 0 {
-        format!("state->compensator_{index}, {order}, next, {order}")
+    // Without states a list has no elements, and C has no such array.
+    let (buffer, states) = if order > 0 {
+        (format!("double next[{order}]"), format!("state->compensator_{index}, {order}, next, {order}"))
     } else {
-        "NULL, 0, NULL, 0".to_owned()
+        ("double none[1] = { 0.0 }".to_owned(), "none, 0, none, 0".to_owned())
     };
     let _ = writeln!(
         text,
-        "        const {prefix}_compensator_range range = {range};\n{buffer}        \
+        "        const {prefix}_compensator_range range = {range};\n        {buffer};\n        \
          compensator_advance(matrices_{index}, {}, inputs, {}, {states}, &range, state->command_{index}, {});",
         law.matrices.len(),
         law.inputs.len(),

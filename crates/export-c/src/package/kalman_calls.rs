@@ -62,10 +62,11 @@ pub fn start(plan: &Plan<'_>, unit: &KalmanUnit, text: &mut String) {
     for (axis, filter) in unit.axes.iter().enumerate() {
         let (order, estimate) = (filter.mean.len(), about("estimate", axis, unit.axes.len()));
         let feed = format!("{prefix}_kalman_feed_{}", super::snake(&format!("{:?}", filter.estimate.feed)));
+        let place = if first == 0 { "index".to_owned() } else { format!("{first} + index") };
         let _ = writeln!(
             text,
             "    state->{estimate} = kalman_axis_new({}, {}, {}, {});\n    memset(state->covariance_{axis}, 0, sizeof state->covariance_{axis});\n    \
-             for (size_t index = 0; index < {order}; ++index) {{\n        state->mean_{axis}[index] = mean[{first} + index];\n        \
+             for (size_t index = 0; index < {order}; ++index) {{\n        state->mean_{axis}[index] = mean[{place}];\n        \
              state->covariance_{axis}[index * {}] = variances_{axis}[index];\n    }}",
             feed.to_uppercase(),
             filter.estimate.motion,
