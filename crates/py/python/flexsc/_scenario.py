@@ -330,8 +330,8 @@ class Scenario(ScenarioAnalysis):
         True
 
         Raises:
-            ValueError: The scenario has parts written in Python, its laws cannot run alone as a `controller`, or
-                the library is not there.
+            ValueError: The scenario has parts written in Python, its laws cannot run alone as a `controller`,
+                or the library is not there.
         """
         from flexsc._fmi_library import fmi_library
 
