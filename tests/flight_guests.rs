@@ -1,8 +1,6 @@
 //! Exported control systems as an app of cFS and as a component of F Prime, against stubs: the calls of a run go through their
 //! messages and ports, and come back with the same bits.
 
-use std::process::Command;
-
 use crate::flight_code::{EXPORTED, is_installed, make, prepared, text};
 use crate::util::Dir;
 
@@ -91,30 +89,4 @@ fn stubs_say_so() {
         .exits(2)
         .says(&["vxworks", "cfs", "fprime"]);
     assert!(!dir.has("other"));
-}
-
-/// Commands of the page about guests, in its blocks of commands.
-#[test]
-fn commands_of_the_page_run() {
-    let path = format!("{}/../../docs/flight-guests.md", env!("CARGO_MANIFEST_DIR"));
-    let page = std::fs::read_to_string(path).expect("the page");
-    let dir = Dir::with(&["earth-observer"]);
-    let blocks = page.split("```console\n").skip(1).map(|rest| rest.split("```").next().expect("a block"));
-    let mut count = 0;
-    for line in blocks.flat_map(str::lines) {
-        count += 1;
-        let (command, arguments) = line.split_once(' ').expect("a command and its arguments");
-        if command == "flexsc" {
-            dir.run(arguments).exits(0);
-            continue;
-        }
-        if !["make", "gcc", "g++"].iter().all(|command| is_installed(command)) {
-            continue;
-        }
-        let output =
-            Command::new(command).args(arguments.split(' ')).current_dir(dir.path("")).output().expect(line);
-        assert!(output.status.success(), "{line}: {}", text(&output));
-        text(&output).lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{line}"));
-    }
-    assert!(count >= 3, "{count} commands");
 }

@@ -114,6 +114,7 @@ mod documented;
 mod flight_analysis;
 mod flight_code;
 mod flight_guests;
+mod flight_pages;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;
