@@ -159,7 +159,7 @@ def wait_for_installation() -> None:
 
 def rust() -> str:
     wait_for_installation()
-    return tally(run("cargo", "test", "--release", "--quiet", *EVERYTHING))
+    return tally(run("cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING))
 
 
 def rust_light() -> str:
