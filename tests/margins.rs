@@ -13,6 +13,7 @@ use flexsc_core::control::linear_block::LinearBlock;
 use nalgebra::{DMatrix, dmatrix};
 
 use crate::open_loops::scenario;
+use crate::util::Dir;
 
 /// The loop of `wheel-scheduled-gain` at constant frequencies, without the extra loop, and with a delay of the wheel (s).
 pub fn wheel_loop(delay: f64) -> String {
@@ -353,4 +354,20 @@ fn margins_are_those_of_the_poles_of_loops_that_are_off() {
             near(found.phase_rad, &row[3]);
         }
     }
+}
+
+/// A compensator without states is an attitude law of the same gains; its three equal loops have poles that are hard to compute.
+#[test]
+fn a_compensator_without_states_has_the_margins_of_an_attitude_law() {
+    let dir = Dir::with(&["site-pass"]);
+    let text = dir.text("site-pass.toml");
+    let law = "law.state_space = { period = 0.25, d = [[0.04, 0.32]], command = \"acceleration\" }";
+    assert!(text.contains(law));
+    let other = "law.attitude = { period = 0.25, bandwidth = 0.2, damping = 0.8 }";
+    dir.write("other.toml", text.replace(law, other));
+    let margins = |name: &str| {
+        let printed = dir.run(&format!("margins {name}.toml --mode pass")).exits(0).out;
+        printed.replace("site-pass", "other")
+    };
+    assert_eq!(margins("site-pass"), margins("other"));
 }

@@ -14,6 +14,9 @@ use crate::analysis::open_loop::OpenLoop;
 
 /// Number of sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
+/// Shifts with which the search is tried again, over the norm of the matrix, and whether of its transpose.
+const SHIFTS: [(f64, bool); 6] =
+    [(1.0, false), (0.0, true), (1.0, true), (-1.0, false), (0.618, true), (2.414, false)];
 /// Poles this near to the unit circle are on it, within rounding.
 pub const ROUNDING: f64 = 1e-8;
 
@@ -32,6 +35,12 @@ pub struct UnstableLoop {
 
 impl fmt::Display for UnstableLoop {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.spectral_radius.is_infinite() {
+            return write!(
+                f,
+                "the poles of the closed loop cannot be computed, so that its margins are not known"
+            );
+        }
         write!(
             f,
             "the closed loop is not stable and has no margins: a pole of magnitude {:.7} at {:.4} rad/s ({:.4} Hz), damping \
@@ -62,12 +71,16 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
         Some(schur.complex_eigenvalues().iter().copied().collect())
     };
     // The search compares entries below the diagonal with those on it, and never ends for a defective eigenvalue 0, such as
-    // that of delays. The shifted matrix has none: the error is a rounding of the whole matrix, as LAPACK's is.
-    let size = balanced.norm();
-    let order = balanced.nrows();
+    // that of delays. A shifted matrix has none: the error is a rounding of the whole matrix, as LAPACK's is. Equal loops
+    // about several axes can keep the search in a cycle, which another shift or the transposed matrix leaves.
+    let (size, order) = (balanced.norm(), balanced.nrows());
     values(balanced.clone()).or_else(|| {
-        let shifted = values(balanced + DMatrix::from_diagonal_element(order, order, size))?;
-        Some(shifted.into_iter().map(|value| value - size).collect())
+        SHIFTS.iter().find_map(|(factor, is_transposed)| {
+            let shift = factor * size;
+            let matrix = if *is_transposed { balanced.transpose() } else { balanced.clone() };
+            let shifted = values(matrix + DMatrix::from_diagonal_element(order, order, shift))?;
+            Some(shifted.into_iter().map(|value| value - shift).collect())
+        })
     })
 }
 
