@@ -2,6 +2,8 @@
 
 use flexsc_core::numerics::time::{Instant, Span};
 
+use crate::error::CoSimulationError;
+
 const FEMTOSECONDS: u64 = 1_000_000_000_000_000;
 
 /// Instants that a time in seconds stands for.
@@ -35,6 +37,21 @@ impl CommunicationPoint {
         }
         Self { at: nearest, latest: after(last) }
     }
+}
+
+/// Returns the end (s) of a step of `size` seconds from a communication point (s), for a run that is at `now` (s).
+///
+/// # Errors
+/// Fails if the run is not at `from`, and for a size that is no time.
+pub fn step_end(from: f64, size: f64, now: f64, grid_ns: u64) -> Result<f64, CoSimulationError> {
+    if !is_same_time(from, now, grid_ns) {
+        let why = format!("the step begins at {from:?} s, and the run is at {now:?} s");
+        return Err(CoSimulationError::refused(why));
+    }
+    if size.is_nan() || size < 0.0 || size.is_infinite() {
+        return Err(CoSimulationError::refused(format!("the size of a step must be a time, got {size:?} s")));
+    }
+    Ok(from + size)
 }
 
 /// Returns the multiple of a grid (ns) that is nearest to an instant.

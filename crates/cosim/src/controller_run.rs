@@ -7,13 +7,13 @@ use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{Document, Scenario};
 use flexsc_export_c::control_system::{CallLayout, ControlSystem, NumberKind};
 
-use crate::communication_point::{CommunicationPoint, is_same_time};
+use crate::communication_point::{CommunicationPoint, step_end};
 use crate::content::{FmuContent, SCENARIO};
 use crate::cosimulation::StepResult;
 use crate::error::CoSimulationError;
 use crate::flight_laws::laws_alone;
 use crate::journal::{AppliedInputs, Counts, InputJournal, Moment};
-use crate::variable::{ClockRole, Quantity, ValueKind, VariableStart};
+use crate::variable::{ClockRole, Quantity, ValueKind};
 use crate::variable_table::VariableTable;
 
 /// Index of the decision among the functions of laws without an estimator.
@@ -118,16 +118,7 @@ impl ControllerRun {
         stop_at_events: bool,
     ) -> Result<StepResult, CoSimulationError> {
         let (now, grid) = (self.time(), self.journal.grid_ns);
-        if !is_same_time(from, now, grid) {
-            let why = format!("the step begins at {from:?} s, and the run is at {now:?} s");
-            return Err(CoSimulationError::refused(why));
-        }
-        if size.is_nan() || size < 0.0 || size.is_infinite() {
-            return Err(CoSimulationError::refused(format!(
-                "the size of a step must be a time, got {size:?} s"
-            )));
-        }
-        let target = from + size;
+        let target = step_end(from, size, now, grid)?;
         let point = CommunicationPoint::new(target, grid);
         self.decide_pending();
         let mut is_event = false;
@@ -189,15 +180,8 @@ impl ControllerRun {
             Some((Quantity::Time, _)) => Ok(self.time()),
             Some((Quantity::Input(index), _)) => Ok(f64::from_bits(self.journal.inputs[*index])),
             Some((Quantity::LawOutput(index), _)) => Ok(f64::from_bits(self.outputs[*index])),
-            Some((Quantity::Key(key), start)) => {
-                let own = self.journal.keys.iter().find(|(own, _)| own == key);
-                let start = match start {
-                    VariableStart::Float(value) => value,
-                    VariableStart::Integer(value) => value as f64,
-                };
-                Ok(own.map_or(start, |(_, bits)| f64::from_bits(*bits)))
-            }
-            _ => Err(unknown(reference, "floating-point")),
+            Some((Quantity::Key(key), start)) => Ok(self.journal.key_value(key, &start)),
+            _ => Err(CoSimulationError::no_variable(reference, "floating-point")),
         }
     }
 
@@ -206,18 +190,9 @@ impl ControllerRun {
     /// # Errors
     /// Fails for a reference of another kind.
     pub fn get_integer(&self, reference: u32) -> Result<i64, CoSimulationError> {
-        let (whole, part) = self.now.parts();
-        let Counts { events, last_event, .. } = self.journal.counts;
-        let value = match self.table.get(reference).map(|variable| &variable.quantity) {
-            Some(Quantity::TimeWhole) => whole,
-            Some(Quantity::TimeFemtoseconds) => part,
-            Some(Quantity::EventWhole) => last_event.0,
-            Some(Quantity::EventFemtoseconds) => last_event.1,
-            Some(Quantity::Events) => events,
-            Some(Quantity::Grid) => self.journal.grid_ns,
-            _ => return Err(unknown(reference, "integer")),
-        };
-        Ok(value as i64)
+        let variable = self.table.get(reference);
+        let value = variable.and_then(|variable| self.journal.integer(&variable.quantity, self.now));
+        value.ok_or_else(|| CoSimulationError::no_variable(reference, "integer"))
     }
 
     /// Sets an input, or a parameter before the start.
@@ -226,22 +201,9 @@ impl ControllerRun {
     /// Fails for a value that is not finite, for a reference of another kind and for a parameter after the start.
     pub fn set(&mut self, reference: u32, value: f64) -> Result<(), CoSimulationError> {
         let Some(variable) = self.table.get(reference) else {
-            return Err(unknown(reference, "floating-point"));
+            return Err(CoSimulationError::no_variable(reference, "floating-point"));
         };
-        if !value.is_finite() {
-            let why = format!("{}: must be a finite number, got {value}", variable.name);
-            return Err(CoSimulationError::refused(why));
-        }
-        match &variable.quantity {
-            Quantity::Input(index) => self.journal.inputs[*index] = value.to_bits(),
-            Quantity::Key(key) if !self.has_begun => {
-                let key = key.clone();
-                self.journal.keys.retain(|(own, _)| *own != key);
-                self.journal.keys.push((key, value.to_bits()));
-            }
-            _ => return Err(unknown(reference, "settable")),
-        }
-        Ok(())
+        self.journal.set(variable, value, self.has_begun)
     }
 
     /// Sets the grid of communication points before the start.
@@ -249,12 +211,10 @@ impl ControllerRun {
     /// # Errors
     /// Fails for a negative value, for a reference of another kind and after the start.
     pub fn set_integer(&mut self, reference: u32, value: i64) -> Result<(), CoSimulationError> {
-        let is_grid = self.table.get(reference).is_some_and(|variable| variable.quantity == Quantity::Grid);
-        match u64::try_from(value) {
-            Ok(value) if is_grid && !self.has_begun => self.journal.grid_ns = value,
-            _ => return Err(unknown(reference, "settable integer")),
-        }
-        Ok(())
+        let Some(variable) = self.table.get(reference) else {
+            return Err(CoSimulationError::no_variable(reference, "integer"));
+        };
+        self.journal.set_integer(variable, value, self.has_begun)
     }
 
     /// Returns the interval of a periodic clock.
@@ -264,7 +224,7 @@ impl ControllerRun {
     pub fn interval(&self, reference: u32) -> Result<Span, CoSimulationError> {
         match self.table.get(reference).map(|variable| &variable.quantity) {
             Some(Quantity::Clock(ClockRole::Periodic(interval))) => Ok(*interval),
-            _ => Err(unknown(reference, "periodic clock")),
+            _ => Err(CoSimulationError::no_variable(reference, "periodic clock")),
         }
     }
 
@@ -294,8 +254,4 @@ impl ControllerRun {
         }
         Ok(run)
     }
-}
-
-fn unknown(reference: u32, kind: &str) -> CoSimulationError {
-    CoSimulationError::refused(format!("there is no {kind} variable with the value reference {reference}"))
 }

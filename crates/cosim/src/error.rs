@@ -27,4 +27,9 @@ impl CoSimulationError {
     pub fn refused(why: impl Into<String>) -> Self {
         Self::Refused(why.into())
     }
+
+    /// Creates the error of a value reference that stands for no variable of a kind.
+    pub fn no_variable(reference: u32, kind: &str) -> Self {
+        Self::Refused(format!("there is no {kind} variable with the value reference {reference}"))
+    }
 }

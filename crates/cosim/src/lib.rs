@@ -27,6 +27,7 @@ mod flight_laws;
 mod fmi_version;
 mod fmu_run;
 mod journal;
+mod journal_values;
 mod library;
 mod parameters;
 mod texts;

@@ -1,6 +1,6 @@
 //! A sampled compensator given by its matrices: u = C x + D e, then x = A x + B e.
 //!
-//! Its matrices are one list: the rows of [A B], then those of [C D], each row after the other.
+//! The matrices A, B, C and D are one list: the rows of [A B], then the rows of [C D], each row after the other.
 
 use crate::maths::clamp;
 use crate::quaternion::Quaternion;

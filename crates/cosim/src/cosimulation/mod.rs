@@ -10,7 +10,7 @@ use flexsc_core::control::law::Command;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{Document, Scenario, Simulation, SimulationError, StopAt};
 
-use crate::communication_point::{CommunicationPoint, is_same_time};
+use crate::communication_point::{CommunicationPoint, is_same_time, step_end};
 use crate::content::{FmuContent, FmuPart, SCENARIO};
 use crate::error::CoSimulationError;
 use crate::journal::{AppliedInputs, Counts, InputJournal, Moment};
@@ -153,16 +153,7 @@ impl CoSimulation {
         stop_at_events: bool,
     ) -> Result<StepResult, CoSimulationError> {
         let (now, grid) = (self.time(), self.journal.grid_ns);
-        if !is_same_time(from, now, grid) {
-            let why = format!("the step begins at {from:?} s, and the run is at {now:?} s");
-            return Err(CoSimulationError::refused(why));
-        }
-        if size.is_nan() || size < 0.0 || size.is_infinite() {
-            return Err(CoSimulationError::refused(format!(
-                "the size of a step must be a time, got {size:?} s"
-            )));
-        }
-        let target = from + size;
+        let target = step_end(from, size, now, grid)?;
         let end = self.simulation.end();
         if target > end.seconds() && !is_same_time(target, end.seconds(), grid.max(1)) {
             let why = format!(

@@ -4,8 +4,7 @@ use flexsc_core::numerics::time::Span;
 
 use super::CoSimulation;
 use crate::error::CoSimulationError;
-use crate::journal::Counts;
-use crate::variable::{Causality, ClockRole, Quantity, ValueKind, VariableStart};
+use crate::variable::{ClockRole, Quantity, ValueKind};
 
 impl CoSimulation {
     /// Returns the value of a floating-point variable.
@@ -14,7 +13,9 @@ impl CoSimulation {
     /// Fails for a reference of another kind, and if the state is no longer finite.
     pub fn get(&mut self, reference: u32) -> Result<f64, CoSimulationError> {
         let variable = self.table.get(reference).filter(|variable| variable.kind == ValueKind::Float);
-        let Some(variable) = variable else { return Err(unknown(reference, "floating-point")) };
+        let Some(variable) = variable else {
+            return Err(CoSimulationError::no_variable(reference, "floating-point"));
+        };
         match variable.quantity {
             Quantity::Time => Ok(self.time()),
             Quantity::Observed(index) => self.observe().map(|row| row[index]),
@@ -23,15 +24,8 @@ impl CoSimulation {
             Quantity::Commanded(axis) => Ok(self.simulation.commanded_torque()[axis]),
             Quantity::WindowMean => Ok(self.simulation.window_mean().unwrap_or(f64::NAN)),
             Quantity::Input(index) => Ok(f64::from_bits(self.journal.inputs[index])),
-            Quantity::Key(ref key) => {
-                let own = self.journal.keys.iter().find(|(own, _)| own == key);
-                let start = match variable.start {
-                    VariableStart::Float(value) => value,
-                    VariableStart::Integer(value) => value as f64,
-                };
-                Ok(own.map_or(start, |(_, bits)| f64::from_bits(*bits)))
-            }
-            _ => Err(unknown(reference, "floating-point")),
+            Quantity::Key(ref key) => Ok(self.journal.key_value(key, &variable.start)),
+            _ => Err(CoSimulationError::no_variable(reference, "floating-point")),
         }
     }
 
@@ -40,21 +34,10 @@ impl CoSimulation {
     /// # Errors
     /// Fails for a reference of another kind.
     pub fn get_integer(&self, reference: u32) -> Result<i64, CoSimulationError> {
-        let variable = self.table.get(reference).ok_or_else(|| unknown(reference, "integer"))?;
-        let (whole, part) = self.simulation.time().parts();
-        let Counts { events, switchings, last_event, .. } = self.journal.counts;
-        let value = match variable.quantity {
-            Quantity::TimeWhole => whole,
-            Quantity::TimeFemtoseconds => part,
-            Quantity::EventWhole => last_event.0,
-            Quantity::EventFemtoseconds => last_event.1,
-            Quantity::Events => events,
-            Quantity::Switchings => switchings,
-            Quantity::Seed => self.journal.seed,
-            Quantity::Grid => self.journal.grid_ns,
-            _ => return Err(unknown(reference, "integer")),
-        };
-        Ok(value as i64)
+        let variable =
+            self.table.get(reference).ok_or_else(|| CoSimulationError::no_variable(reference, "integer"))?;
+        let value = self.journal.integer(&variable.quantity, self.simulation.time());
+        value.ok_or_else(|| CoSimulationError::no_variable(reference, "integer"))
     }
 
     /// Sets an input, or a parameter before the start.
@@ -63,22 +46,9 @@ impl CoSimulation {
     /// Fails for a value that is not finite, for a reference of another kind and for a parameter after the start.
     pub fn set(&mut self, reference: u32, value: f64) -> Result<(), CoSimulationError> {
         let Some(variable) = self.table.get(reference) else {
-            return Err(unknown(reference, "floating-point"));
+            return Err(CoSimulationError::no_variable(reference, "floating-point"));
         };
-        if !value.is_finite() {
-            let why = format!("{}: must be a finite number, got {value}", variable.name);
-            return Err(CoSimulationError::refused(why));
-        }
-        match &variable.quantity {
-            Quantity::Input(index) => self.journal.inputs[*index] = value.to_bits(),
-            Quantity::Key(key) if !self.has_begun => {
-                let key = key.clone();
-                self.journal.keys.retain(|(own, _)| *own != key);
-                self.journal.keys.push((key, value.to_bits()));
-            }
-            _ => return Err(self.not_settable(reference)),
-        }
-        Ok(())
+        self.journal.set(variable, value, self.has_begun)
     }
 
     /// Sets an integer parameter before the start.
@@ -86,17 +56,10 @@ impl CoSimulation {
     /// # Errors
     /// Fails for a negative value, for a reference of another kind and after the start.
     pub fn set_integer(&mut self, reference: u32, value: i64) -> Result<(), CoSimulationError> {
-        let Some(variable) = self.table.get(reference) else { return Err(unknown(reference, "integer")) };
-        let Ok(unsigned) = u64::try_from(value) else {
-            let why = format!("{}: must not be negative, got {value}", variable.name);
-            return Err(CoSimulationError::refused(why));
+        let Some(variable) = self.table.get(reference) else {
+            return Err(CoSimulationError::no_variable(reference, "integer"));
         };
-        match variable.quantity {
-            Quantity::Seed if !self.has_begun => self.journal.seed = unsigned,
-            Quantity::Grid if !self.has_begun => self.journal.grid_ns = unsigned,
-            _ => return Err(self.not_settable(reference)),
-        }
-        Ok(())
+        self.journal.set_integer(variable, value, self.has_begun)
     }
 
     /// Returns true if an output clock ticks at the current event.
@@ -108,7 +71,7 @@ impl CoSimulation {
             Some(Quantity::Clock(ClockRole::Sampled)) => Ok(self.journal.counts.has_sampled),
             Some(Quantity::Clock(ClockRole::Switched)) => Ok(self.journal.counts.has_switched),
             Some(Quantity::Clock(ClockRole::Periodic(_))) => Ok(false),
-            _ => Err(unknown(reference, "clock")),
+            _ => Err(CoSimulationError::no_variable(reference, "clock")),
         }
     }
 
@@ -119,7 +82,7 @@ impl CoSimulation {
     pub fn interval(&self, reference: u32) -> Result<Span, CoSimulationError> {
         match self.table.get(reference).map(|variable| &variable.quantity) {
             Some(Quantity::Clock(ClockRole::Periodic(interval))) => Ok(*interval),
-            _ => Err(unknown(reference, "periodic clock")),
+            _ => Err(CoSimulationError::no_variable(reference, "periodic clock")),
         }
     }
 
@@ -144,17 +107,4 @@ impl CoSimulation {
         }
         Ok(self.law_inputs.as_deref().unwrap_or_default())
     }
-
-    fn not_settable(&self, reference: u32) -> CoSimulationError {
-        let Some(variable) = self.table.get(reference) else { return unknown(reference, "settable") };
-        let why = match variable.causality {
-            Causality::Parameter => "a parameter cannot be set as this type, or after the start",
-            _ => "cannot be set: it is not an input",
-        };
-        CoSimulationError::refused(format!("{}: {why}", variable.name))
-    }
-}
-
-fn unknown(reference: u32, kind: &str) -> CoSimulationError {
-    CoSimulationError::refused(format!("there is no {kind} variable with the value reference {reference}"))
 }

@@ -242,7 +242,7 @@ impl ModeSystem {
             }
             let decided = laws.call(laws.step_index(), now, &words);
             for channel in &own.outputs {
-                let place = offset(&layout, &channel.name);
+                let place = first_word(&layout, &channel.name);
                 let found = words_of(&own.outputs, &decided, &channel.name);
                 outputs[place..place + found.len()].copy_from_slice(found);
             }
@@ -315,13 +315,13 @@ fn alone(
 }
 
 /// Returns the index of the first word of a channel.
-fn offset(channels: &[Channel], name: &str) -> usize {
+fn first_word(channels: &[Channel], name: &str) -> usize {
     channels.iter().take_while(|channel| channel.name != name).map(|channel| channel.count).sum()
 }
 
 /// Returns the words of a channel.
 fn words_of<'a>(channels: &[Channel], words: &'a [u64], name: &str) -> &'a [u64] {
     let count = channels.iter().find(|channel| channel.name == name).map_or(0, |channel| channel.count);
-    let from = offset(channels, name);
+    let from = first_word(channels, name);
     words.get(from..from + count).unwrap_or_default()
 }

@@ -6,7 +6,7 @@ use super::{Plan, compensator_calls, estimator_calls, kalman_calls};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
-/// Returns the header, with the types of the flight code and the struct of the state.
+/// Returns the header file: the types of the flight code, the state of the control system, and its functions.
 pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String {
     let prefix = plan.prefix;
     let guard = format!("{}_H", prefix.to_uppercase());
@@ -39,7 +39,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     text
 }
 
-/// Returns the struct of the state.
+/// Returns the C struct that holds the state of the control system between its calls.
 pub fn state(plan: &Plan<'_>) -> String {
     let mut text = String::new();
     let array = |count: usize| if count == 1 { String::new() } else { format!("[{count}]") };

@@ -14,10 +14,8 @@ from flexsc._linear import Linear
 from flexsc._signal import Signal
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+    from flexsc._blocks import Matrix
 
-    Matrix = npt.NDArray[np.float64]
 
 # Times are whole numbers of femtoseconds, as in a run.
 _TICKS = 1e15

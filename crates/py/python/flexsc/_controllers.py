@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from flexsc._linear import Linear
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+    from flexsc._blocks import Matrix
 
-    Matrix = npt.NDArray[np.float64]
 
 _AXES = ("roll", "pitch", "yaw")
 _ERRORS = (*_AXES, *(f"{axis}_rate" for axis in _AXES))

@@ -8,10 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from flexsc import _native as engine
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
-    Matrix = npt.NDArray[np.float64]
+    from flexsc._blocks import Matrix
 
 
 class Sampled(NamedTuple):
