@@ -72,6 +72,15 @@ impl Instant {
     }
 }
 
+/// Returns the earlier of two instants, each of which may be absent.
+#[inline]
+pub fn earlier(one: Option<Instant>, other: Option<Instant>) -> Option<Instant> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.min(other)),
+        (one, other) => one.or(other),
+    }
+}
+
 impl Span {
     /// Span of length zero.
     pub const ZERO: Self = Self(Ticks { whole: 0, part: 0 });

@@ -54,7 +54,7 @@ pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
 pub use requirement_errors::{RequirementError, RequirementErrors};
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
-pub use three_axis::{ModeTargetStart, SteeringRecord, StoredMomentum, ThreeAxisCycle};
+pub use three_axis::{ModeTargetStart, SteeringRecord, ThreeAxisCycle};
 pub use topics::*;
 pub use trace::Trace;
 

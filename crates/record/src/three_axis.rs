@@ -19,7 +19,7 @@ pub struct ModeTargetStart {
 }
 
 /// Motion of a three-axis body at the start of a cycle, after its law has decided.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct ThreeAxisCycle {
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,
@@ -35,11 +35,9 @@ pub struct ThreeAxisCycle {
     pub slewing: bool,
     /// Heat of the wheels' friction since the start (J); NaN without bearings.
     pub friction_heat_j: f64,
+    /// Momentum of the wheels and control moment gyros, in the body's axes (N m s).
+    pub stored_momentum_nm_s: [f64; 3],
 }
-
-/// Momentum of the wheels and control moment gyros at the start of a cycle, in the body's axes (N m s).
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct StoredMomentum(pub [f64; 3]);
 
 /// Extreme values of control moment gyros since the start, at the instants at which their gimbal rates change.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum of the wheels or the
 //! body.
 
-use flexsc_core::record::{Magnetorquers, StoredMomentum};
+use flexsc_core::record::Magnetorquers;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
@@ -38,7 +38,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let wheels = story.scenario.study.wheels.is_some();
     let norm = |vector: [f64; 3]| vector.iter().map(|part| part * part).sum::<f64>().sqrt();
     let points: Vec<Point> = if wheels {
-        cycles.values::<StoredMomentum>().map(|(time, stored)| (time, norm(stored.0))).collect()
+        cycles.over_time(|cycle| norm(cycle.stored_momentum_nm_s))
     } else {
         cycles.over_time(|cycle| norm(cycle.rigid_rate_rad_s))
     };

@@ -131,9 +131,14 @@ impl Clone for Box<dyn AxisActuator> {
     }
 }
 
-/// Actuators of all axes; `None` about an axis on which other actuators act.
+/// Actuators of all axes.
 #[derive(Clone, Debug)]
-pub struct AxisActuators(Vec<Option<(Box<dyn AxisActuator>, AxisActuatorContext)>>);
+pub struct AxisActuators {
+    /// Actuator of each axis; `None` about an axis on which other actuators act.
+    axes: Vec<Option<(Box<dyn AxisActuator>, AxisActuatorContext)>>,
+    /// Back-EMF torque per unit of the rate about the first axis (N m s), and true if the elastic rate is included.
+    back_emf: (f64, bool),
+}
 
 impl AxisActuators {
     /// Creates the actuator of each axis about which it acts, with its failures.
@@ -144,37 +149,37 @@ impl AxisActuators {
                 |scope: &FailureScope<'_>| scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis);
             (FaultyActuator::with_failures(kind.failures(), own, actuator), setting)
         };
-        Self(
-            settings
-                .into_iter()
-                .map(|setting| (setting.share > 0.0).then(|| actuator_for(setting)))
-                .collect(),
-        )
+        let axis = |setting: AxisActuatorContext| (setting.share > 0.0).then(|| actuator_for(setting));
+        let axes: Vec<Option<(Box<dyn AxisActuator>, AxisActuatorContext)>> =
+            settings.into_iter().map(axis).collect();
+        let first = axes.first().and_then(Option::as_ref);
+        let back_emf = first.map_or((0.0, false), |(actuator, _)| actuator.properties().back_emf);
+        Self { axes, back_emf }
     }
 
     /// Returns the actuator about an axis, if one acts there.
     fn about(&self, axis: usize) -> Option<&(Box<dyn AxisActuator>, AxisActuatorContext)> {
-        self.0.get(axis).and_then(Option::as_ref)
+        self.axes.get(axis).and_then(Option::as_ref)
     }
 }
 
 impl Part for AxisActuators {
     fn due(&self) -> Option<Instant> {
-        self.0.iter().flatten().filter_map(|(actuator, _)| actuator.due()).min()
+        self.axes.iter().flatten().filter_map(|(actuator, _)| actuator.due()).min()
     }
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
-        self.0.iter().flatten().for_each(|(actuator, _)| actuator.report(at, report));
+        self.axes.iter().flatten().for_each(|(actuator, _)| actuator.report(at, report));
     }
 
     fn failure(&self) -> Option<PartError> {
-        self.0.iter().flatten().find_map(|(actuator, _)| actuator.failure())
+        self.axes.iter().flatten().find_map(|(actuator, _)| actuator.failure())
     }
 }
 
 impl Actuator for AxisActuators {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
-        for (axis, (actuator, demand)) in self.0.iter_mut().zip(demands).enumerate() {
+        for (axis, (actuator, demand)) in self.axes.iter_mut().zip(demands).enumerate() {
             let Some((actuator, setting)) = actuator else { continue };
             let commanded = match demand {
                 Demand::Change(_) => setting.demanded_torque(demand) / actuator.properties().torque_per_unit,
@@ -186,7 +191,7 @@ impl Actuator for AxisActuators {
 
     fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
         let ActuatorEvent::Due(rigid) = event else { return };
-        for (actuator, rate) in self.0.iter_mut().zip(rigid) {
+        for (actuator, rate) in self.axes.iter_mut().zip(rigid) {
             if let Some((actuator, _)) = actuator {
                 actuator.serve(now, rate);
             }
@@ -194,12 +199,12 @@ impl Actuator for AxisActuators {
     }
 
     fn apply(&self, now: Instant, onto: &mut Wrench) {
-        let actuators = self.0.iter().zip([Vector::x(), Vector::y(), Vector::z()]).enumerate();
+        let actuators = self.axes.iter().zip([Vector::x(), Vector::y(), Vector::z()]).enumerate();
         for (index, (actuator, axis)) in actuators {
             let Some((actuator, _)) = actuator else { continue };
             onto.hub[index] += actuator.torques().held;
             let waves = actuator.waves(now);
-            if self.0.len() == 1 {
+            if self.axes.len() == 1 {
                 onto.add_waveform(waves.waveform);
             } else {
                 onto.sines.extend(waves.sines.iter().map(|sine| (axis, *sine)));
@@ -218,8 +223,7 @@ impl Actuator for AxisActuators {
     }
 
     fn capabilities(&self) -> Capabilities<'_> {
-        let back_emf = self.about(0).map_or((0.0, false), |(actuator, _)| actuator.properties().back_emf);
-        Capabilities { waveform: Some(self), back_emf, ..Capabilities::default() }
+        Capabilities { waveform: Some(self), back_emf: self.back_emf, ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

@@ -164,6 +164,11 @@ impl AttitudeProfile {
         self.leg(now).map_or_else(|| AttitudeTarget::INERTIAL.attitude(), frame_motion)
     }
 
+    /// Returns the number of the current target, counted from 1; 0 before the first one.
+    pub fn target_number(&self, now: Instant) -> usize {
+        self.legs.iter().rposition(|leg| leg.begins <= now).map_or(0, |index| index + 1)
+    }
+
     /// Returns the current target as written: the frame, and the attitude in it.
     pub fn target_as_written(&self, now: Instant) -> (TargetFrame, Quaternion<f64>) {
         let leg = self.leg(now);

@@ -9,6 +9,8 @@ pub(super) struct AxesLaws {
     pub axes: Vec<ControllerState>,
     /// Law about three axes together, with its current output.
     pub three_axis: Option<(Box<dyn ThreeAxisLaw>, ThreeAxisOutput)>,
+    /// Longest lead time after a sample for which the laws read predicted elastic rates (s).
+    pub lead_time: f64,
 }
 
 /// Law with its current output.
@@ -35,8 +37,16 @@ impl AxesLaws {
             ControllerState { law, hold: ControlOutput::NONE, place }
         };
         match law.start_three_axis(authorities) {
-            Some(law) => Self { axes: Vec::new(), three_axis: Some((law, ThreeAxisOutput::NONE)) },
-            None => Self { axes: authorities.iter().enumerate().map(axis).collect(), three_axis: None },
+            Some(law) => {
+                let lead_time = law.reference_needs().lead_time;
+                Self { axes: Vec::new(), three_axis: Some((law, ThreeAxisOutput::NONE)), lead_time }
+            }
+            None => {
+                let axes: Vec<ControllerState> = authorities.iter().enumerate().map(axis).collect();
+                let lead_times = axes.iter().map(|held| held.law.reference_needs().lead_time);
+                let lead_time = lead_times.fold(0.0, f64::max);
+                Self { axes, three_axis: None, lead_time }
+            }
         }
     }
 

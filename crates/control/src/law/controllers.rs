@@ -114,6 +114,7 @@ impl Controllers {
     }
 
     /// Returns true if commands are set from outside.
+    #[inline]
     pub fn is_external(&self) -> bool {
         self.steered.is_some()
     }
@@ -199,6 +200,7 @@ impl Controllers {
     }
 
     /// Returns true if a law must decide at `now`, because of its time or of a sample.
+    #[inline]
     pub fn must_decide(&self, now: Instant, sampled: bool, state_estimates: &[StateEstimate]) -> bool {
         self.until == Some(now)
             || sampled
@@ -208,11 +210,13 @@ impl Controllers {
     }
 
     /// Returns the earliest time of the laws' next decision.
+    #[inline]
     pub fn next_timeout(&self) -> Option<Instant> {
         self.until
     }
 
     /// Returns the guards of the law about each axis.
+    #[inline]
     pub fn guards(&self) -> AxisGuards<'_> {
         let mut guards: AxisGuards<'_> = [&[]; 3];
         for (own, held) in guards.iter_mut().zip(&self.laws.axes) {
@@ -222,6 +226,7 @@ impl Controllers {
     }
 
     /// Returns the command about each axis.
+    #[inline]
     pub fn outputs(&self) -> [Command; 3] {
         if let Some(commands) = self.steered {
             return commands;
@@ -237,6 +242,7 @@ impl Controllers {
     }
 
     /// Returns the state of the law about an axis.
+    #[inline]
     pub fn state(&self, axis: usize) -> LawState<'_> {
         let state = match &self.laws.three_axis {
             Some((law, _)) => law.state(),
@@ -257,10 +263,9 @@ impl Controllers {
     }
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
+    #[inline]
     pub fn lead_time(&self) -> f64 {
-        let one_axis = self.laws.axes.iter().map(|held| held.law.reference_needs());
-        let three_axis = self.laws.three_axis.iter().map(|(law, _)| law.reference_needs());
-        one_axis.chain(three_axis).map(|needs| needs.lead_time).fold(0.0, f64::max)
+        self.laws.lead_time
     }
 
     /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.

@@ -228,8 +228,11 @@ impl LawSpec for PhasePlane {
     }
 
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
+        let period = self.period.seconds();
+        let lead_time = self.damping.as_ref().map_or(0.0, |damping| damping.lead_time(period, authority));
         Box::new(PhasePlaneState {
             law: self.flight_law(authority),
+            lead_time,
             spec: self.clone(),
             authority: *authority,
             tuned: f64::NAN,
@@ -301,6 +304,8 @@ struct PhasePlaneState {
     law: PhasePlaneLaw,
     spec: PhasePlane,
     authority: Authority,
+    /// Lead time after a sample for which the law reads predicted elastic rates (s).
+    lead_time: f64,
     /// Value of the parameter tuned last.
     tuned: f64,
 }
@@ -336,10 +341,7 @@ impl Law for PhasePlaneState {
     }
 
     fn reference_needs(&self) -> ReferenceNeeds {
-        let period = self.spec.period.seconds();
-        let damping = self.spec.damping.as_ref();
-        let lead_time = damping.map_or(0.0, |damping| damping.lead_time(period, &self.authority));
-        ReferenceNeeds { lead_time, ..ReferenceNeeds::default() }
+        ReferenceNeeds { lead_time: self.lead_time, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {

@@ -106,6 +106,12 @@ impl LimitCycleDetector {
         }
     }
 
+    /// Observes a switching, with the body in this state.
+    pub fn observe(&mut self, now: Instant, command: &Command, state: &AxisState) {
+        let Command { state: phase, cause: trigger, torque_nm: torque, gain, .. } = *command;
+        self.keep(CompactSwitching { time: now, phase, trigger, torque, gain }, state);
+    }
+
     /// Keeps a switching in place of the oldest one, so that a long run allocates no memory.
     fn keep(&mut self, switching: CompactSwitching, state: &AxisState) {
         let modes = state.modes.iter().flat_map(|mode| [mode.displacement, mode.quadrature]);
@@ -188,8 +194,7 @@ impl LimitCycleDetector {
 impl Record for LimitCycleDetector {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         if let Sample::Switching(command, state) = sample {
-            let Command { state: phase, cause: trigger, torque_nm: torque, gain, .. } = *command;
-            self.keep(CompactSwitching { time: now, phase, trigger, torque, gain }, state);
+            self.observe(now, command, state);
         }
         Ok(())
     }

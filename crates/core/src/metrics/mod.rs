@@ -181,8 +181,11 @@ impl Record for MetricsCollector {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let (RunKind::Switchings(switchings), Sample::Switching(..)) = (&mut self.kind, sample) {
-            return switchings.record(now, sample);
+        // The most frequent samples: a copy of the sample for another call would wait for its parts to be stored.
+        if let (RunKind::Switchings(switchings), Sample::Switching(command, state)) = (&mut self.kind, sample)
+        {
+            switchings.observe_switching(now, command, state);
+            return Ok(());
         }
         if let Some(filter) = &mut self.filter {
             let one = sample.get().map(|estimate: &Estimate| std::slice::from_ref(estimate));
@@ -201,7 +204,9 @@ impl Record for MetricsCollector {
         if let Some(adapted) = &mut self.adapted {
             adapted.observe(now, sample);
         }
-        sample.get().into_iter().for_each(|errors| self.requirements.observe(errors));
+        if !self.requirements.is_empty() {
+            sample.get().into_iter().for_each(|errors| self.requirements.observe(errors));
+        }
         if let (Some(operation), Some(event)) = (&mut self.operation, sample.get()) {
             operation.observe(now, event);
         }
@@ -218,7 +223,9 @@ impl Record for MetricsCollector {
                     sample.get().into_iter().for_each(|row| self.sights.observe(now, row));
                     sample.get().into_iter().for_each(|row| self.requirements.observe_line(now, row));
                 }
-                sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
+                if self.tracked.has_observers() {
+                    sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
+                }
                 Ok(())
             }
         }

@@ -106,6 +106,11 @@ impl RequirementMetrics {
         Self(scenario.study.requirements.iter().map(values).collect())
     }
 
+    /// Returns true if the scenario has no requirements.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Returns the collector with all values of the indices kept.
     #[must_use]
     pub fn with_all_values(mut self) -> Self {

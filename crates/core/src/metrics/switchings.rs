@@ -2,10 +2,10 @@
 
 use flexsc_control::adaptation::Objective;
 use flexsc_control::law::{Phase, Setpoint};
-use flexsc_dynamics::MotionPiece;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::{AxisState, MotionPiece};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Adaptation, PieceDemand, Record, RecordError, Sample};
+use flexsc_record::{Adaptation, Command, PieceDemand, Record, RecordError, Sample};
 
 use super::envelope::EnvelopeMetrics;
 use super::goal::{self, GoalMetrics};
@@ -144,6 +144,15 @@ impl RelayMetrics {
         ]
     }
 
+    /// Observes a switching, with the body in this state.
+    pub fn observe_switching(&mut self, now: Instant, command: &Command, state: &AxisState) {
+        self.count += 1;
+        self.enter(now, command.state, command.torque_nm);
+        if self.wanted.cycle {
+            self.cycle.observe(now, command, state);
+        }
+    }
+
     fn switch(&mut self, now: Instant, torque: f64, strong: bool) {
         let (from, before, was_strong) = self.since;
         let span = now.since(from);
@@ -212,13 +221,7 @@ impl Record for RelayMetrics {
                 self.gain = (gain, gain);
                 self.enter(now, law.state, law.torque_nm);
             }
-            Sample::Switching(command, _) => {
-                self.count += 1;
-                self.enter(now, command.state, command.torque_nm);
-                if self.wanted.cycle {
-                    self.cycle.record(now, sample)?;
-                }
-            }
+            Sample::Switching(command, state) => self.observe_switching(now, command, state),
             Sample::Row(_) | Sample::Report(_) => {
                 if let Some(window) = sample.get() {
                     self.windows.observe(window);

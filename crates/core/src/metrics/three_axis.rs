@@ -4,8 +4,7 @@ use flexsc_control::actuator::{JetCycle, Saturation};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
-    Accelerations, ModeTargetStart, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle,
-    WheelEvent,
+    Accelerations, ModeTargetStart, Report, Sliding, SteeringRecord, ThreeAxisCycle, WheelEvent,
 };
 
 use super::goal::GoalMetrics;
@@ -53,17 +52,20 @@ pub struct ThreeAxisMetrics {
     below: [f64; 2],
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and the number of these cycles.
     square: (f64, u64),
+    /// Square of the last error (rad²).
     error: f64,
     /// Whether there are magnetorquers.
     magnetic: bool,
-    /// Last rigid rate (rad/s); largest and last momentum of the wheels (N m s).
+    /// Square of the last rigid rate (rad²/s²).
     rate: f64,
+    /// Squares of the largest and the last momentum of wheels and gyros (N² m² s²).
     stored: [f64; 2],
     /// Values of control moment gyros.
     steered: Option<SteeringRecord>,
     saturation: Saturation,
-    /// Of slews, the largest error (rad), the sum of squares (rad²), and how many cycles; whether there are any.
+    /// Largest and sum of the squared errors during slews (rad²), and the number of these cycles.
     slews: (f64, f64, u64),
+    /// True if there are slews.
     has_slews: bool,
     /// Window of the pointing error, sum of the squared errors that count (rad²), and their number.
     pointing_window: Option<Pointing>,
@@ -140,17 +142,19 @@ impl ThreeAxisMetrics {
 
     /// Observes the report of a cycle; other reports have no cycle.
     pub fn observe_cycle(&mut self, now: Instant, report: &Report) {
-        report.get::<ModeTargetStart>().into_iter().for_each(|start| self.observe_target(now, *start));
-        let Some(cycle) = report.get::<ThreeAxisCycle>() else { return };
+        let Some(cycle) = report.get::<ThreeAxisCycle>() else {
+            report.get::<ModeTargetStart>().into_iter().for_each(|start| self.observe_target(now, *start));
+            return;
+        };
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |vector: [f64; 3]| vector.iter().map(|value| value * value).sum::<f64>();
-        if let Some(jets) = report.get::<JetCycle>() {
-            self.observe_jets(jets);
+        if self.jets || self.burn_impulse.is_some() {
+            report.get().into_iter().for_each(|jets| self.observe_jets(jets));
         }
         self.saturation.observe(t, report);
         if cycle.slewing {
             let square = norm(cycle.error_rad);
-            self.slews = (self.slews.0.max(f64::sqrt(square)), self.slews.1 + square, self.slews.2 + 1);
+            self.slews = (self.slews.0.max(square), self.slews.1 + square, self.slews.2 + 1);
         }
         self.heat = cycle.friction_heat_j;
         if self.energy.0.is_nan() {
@@ -167,12 +171,13 @@ impl ThreeAxisMetrics {
             self.square.0 += norm(cycle.elastic_rate_rad_s);
             self.square.1 += 1;
         }
-        self.error = f64::sqrt(norm(cycle.error_rad));
-        self.rate = f64::sqrt(norm(cycle.rigid_rate_rad_s));
-        let stored = report.get::<StoredMomentum>().copied().unwrap_or_default();
-        let stored = f64::sqrt(norm(stored.0));
+        self.error = norm(cycle.error_rad);
+        self.rate = norm(cycle.rigid_rate_rad_s);
+        let stored = norm(cycle.stored_momentum_nm_s);
         self.stored = [self.stored[0].max(stored), stored];
-        self.steered = report.get().copied();
+        if self.steered.is_some() {
+            self.steered = report.get().copied();
+        }
         if self.pointing_window.as_ref().is_some_and(|pointing| pointing.includes(t)) {
             self.pointing.0 += norm(cycle.error_rad);
             self.pointing.1 += 1;
@@ -239,21 +244,23 @@ impl ThreeAxisMetrics {
             (&BELOW_10, MetricValue::Number(tenth)),
             (&BELOW_1, MetricValue::Number(hundredth)),
             (&ELASTIC_RATE, MetricValue::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
-            (&POINTING_END, MetricValue::Number(self.error)),
+            (&POINTING_END, MetricValue::Number(f64::sqrt(self.error))),
         ];
         let fuels = if self.fuels.1 { &FUEL_THRUSTERS } else { &FUEL_AXES };
         let fuels = (fuels, MetricValue::Numbers(self.fuels.0));
         let burn = self.burn_impulse.map(|impulse| (&BURN_IMPULSE, MetricValue::Number(impulse)));
         let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets).chain(burn);
         let friction = friction.into_iter().filter(|_| self.has_friction);
-        let rate = [(&RATE_END, MetricValue::Number(self.rate))].into_iter().filter(|_| self.magnetic);
+        let rate =
+            [(&RATE_END, MetricValue::Number(f64::sqrt(self.rate)))].into_iter().filter(|_| self.magnetic);
+        let [momentum_peak, momentum_end] = self.stored.map(f64::sqrt);
         let stored = [
-            (&MOMENTUM_PEAK, MetricValue::Number(self.stored[0])),
-            (&MOMENTUM_END, MetricValue::Number(self.stored[1])),
+            (&MOMENTUM_PEAK, MetricValue::Number(momentum_peak)),
+            (&MOMENTUM_END, MetricValue::Number(momentum_end)),
         ];
         let stored = stored.into_iter().filter(|_| self.saturation.has_wheels());
         let slews = [
-            (&SLEW_PEAK, MetricValue::Number(self.slews.0)),
+            (&SLEW_PEAK, MetricValue::Number(f64::sqrt(self.slews.0))),
             // 0/0 of no cycles: no number.
             (&SLEW_RMS, MetricValue::Number(f64::sqrt(self.slews.1 / self.slews.2 as f64))),
         ];
@@ -263,8 +270,8 @@ impl ThreeAxisMetrics {
                 (&GIMBAL_RATE, MetricValue::Number(steered.largest_rate_rad_s)),
                 (&SINGULARITY, MetricValue::Number(steered.least_measure)),
                 (&TORQUE_ERROR, MetricValue::Number(steered.largest_error_nm)),
-                (&GYRO_MOMENTUM_PEAK, MetricValue::Number(self.stored[0])),
-                (&GYRO_MOMENTUM_END, MetricValue::Number(self.stored[1])),
+                (&GYRO_MOMENTUM_PEAK, MetricValue::Number(momentum_peak)),
+                (&GYRO_MOMENTUM_END, MetricValue::Number(momentum_end)),
             ]
         });
         let mut pointing: Vec<NamedMetric> = Vec::new();

@@ -26,6 +26,11 @@ impl ObserverMetrics {
         Self { last: adaptive.then(Vec::new), ..Self::default() }
     }
 
+    /// Returns true if the scenario has adaptive observers.
+    pub fn has_observers(&self) -> bool {
+        self.last.is_some()
+    }
+
     /// Records a cycle.
     pub fn observe(&mut self, tracking: &Tracking) {
         let error =

@@ -118,6 +118,7 @@ impl Blinding {
     }
 
     /// Changes the state that changes at `now`, to which the run has advanced; returns the star tracker.
+    #[inline]
     pub fn update(&mut self, now: Instant) -> Option<usize> {
         let (_, index) = self.next.take_if(|(at, _)| *at == now)?;
         let watch = &mut self.watches[index];

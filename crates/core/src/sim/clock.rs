@@ -97,11 +97,13 @@ impl Clock {
     }
 
     /// Schedules the next cycle, after the one that is due now.
+    #[inline]
     pub fn end_cycle(&mut self) {
         self.next_cycle = self.cycle_period.map(|cycle| self.now + cycle);
     }
 
     /// Counts a decision at the current instant; fails if the laws decide there without end.
+    #[inline]
     pub fn count_decision(&mut self) -> Result<(), SimulationError> {
         self.decisions_at_now += 1;
         if self.decisions_at_now > MOST_DECISIONS {
@@ -145,6 +147,7 @@ impl Clock {
     }
 
     /// Returns true once after a wheel has stuck or let go.
+    #[inline]
     pub fn take_bearing_event(&mut self) -> bool {
         std::mem::take(&mut self.bearing_event)
     }

@@ -8,7 +8,7 @@ use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
 use flexsc_dynamics::guard::GuardCrossing;
 use flexsc_flight::axis_motion::total_angle;
 use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::Instant;
+use flexsc_numerics::time::{Instant, earlier};
 use flexsc_record::{Record, RecordError, Report};
 
 use super::control_trace::ControlCall;
@@ -83,7 +83,7 @@ impl ControlLaws {
     #[inline]
     pub fn next_event(&self) -> Option<Instant> {
         let crossing = self.crossing.map(|crossing| crossing.at);
-        [crossing, self.laws.next_timeout(), self.objective.closes()].into_iter().flatten().min()
+        earlier(earlier(crossing, self.laws.next_timeout()), self.objective.closes())
     }
 
     /// Returns the event at `now` for the laws.
@@ -129,6 +129,7 @@ impl ControlLaws {
     }
 
     /// Lets the laws decide on `event`, and counts their switchings for the objective.
+    #[inline]
     pub fn decide(
         &mut self,
         now: Instant,
@@ -171,6 +172,7 @@ impl ControlLaws {
 
     /// Closes the objective's window, if it ends now, and sets the law's parameter to the value that the adaptation
     /// chose.
+    #[inline]
     pub fn close_objective_window(
         &mut self,
         now: Instant,
@@ -211,11 +213,13 @@ impl ControlLaws {
     }
 
     /// Returns the command about each axis.
+    #[inline]
     pub fn outputs(&self) -> [Command; 3] {
         self.laws.outputs()
     }
 
     /// Returns the phase of the first law.
+    #[inline]
     pub fn phase(&self) -> Phase {
         self.laws.state(0).phase
     }
@@ -231,6 +235,7 @@ impl ControlLaws {
     }
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
+    #[inline]
     pub fn lead_time(&self) -> f64 {
         self.laws.lead_time()
     }

@@ -59,6 +59,7 @@ impl Estimation {
     }
 
     /// Returns the attitude or angle from which the angles are counted.
+    #[inline]
     pub fn origin(&self) -> &Orientation {
         &self.origin
     }
@@ -137,6 +138,7 @@ impl Estimation {
 
     /// Predicts the estimates from the last sample to `now`, at which a law decides; a continuous sensor gives the true
     /// state.
+    #[inline]
     pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
         let mut estimates = std::mem::take(&mut self.estimates);
         self.predict_into(now, plant, sensors, &mut estimates);
@@ -144,6 +146,7 @@ impl Estimation {
     }
 
     /// Predicts copies of the estimates to `now`, as [`Self::predict`] does.
+    #[inline]
     pub fn predict_into(
         &self,
         now: Instant,
@@ -162,11 +165,13 @@ impl Estimation {
     }
 
     /// Informs the estimator and the monitor of the envelope of the loads that act in the segment that begins at `now`.
+    #[inline]
     pub fn begin_segment(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
         if self.has_estimator {
             let (actuator, axes) = (&loads.actuator, self.estimates.len());
             let moment = |axis: usize| if axis < axes { actuator.effort(axis).reduced_moment } else { 0.0 };
-            self.estimator.input_changed(now, [0, 1, 2].map(moment));
+            let moments = [loads.first_moment, moment(1), moment(2)];
+            self.estimator.input_changed(now, moments);
         }
         if let Some(monitor) = &mut self.monitor {
             let commanded = || loads.actuator_wrench(now);
@@ -175,6 +180,7 @@ impl Estimation {
     }
 
     /// Adds the three-axis motion at the start of a cycle to the envelope.
+    #[inline]
     pub fn add_cycle(&mut self, now: Instant, plant: &Plant) {
         if let Some(monitor) = &mut self.monitor {
             monitor.observe(now, || plant.modal_state().into_owned());
@@ -183,6 +189,7 @@ impl Estimation {
 
     /// Closes the envelope's window, if it ends at `now`, and sets the laws' parameter to the value that the adaptation
     /// chose.
+    #[inline]
     pub fn close_window(
         &mut self,
         now: Instant,

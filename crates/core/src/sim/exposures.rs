@@ -57,11 +57,13 @@ impl Exposures {
     }
 
     /// Returns the next instant at which an exposure opens or closes.
+    #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.shutters.iter().map(|shutter| shutter.due).min()
     }
 
     /// Copies the plant before it advances from `now`, if an exposure is open and there is no copy of this segment.
+    #[inline]
     pub fn copy_plant(&mut self, now: Instant, plant: &Plant) {
         if self.copy.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
             (self.copy, self.averaged) = (Some(plant.clone()), now);
@@ -92,6 +94,7 @@ impl Exposures {
 
 impl Exposures {
     /// Closes and opens the exposures that are due at `now`, at which the plant is evaluated.
+    #[inline]
     pub fn update(
         &mut self,
         now: Instant,
@@ -107,6 +110,7 @@ impl Exposures {
     }
 
     /// Ends the segment of the copy at `now`, before the body of the run begins its next segment.
+    #[inline]
     pub fn end_segment(
         &mut self,
         now: Instant,
@@ -119,6 +123,7 @@ impl Exposures {
     }
 
     /// Accumulates the mean of open exposures from the last averaged instant up to `now`.
+    #[inline]
     fn accumulate_mean(
         &mut self,
         now: Instant,

@@ -144,6 +144,11 @@ impl Guidance {
         attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
     }
 
+    /// Returns the number of the current target, which changes with the target; 0 before the first one.
+    pub fn target_number(&self, now: Instant) -> usize {
+        self.profile.as_ref().map_or(0, |way| way.target_number(now))
+    }
+
     /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for
     /// one axis.
     pub fn target_as_written(&self, now: Instant) -> Option<(TargetFrame, Quaternion<f64>)> {

@@ -7,7 +7,7 @@ use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time::{Instant, Span, earlier};
 use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
 use flexsc_spacecraft::environment::SurroundingsState;
 
@@ -33,6 +33,8 @@ pub struct Loads {
     external_torque: [f64; 3],
     /// Torques during the current motion segment of a one-axis body.
     pub applied: AppliedTorque,
+    /// Reduced moment about the first axis in the current motion segment (rad/s²).
+    pub first_moment: f64,
 }
 
 impl Loads {
@@ -63,6 +65,7 @@ impl Loads {
             wrench: Wrench::default(),
             external_torque: [0.0; 3],
             applied: AppliedTorque::default(),
+            first_moment: 0.0,
         };
         loads.find_next_change();
         loads
@@ -77,8 +80,8 @@ impl Loads {
     /// Finds the next instant at which a load changes without a command.
     fn find_next_change(&mut self) {
         let drawn = self.disturbances.iter().filter_map(DisturbanceState::due).min();
-        self.next_change = self.scheduled_changes.last().copied().into_iter().chain(drawn).min();
-        self.due = self.next_change.into_iter().chain(self.actuator.due()).min();
+        self.next_change = earlier(self.scheduled_changes.last().copied(), drawn);
+        self.due = earlier(self.next_change, self.actuator.due());
     }
 
     /// Applies the commands of the laws from `now` on, given the state estimates and the rigid rates (rad/s).
@@ -94,7 +97,7 @@ impl Loads {
             .distribution
             .demands(commands, state_estimates, || actuator.capabilities().stored_momentum(now));
         actuator.command(now, &demands, rigid);
-        self.due = self.next_change.into_iter().chain(actuator.due()).min();
+        self.due = earlier(self.next_change, actuator.due());
     }
 
     /// Applies the changes of loads that are due at `now`, after the laws have decided, given the rigid rates (rad/s).
@@ -113,6 +116,7 @@ impl Loads {
     }
 
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
+    #[inline]
     pub fn set_magnetic_field(&mut self, now: Instant, field: Option<Vector>) {
         if let Some(field) = field {
             self.actuator.update(now, ActuatorEvent::MagneticField(field));
@@ -120,6 +124,7 @@ impl Loads {
     }
 
     /// Copies the speeds and momenta of wheels in bearings from the motion into the actuator.
+    #[inline]
     pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
         let rotors = plant.rotor_observations();
         if !rotors.is_empty() {
@@ -127,14 +132,16 @@ impl Loads {
         }
     }
 
-    /// Sets the torques on a one-axis body during the motion segment that begins.
+    /// Sets the reduced moment about the first axis, and the torques on a one-axis body, in the motion segment that begins.
     pub fn set_applied_torque(&mut self) {
-        let AxisEffort { held: constant, demanded: feedback, .. } = self.actuator.effort(0);
+        let AxisEffort { held: constant, demanded: feedback, reduced_moment, .. } = self.actuator.effort(0);
+        self.first_moment = reduced_moment;
         let back_emf = self.actuator.capabilities().back_emf;
         self.applied = AppliedTorque { constant, feedback, back_emf };
     }
 
     /// Returns the wrench of all loads from `now` on.
+    #[inline]
     pub fn wrench(&mut self, now: Instant) -> &Wrench {
         self.wrench.clear();
         self.actuator.apply(now, &mut self.wrench);

@@ -137,17 +137,15 @@ impl Simulation {
     /// Returns the next instant at which anything is due.
     #[inline]
     fn next_due(&self) -> Instant {
-        let due = [
-            self.laws.next_event(),
-            self.operation.due(),
-            self.loads.due,
-            self.sensors.next_event(),
-            self.estimation.window_closes(),
-            self.clock.next_cycle(),
-            self.recorder.due(),
-        ];
         let end = self.clock.end() + Span::TICK;
-        due.into_iter().fold(end, |next, due| due.map_or(next, |due| next.min(due)))
+        let or_earlier = |next: Instant, due: Option<Instant>| due.map_or(next, |due| next.min(due));
+        let next = or_earlier(end, self.laws.next_event());
+        let next = or_earlier(next, self.operation.due());
+        let next = or_earlier(next, self.loads.due);
+        let next = or_earlier(next, self.sensors.next_event());
+        let next = or_earlier(next, self.estimation.window_closes());
+        let next = or_earlier(next, self.clock.next_cycle());
+        or_earlier(next, self.recorder.due())
     }
 
     /// Processes everything that is due at the current instant, in the numbered steps of `docs/events.md`.

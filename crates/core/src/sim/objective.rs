@@ -24,6 +24,7 @@ impl AdaptationObjective {
     }
 
     /// Returns true if nothing is measured.
+    #[inline]
     pub fn is_none(&self) -> bool {
         self.0.is_none()
     }
@@ -40,7 +41,14 @@ impl AdaptationObjective {
     }
 
     /// Adds the motion up to `now`, if it consists of pieces, as that of one axis does.
+    #[inline]
     pub fn add_motion(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
+        if self.0.is_some() {
+            self.integrate_motion(now, plant, loads);
+        }
+    }
+
+    fn integrate_motion(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
         let Some(meter) = &mut self.0 else { return };
         if !meter.integrates() || now <= meter.measured {
             return;
@@ -59,7 +67,14 @@ impl AdaptationObjective {
     }
 
     /// Adds the torques that act from `now` on about the first `axes` axes.
+    #[inline]
     pub fn add_torque(&mut self, now: Instant, axes: usize, loads: &Loads) {
+        if self.0.is_some() {
+            self.set_torque(now, axes, loads);
+        }
+    }
+
+    fn set_torque(&mut self, now: Instant, axes: usize, loads: &Loads) {
         let Some(meter) = &mut self.0 else { return };
         let applied = || {
             let mut torques = [0.0; 3];
@@ -134,10 +149,12 @@ impl AdaptationObjective {
     }
 
     /// Closes the window, if it ends now.
+    #[inline]
     pub fn close_window(&mut self, now: Instant, plant: &Plant, loads: &Loads) -> Option<ObjectiveWindow> {
-        if self.closes() != Some(now) {
-            return None;
-        }
+        if self.closes() == Some(now) { self.close(now, plant, loads) } else { None }
+    }
+
+    fn close(&mut self, now: Instant, plant: &Plant, loads: &Loads) -> Option<ObjectiveWindow> {
         self.add_motion(now, plant, loads);
         self.0.as_mut().map(|meter| meter.close_window(now))
     }

@@ -7,7 +7,7 @@ use flexsc_flight::b_dot::FieldRate;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::flight_types::{from_vector3, to_vector3};
 use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time::{Instant, Span, earlier};
 use flexsc_record::{Record, Report};
 use flexsc_spacecraft::environment::to_body;
 
@@ -94,7 +94,7 @@ impl Sensors {
     /// Returns the next instant at which a sensor samples, or an exposure opens or closes.
     #[inline]
     pub fn next_event(&self) -> Option<Instant> {
-        self.next.into_iter().chain(self.exposures.due()).min()
+        earlier(self.next, self.exposures.due())
     }
 
     /// Returns true if a sample is due at `now`, or was read ahead for it.
@@ -127,6 +127,12 @@ impl Sensors {
         if let Some(index) = self.blinding.update(now) {
             self.schedules[index].sensor.set_blinded(self.blinding.is_blinded(index));
         }
+    }
+
+    /// Returns true if no star tracker has an exclusion angle.
+    #[inline]
+    pub fn has_no_exclusion(&self) -> bool {
+        self.blinding.is_empty()
     }
 
     /// Iterates over the exclusion angles of the star trackers, with their states.
@@ -168,6 +174,7 @@ impl Sensors {
     }
 
     /// Takes the sample of `now`, which may have been read ahead; returns true if anything was measured.
+    #[inline]
     pub fn sample(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         self.sample_read_ahead.take().unwrap_or_else(|| self.read(now, plant, origin))
     }
@@ -186,7 +193,10 @@ impl Sensors {
             }
             let truth = plant.truth_at_sensor(index);
             // The state of a sensor that is not in use goes on, such as the bias of a gyro.
-            *fresh = due.sensor.read(now, &truth, due.last.as_ref()).filter(|_| self.in_use[index]);
+            *fresh = due.sensor.read(now, &truth, due.last.as_ref());
+            if !self.in_use[index] {
+                *fresh = None;
+            }
             if let Some(period) = due.period.filter(|_| now > Instant::START) {
                 due.next = Some(due.sensor.next_due(now, period));
             }
@@ -205,7 +215,7 @@ impl Sensors {
             if let Some(rates) = rates {
                 self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
             }
-            let all = self.reading.get_or_insert(Reading { sight: None, ..*reading });
+            let all = self.reading.get_or_insert_with(|| Reading { sight: None, ..*reading });
             if due.provides_attitude {
                 all.at = reading.at;
             }
@@ -243,6 +253,7 @@ impl Sensors {
     }
 
     /// Returns the last measured magnetic field in body axes (T).
+    #[inline]
     pub fn measured_field(&self) -> Option<Vector> {
         self.field.has_field.then(|| from_vector3(&self.field.field))
     }
@@ -254,6 +265,7 @@ impl Sensors {
 
     /// Returns the magnetic field in body axes for the actuator (T): the last measured one, or the true one if no sensor
     /// measures it; `None` without a field.
+    #[inline]
     pub fn magnetic_field(&self, truth: &Truth) -> Option<Vector> {
         self.measured_field()
             .or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.environment.field?)))

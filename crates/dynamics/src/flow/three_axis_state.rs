@@ -23,11 +23,14 @@ impl ThreeAxisState {
 
     /// Returns true if every number is finite.
     pub fn is_finite(&self) -> bool {
-        // All numbers are tested, because branches would cost more.
-        let finite = |all: bool, number: &f64| all & number.is_finite();
-        let turn = self.turn.attitude.coords.iter().fold(true, finite);
-        let turn = RigidBody::momentum(&self.turn).iter().fold(turn, finite);
-        let mode = |all: bool, phase: &ModeState| finite(finite(all, &phase.displacement), &phase.quadrature);
-        self.modes.iter().fold(turn, mode)
+        // All numbers are tested, because branches would cost more: the sum carries into the sign bit if all bits of the exponent
+        // are set.
+        let exponent = f64::INFINITY.to_bits();
+        let add =
+            |any: u64, number: &f64| any | ((number.to_bits() & exponent) + f64::MIN_POSITIVE.to_bits());
+        let turn = self.turn.attitude.coords.iter().fold(0, add);
+        let turn = RigidBody::momentum(&self.turn).iter().fold(turn, add);
+        let mode = |any: u64, phase: &ModeState| add(add(any, &phase.displacement), &phase.quadrature);
+        self.modes.iter().fold(turn, mode) >> 63 == 0
     }
 }

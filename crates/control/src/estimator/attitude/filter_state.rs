@@ -29,6 +29,8 @@ pub struct AttitudeFilterRun {
     since: Instant,
     /// Time of the last sample and the attitude after it.
     sampled: Option<(Instant, Quaternion<f64>)>,
+    /// Angles for the laws (rad) after the last sample, and the origin from which they are counted.
+    sampled_angles: Option<(Orientation, [f64; 3])>,
     /// Torque on the body about its axes (N m), which excites the modes.
     torque: Vector,
     /// Correction by the last sample, and true if it had any.
@@ -47,6 +49,7 @@ impl AttitudeFilterRun {
             rate: Vector::zeros(),
             since: Instant::START,
             sampled: None,
+            sampled_angles: None,
             torque: Vector::zeros(),
             last_correction: Correction::NONE,
             used: false,
@@ -144,10 +147,10 @@ impl FilterSetup {
         &'a self,
         readings: &'a [Option<Reading>],
         wanted: &'a dyn Fn(&SensorRole) -> bool,
-    ) -> impl Iterator<Item = (&'a SensorRole, (usize, Reading))> {
+    ) -> impl Iterator<Item = (&'a SensorRole, (usize, &'a Reading))> {
         let all = self.roles.iter().zip(readings).enumerate();
         let wanted = all.filter(move |(_, (role, _))| wanted(role));
-        wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
+        wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, reading.as_ref()?))))
     }
 
     /// Returns a measured vector with the reference of the filter's model at its exposure: a measured magnetic field has
@@ -242,13 +245,14 @@ impl Estimator for AttitudeFilterRun {
             history.set_torque(now, self.torque);
             self.history = Some(history);
         }
-        self.sampled = None;
+        (self.sampled, self.sampled_angles) = (None, None);
         self.read(now, context.readings);
         self.sampled = self.attitude(now).map(|attitude| (now, attitude));
         let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
         let (attitude, elastic) = (self.attitude_for_laws(attitude), self.elastic_rate());
         let bias = history.bias();
         let angles = Orientation::Attitude(attitude).error_from(context.origin);
+        self.sampled_angles = Some((*context.origin, angles));
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             if self.spec.watch_only {
                 if let Some(measured) = context.measured {
@@ -263,7 +267,12 @@ impl Estimator for AttitudeFilterRun {
 
     fn predict(&self, now: Instant, origin: &Orientation, state_estimates: &mut [StateEstimate]) {
         let Some(attitude) = self.attitude(now).filter(|_| !self.spec.watch_only) else { return };
-        let angles = Orientation::Attitude(self.attitude_for_laws(attitude)).error_from(origin);
+        let is_sampled = self.sampled.is_some_and(|(sampled, _)| sampled == now);
+        let angles =
+            match self.sampled_angles.filter(|(counted_from, _)| is_sampled && counted_from == origin) {
+                Some((_, angles)) => angles,
+                None => Orientation::Attitude(self.attitude_for_laws(attitude)).error_from(origin),
+            };
         state_estimates
             .iter_mut()
             .zip(angles)

@@ -19,12 +19,16 @@ impl BearingRows {
 
     /// Records the wheels whose slip state has changed since the last instant: passes through zero speed, sticking,
     /// slipping again.
+    #[inline]
     pub fn record_events(
         &mut self,
         run: &RunView<'_>,
         journal: &JournalEvents,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
+        if self.0.is_empty() {
+            return Ok(());
+        }
         let slips = run.plant.slip_states();
         if self.0 == slips {
             return Ok(());

@@ -24,7 +24,20 @@ impl BlindingRows {
     }
 
     /// Records the changes since the last instant; at the start, the bodies that blind a star tracker from then on.
+    #[inline]
     pub fn record_events(
+        &mut self,
+        run: &RunView<'_>,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        if run.sensors.has_no_exclusion() {
+            return Ok(());
+        }
+        self.record_changes(run, journal, record)
+    }
+
+    fn record_changes(
         &mut self,
         run: &RunView<'_>,
         journal: &JournalEvents,

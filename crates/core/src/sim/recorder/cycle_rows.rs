@@ -14,6 +14,8 @@ pub struct CycleRows {
     revisions: LoggedRevisions,
     /// How wheels and magnetorquers reach their limits.
     saturation: Saturation,
+    /// True if adaptive observers report their cycles, and with them active damping.
+    has_observers: bool,
     /// Reports of the last cycle: of the body and its actuators, and of the estimator.
     actuator_report: Report,
     estimator_report: Report,
@@ -23,7 +25,9 @@ impl CycleRows {
     /// Creates the memory of a scenario's rows, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         let saturation = Saturation::new(&scenario.actuator, scenario.duration.seconds());
+        let estimator = scenario.estimator.as_ref();
         Self {
+            has_observers: estimator.is_some_and(|estimator| estimator.adaptive().is_some()),
             revisions: LoggedRevisions::default(),
             saturation,
             actuator_report: Report::new(),
@@ -51,11 +55,9 @@ impl CycleRows {
         report.skip_repeated(&mut self.revisions);
         self.saturation.observe(now.seconds(), report);
         run.record_report(report, record)?;
-        if let Some(written) = run.guidance.target_as_written(now) {
-            let error = || truth.orientation.error_from(&run.guidance.target(now));
-            journal.target(now, written, error, record)?;
-        }
-        if run.estimation.has_estimator {
+        let error = || truth.orientation.error_from(&run.guidance.target(now));
+        journal.target(now, run.guidance, error, record)?;
+        if self.has_observers {
             let damped = run.laws.damping_status();
             let report = &mut self.estimator_report;
             report.clear();

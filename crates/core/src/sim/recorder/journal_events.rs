@@ -11,6 +11,7 @@ use nalgebra::Quaternion;
 
 use super::journal::{Journal, adaptation_line, opening};
 use crate::scenario::Scenario;
+use crate::sim::guidance::Guidance;
 
 /// Stage of the journal: not yet opened, open, or closed.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -27,6 +28,8 @@ pub struct JournalEvents {
     stage: JournalStage,
     opening: String,
     target: Option<(TargetFrame, Quaternion<f64>)>,
+    /// Number of the target in the profile; `None` before the first cycle.
+    target_number: Option<usize>,
     /// True while the body turns towards the target and has not arrived.
     is_slewing: bool,
     /// Error about each axis below which the body has arrived at a target (rad).
@@ -46,6 +49,7 @@ impl JournalEvents {
             stage: JournalStage::Before,
             opening: opening(scenario, run),
             target: None,
+            target_number: None,
             is_slewing: false,
             arrival_bands: scenario.study.arrival_bands(scenario),
             latched: [false; 3],
@@ -128,6 +132,7 @@ impl JournalEvents {
     }
 
     /// Writes which filters have lost lock or have it again; with one axis, without the name of the axis.
+    #[inline]
     pub fn lock_changed(
         &mut self,
         now: Instant,
@@ -135,6 +140,9 @@ impl JournalEvents {
         axes: usize,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
+        if self.lost == lost {
+            return Ok(());
+        }
         let before = std::mem::replace(&mut self.lost, lost);
         for axis in (0..3).filter(|axis| before[*axis] != lost[*axis]) {
             let (level, line) = if lost[axis] {
@@ -152,14 +160,16 @@ impl JournalEvents {
     pub fn target(
         &mut self,
         now: Instant,
-        target: (TargetFrame, Quaternion<f64>),
+        guidance: &Guidance,
         error: impl FnOnce() -> [f64; 3],
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let manoeuvre = (LogLevel::Info, "manoeuvre");
-        if self.target != Some(target) {
-            self.target = Some(target);
-            let (frame, attitude) = target;
+        let number = Some(guidance.target_number(now));
+        let is_next = std::mem::replace(&mut self.target_number, number) != number;
+        let written = if is_next { guidance.target_as_written(now) } else { None };
+        if let Some((frame, attitude)) = written.filter(|_| self.target != written) {
+            self.target = written;
             let [roll, pitch, yaw] = angles(&attitude);
             let from = frame.name();
             let line = format!("the target is roll {roll:.5}, pitch {pitch:.5}, yaw {yaw:.5} rad{from}");

@@ -16,7 +16,7 @@ mod scene_frames;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{ModeEvent, Record, RecordError, Sample};
+use flexsc_record::{ModeEvent, Record, RecordError, Report, Sample};
 
 use super::controllers::LawDecision;
 use super::guidance::Guidance;
@@ -49,12 +49,16 @@ pub struct Recorder {
     requirements: RequirementSamples,
     failures: Failures,
     frames: SceneFrames,
+    /// Report of the last sample, whose memory is used again.
+    sample_report: Report,
+    /// Instant at which the next row or journal line is due.
+    due: Option<Instant>,
 }
 
 impl Recorder {
     /// Creates the schedule of a scenario's run, before its start.
     pub fn new(scenario: &Scenario, guidance: &Guidance, run: u64) -> Self {
-        Self {
+        let mut recorder = Self {
             journal: JournalEvents::new(scenario, run),
             motion: MotionRows::new(scenario),
             cycles: CycleRows::new(scenario),
@@ -66,11 +70,21 @@ impl Recorder {
             requirements: RequirementSamples::new(scenario),
             failures: Failures::new(scenario),
             frames: SceneFrames::default(),
-        }
+            sample_report: Report::new(),
+            due: None,
+        };
+        recorder.update_due();
+        recorder
     }
 
     /// Returns the instant at which the next row or journal line is due.
+    #[inline]
     pub fn due(&self) -> Option<Instant> {
+        self.due
+    }
+
+    /// Finds the instant at which the next row or journal line is due.
+    fn update_due(&mut self) {
         let due = [
             self.manoeuvre_end.as_ref().map(|end| end.at),
             self.motion.due(),
@@ -80,7 +94,7 @@ impl Recorder {
             self.lines_of_sight.due(),
             self.requirements.due(),
         ];
-        due.into_iter().flatten().min()
+        self.due = due.into_iter().flatten().min();
     }
 
     /// Returns true if no row is due at an instant of its own, and no scene is drawn.
@@ -126,27 +140,37 @@ impl Recorder {
         self.bearings.begin(run.plant);
         self.blinding.record_events(run, &self.journal, record)?;
         self.motion.record_start(run, record)?;
-        self.frames.record_scene(run.now, &self.journal, record)
+        self.frames.record_scene(run.now, &self.journal, record)?;
+        self.update_due();
+        Ok(())
     }
 
     /// Records the rows that are due, after all parts have acted; those of a cycle of three axes if `is_cycle`.
+    #[inline]
     pub fn record_instant(
         &mut self,
         run: &RunView<'_>,
         is_cycle: bool,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
+        let is_due = self.due.is_some_and(|due| due <= run.now);
         self.bearings.record_events(run, &self.journal, record)?;
         self.blinding.record_events(run, &self.journal, record)?;
-        self.failures.record_due(run.now, &self.journal, record)?;
-        self.accelerometers.record_due(run, record)?;
-        self.lines_of_sight.record_due(run, record)?;
-        self.requirements.record_due(run, record)?;
+        if is_due {
+            self.failures.record_due(run.now, &self.journal, record)?;
+            self.accelerometers.record_due(run, record)?;
+            self.lines_of_sight.record_due(run, record)?;
+            self.requirements.record_due(run, record)?;
+        }
         if is_cycle {
             self.cycles.record(run, &mut self.journal, record)?;
         }
         self.motion.record_due(run, record)?;
-        self.frames.record_due(run, &self.journal, record)
+        self.frames.record_due(run, &self.journal, record)?;
+        if is_due {
+            self.update_due();
+        }
+        Ok(())
     }
 
     /// Records the motion at the current instant, and the law's row of a one-axis body.
@@ -155,6 +179,7 @@ impl Recorder {
     }
 
     /// Records a decision in which the one-axis law has changed its state.
+    #[inline]
     pub fn record_switching(
         &self,
         run: &RunView<'_>,
@@ -176,6 +201,7 @@ impl Recorder {
     }
 
     /// Records the estimates after the current sample, and journals losses of lock.
+    #[inline]
     pub fn record_estimates(
         &mut self,
         run: &RunView<'_>,
@@ -188,10 +214,16 @@ impl Recorder {
             estimation.axis_count(),
             record,
         )?;
-        if record.wants_estimates() { run.record_report(&run.sample_report(), record) } else { Ok(()) }
+        if !record.wants_estimates() {
+            return Ok(());
+        }
+        self.sample_report.clear();
+        run.add_sample(&mut self.sample_report);
+        run.record_report(&self.sample_report, record)
     }
 
     /// Records the end of the manoeuvre, if it is at the current instant.
+    #[inline]
     pub fn record_manoeuvre_end(
         &mut self,
         run: &RunView<'_>,
@@ -199,12 +231,14 @@ impl Recorder {
     ) -> Result<(), RecordError> {
         let now = run.now;
         let Some(end) = self.manoeuvre_end.take_if(|end| end.at == now) else { return Ok(()) };
+        self.update_due();
         let row = end.row(run.plant.truth(), &run.plant.about_axis(0, run.estimation.origin()));
         record.record(now, Sample::Row(&row))?;
         self.journal.manoeuvre_ended(now, &row, record)
     }
 
     /// Records a closed window of the envelope, if there is one, and the step of the adaptation.
+    #[inline]
     pub fn record_envelope_window(
         &self,
         now: Instant,
@@ -219,6 +253,7 @@ impl Recorder {
     }
 
     /// Records a closed window of the objective, if there is one, and the step of the adaptation.
+    #[inline]
     pub fn record_objective_window(
         &self,
         now: Instant,

@@ -34,6 +34,7 @@ impl MotionRows {
     }
 
     /// Returns the instant of the next row.
+    #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.next
     }
@@ -57,9 +58,22 @@ impl MotionRows {
     }
 
     /// Records the rows that are due at the current instant.
+    #[inline]
     pub fn record_due(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
+        match self.next {
+            Some(due) => self.record_until(due, run, record),
+            None => Ok(()),
+        }
+    }
+
+    /// Records the rows of the current instant, at which or after which a row is due at `due`.
+    fn record_until(
+        &mut self,
+        due: Instant,
+        run: &RunView<'_>,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
         let now = run.now;
-        let Some(due) = self.next else { return Ok(()) };
         // A pulse that begins or ends has a row of its own, or a log could miss it.
         let mut firing = [0.0; 3];
         for (axis, firing) in firing.iter_mut().enumerate().take(run.estimation.axis_count()) {
@@ -92,17 +106,26 @@ impl MotionRows {
 
     /// Records a decision in which the one-axis law has changed its state, with the sensed angle (rad) and rate (rad/s)
     /// and the commanded torque.
+    #[inline]
     pub fn record_switching(
         &self,
         run: &RunView<'_>,
         decision: LawDecision,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let Some(motion) = run.plant.quantities().one_axis() else { return Ok(()) };
-        let LawDecision { before, after, cause } = decision;
-        if before == after {
+        if decision.before == decision.after {
             return Ok(());
         }
+        self.record_changed_state(run, decision, record)
+    }
+
+    fn record_changed_state(
+        &self,
+        run: &RunView<'_>,
+        LawDecision { after, cause, .. }: LawDecision,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let Some(motion) = run.plant.quantities().one_axis() else { return Ok(()) };
         let truth = run.plant.truth();
         let (time_s, time_whole_s, time_fs) = Command::times(run.now);
         let command = Command {

@@ -8,8 +8,7 @@ use flexsc_control::state_estimate::DampingStatus;
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::three_axis::RotorObservation;
 use flexsc_record::{
-    AxisRate, GoalMotion, Rates, Record, RecordError, Report, Sample, StoredMomentum, ThreeAxisCycle, Torque,
-    Torques,
+    AxisRate, GoalMotion, Rates, Record, RecordError, Report, Sample, ThreeAxisCycle, Torque, Torques,
 };
 
 use crate::scenario::Scenario;
@@ -83,11 +82,9 @@ impl RunView<'_> {
         report
     }
 
-    /// Returns the rows of the estimator after a sample.
-    pub fn sample_report(&self) -> Report {
-        let mut report = Report::new();
-        self.add_reports(Occasion::Sample, &[], &[&*self.estimation.estimator], &mut report);
-        report
+    /// Adds the rows of the estimator after a sample.
+    pub fn add_sample(&self, report: &mut Report) {
+        self.add_reports(Occasion::Sample, &[], &[&*self.estimation.estimator], report);
     }
 
     /// Adds the rows of the estimator at the start of a cycle, with this status of active damping about each axis.
@@ -99,7 +96,8 @@ impl RunView<'_> {
     pub fn add_actuator_cycle(&self, motion: &dyn ThreeAxisQuantities, report: &mut Report) {
         let (rigid, elastic) = motion.body().rates;
         let (elastic_energy_j, visible_energy_j) = motion.elastic_energies();
-        report.add_value(ThreeAxisCycle {
+        let actuator = &*self.loads.actuator;
+        let cycle = ThreeAxisCycle {
             elastic_energy_j,
             visible_energy_j,
             rigid_rate_rad_s: rigid.into(),
@@ -107,9 +105,9 @@ impl RunView<'_> {
             error_rad: self.plant.truth().orientation.error_from(self.estimation.origin()),
             slewing: self.guidance.slews(self.now),
             friction_heat_j: motion.friction_heat(),
-        });
-        let actuator = &*self.loads.actuator;
-        report.add_value(StoredMomentum(actuator.capabilities().stored_momentum(self.now)));
+            stored_momentum_nm_s: actuator.capabilities().stored_momentum(self.now),
+        };
+        report.write_value(|place| *place = cycle);
         self.add_reports(Occasion::Cycle, &[], &[actuator], report);
     }
 

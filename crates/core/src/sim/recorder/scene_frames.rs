@@ -46,7 +46,17 @@ impl SceneFrames {
     }
 
     /// Records the frames that are due and the plumes that have changed.
+    #[inline]
     pub fn record_due(
+        &mut self,
+        run: &RunView<'_>,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        if self.scene.is_none() { Ok(()) } else { self.record_frames(run, journal, record) }
+    }
+
+    fn record_frames(
         &mut self,
         run: &RunView<'_>,
         journal: &JournalEvents,
