@@ -22,10 +22,11 @@ pub fn completed(command: Command) -> Command {
     let hint = "Run `flexsc VERB --help` for the options of a verb and two examples.";
     let template =
         format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
-    let all = GROUPS.into_iter().flat_map(|(_, members)| members);
-    all.fold(command.help_template(template), |command, (name, examples)| {
+    command.help_template(template).mut_subcommands(|verb| {
+        let mut all = GROUPS.iter().flat_map(|(_, members)| *members);
+        let Some((_, examples)) = all.find(|(name, _)| *name == verb.get_name()) else { return verb };
         let reported = examples.map(|(line, purpose)| format!("  {line}\n      {purpose}")).join("\n");
-        command.mut_subcommand(name, |verb| verb.after_help(format!("Examples:\n{reported}")))
+        verb.after_help(format!("Examples:\n{reported}"))
     })
 }
 

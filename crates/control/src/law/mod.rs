@@ -340,6 +340,7 @@ impl Guards {
 
 impl std::ops::Deref for Guards {
     type Target = [Guard];
+    #[inline]
     fn deref(&self) -> &[Guard] {
         &self.0[..self.1]
     }

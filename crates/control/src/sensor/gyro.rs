@@ -309,7 +309,7 @@ impl GyroState {
             }
             *rate += wander.value(gyro, axis, seconds, noise);
             if quantum > 0.0 {
-                *rate = (*rate / quantum).round() * quantum;
+                *rate = libm::round(*rate / quantum) * quantum;
             }
         }
         rate

@@ -29,6 +29,8 @@ pub struct Sensors {
     pub reading: Option<Reading>,
     /// Latest measured angle (rad) and rate (rad/s) about each axis.
     pub measured: Vec<[f64; 2]>,
+    /// Last measured attitude and the origin of its angles, with these angles (rad).
+    last_angles: Option<(Orientation, Orientation, [f64; 3])>,
     /// Last measured magnetic field with its rate of change.
     field: FieldRate,
     /// Rate of change of the measured magnetic field in body axes (T/s); `None` before the second sample.
@@ -73,6 +75,7 @@ impl Sensors {
             new_readings: vec![None; sensors.len()],
             reading: None,
             measured: vec![[0.0; 2]; axes],
+            last_angles: None,
             field: FieldRate::NONE,
             field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
@@ -210,6 +213,9 @@ impl Sensors {
             let rates = reading.rate.or_else(|| due.differentiated_rates(now, reading, &truth));
             if due.provides_attitude {
                 let angles = reading.at.error_from(origin);
+                if self.measured.len() > 1 {
+                    self.last_angles = Some((reading.at, *origin, angles));
+                }
                 self.measured.iter_mut().zip(angles).for_each(|(measured, angle)| measured[0] = angle);
             }
             if let Some(rates) = rates {
@@ -223,6 +229,14 @@ impl Sensors {
         }
         self.next = self.schedules.iter().filter_map(|due| due.next).min();
         any
+    }
+
+    /// Returns the angles of an orientation from an origin (rad), which a perfect sensor may have measured before.
+    pub fn angles_of(&self, orientation: &Orientation, origin: &Orientation) -> [f64; 3] {
+        match &self.last_angles {
+            Some((last, from, angles)) if last == orientation && from == origin => *angles,
+            _ => orientation.error_from(origin),
+        }
     }
 
     /// Puts the sensors of a mode into use that begins at `now`.

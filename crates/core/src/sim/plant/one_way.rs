@@ -146,9 +146,6 @@ impl Flow for OneWayFlow {
         if body.has_truth {
             return true;
         }
-        if !body.state.is_finite() {
-            return false;
-        }
         let (turn, modes) = (&body.state.turn, &body.state.modes);
         let (rigid, elastic) = (body.rigid.rate(turn), body.elastic.rate_at(&body.sensor_rotations, modes));
         let angle = body.modal_rotation(&body.sensor_rotations);
@@ -161,8 +158,10 @@ impl Flow for OneWayFlow {
         if let Some(around) = &self.surroundings {
             truth.environment = around.observation(body.evaluated_at.seconds());
         }
-        body.has_truth = true;
-        true
+        // A number of the state that is not finite makes one of these infinite or NaN: each mode is part of the sums.
+        let sums = truth.rate.iter().chain(&truth.elastic).chain(&truth.rigid_rate);
+        body.has_truth = sums.chain(turn.attitude.coords.iter()).all(|number| number.is_finite());
+        body.has_truth
     }
 
     fn about_axis(&self, axis: usize, target: &Orientation) -> Cow<'_, AxisState> {

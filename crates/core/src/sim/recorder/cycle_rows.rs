@@ -55,7 +55,7 @@ impl CycleRows {
         report.skip_repeated(&mut self.revisions);
         self.saturation.observe(now.seconds(), report);
         run.record_report(report, record)?;
-        let error = || truth.orientation.error_from(&run.guidance.target(now));
+        let error = || run.sensors.angles_of(&truth.orientation, &run.guidance.target(now));
         journal.target(now, run.guidance, error, record)?;
         if self.has_observers {
             let damped = run.laws.damping_status();

@@ -102,7 +102,7 @@ impl RunView<'_> {
             visible_energy_j,
             rigid_rate_rad_s: rigid.into(),
             elastic_rate_rad_s: elastic.into(),
-            error_rad: self.plant.truth().orientation.error_from(self.estimation.origin()),
+            error_rad: self.sensors.angles_of(&self.plant.truth().orientation, self.estimation.origin()),
             slewing: self.guidance.slews(self.now),
             friction_heat_j: motion.friction_heat(),
             stored_momentum_nm_s: actuator.capabilities().stored_momentum(self.now),
