@@ -9,7 +9,7 @@ use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{
     Column, Columns, Detail, Energy, Magnetorquers, Modes, Orbit, Pointing, Rate, Record, RecordError,
-    Report, Sample, StoredMomentum, ThreeAxisCycle, Torque, Torques, Trace,
+    Report, Sample, ThreeAxisCycle, Torque, Torques, Trace,
 };
 use flexsc_core::{ObservationField, Scenario, Simulation};
 use nalgebra::{Matrix3, Quaternion};
@@ -108,8 +108,7 @@ impl Rows {
     }
 
     fn add_cycle(&mut self, t: f64, cycle: &ThreeAxisCycle, report: &Report) {
-        let stored = report.get::<StoredMomentum>().copied().unwrap_or_default();
-        self.cycles.push((t, cycle.rigid_rate_rad_s.into(), stored.0.into()));
+        self.cycles.push((t, cycle.rigid_rate_rad_s.into(), cycle.stored_momentum_nm_s.into()));
         let Some(jets) = report.get::<JetCycle>() else { return };
         // Jets may have cycles of their own, which are longer.
         if std::mem::replace(&mut self.fired, jets.pulses) == jets.pulses {

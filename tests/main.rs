@@ -36,6 +36,7 @@ mod model;
 mod orbits;
 mod outside;
 mod rotation;
+mod small_angle_readings;
 mod small_angles;
 mod spacecraft;
 mod spatial;

@@ -36,18 +36,14 @@ impl AxesLaws {
             };
             ControllerState { law, hold: ControlOutput::NONE, place }
         };
-        match law.start_three_axis(authorities) {
-            Some(law) => {
-                let lead_time = law.reference_needs().lead_time;
-                Self { axes: Vec::new(), three_axis: Some((law, ThreeAxisOutput::NONE)), lead_time }
-            }
-            None => {
-                let axes: Vec<ControllerState> = authorities.iter().enumerate().map(axis).collect();
-                let lead_times = axes.iter().map(|held| held.law.reference_needs().lead_time);
-                let lead_time = lead_times.fold(0.0, f64::max);
-                Self { axes, three_axis: None, lead_time }
-            }
+        if let Some(law) = law.start_three_axis(authorities) {
+            let lead_time = law.reference_needs().lead_time;
+            return Self { axes: Vec::new(), three_axis: Some((law, ThreeAxisOutput::NONE)), lead_time };
         }
+        let axes: Vec<ControllerState> = authorities.iter().enumerate().map(axis).collect();
+        let lead_times = axes.iter().map(|held| held.law.reference_needs().lead_time);
+        let lead_time = lead_times.fold(0.0, f64::max);
+        Self { axes, three_axis: None, lead_time }
     }
 
     /// Sets a parameter of all laws, or of the law about one axis that the key selects.

@@ -221,7 +221,10 @@ impl Sensors {
             if let Some(rates) = rates {
                 self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
             }
-            let all = self.reading.get_or_insert_with(|| Reading { sight: None, ..*reading });
+            let Some(all) = &mut self.reading else {
+                self.reading = Some(Reading { sight: None, ..*reading });
+                continue;
+            };
             if due.provides_attitude {
                 all.at = reading.at;
             }

@@ -67,12 +67,6 @@ impl RigidBody {
         RigidState { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
     }
 
-    /// Returns the state after a rotation by `turned` since the start (rad), with the integral of the rates of small
-    /// rotations.
-    pub fn after(&self, attitude: Quaternion<f64>, rate: Vector, turned: Vector) -> RigidState {
-        RigidState { turned, ..self.start(attitude, rate) }
-    }
-
     /// Returns the rates in the body's axes (rad/s).
     pub fn rate(&self, turn: &RigidState) -> Vector {
         self.inverse * turn.momentum

@@ -108,8 +108,7 @@ impl SmallAnglesFlow {
     fn write_state(&mut self) {
         let SmallAngleState { angles, rates, modes } = &self.now.state;
         let state = &mut self.body.state;
-        let turned = angles - self.first_angles;
-        state.turn = self.body.rigid.after(self.target * rotation(angles), *rates, turned);
+        state.turn = self.body.rigid.start(self.target * rotation(angles), *rates);
         state.modes.clone_from(modes);
         self.hub = self.target * rotation(&(angles + self.body.modal_rotation(&self.hub_rotations)));
     }
