@@ -5,6 +5,7 @@
 //! and a reason. The tables in docs/combinations.md are made here.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use flexsc_core::numerics::attitude::{Vector, vector};
 use flexsc_core::{Scenario, ScenarioError};
@@ -18,6 +19,7 @@ use crate::kinds::{
     ACTUATORS, AROUND, ESTIMATORS, HINGED, JETS, Kind, LAWS, ONE_ANGLE, SENSORS, SPACECRAFT, THREE_AXES,
     THRUST,
 };
+use crate::study::pairs;
 
 /// Parts of a combination.
 #[derive(Copy, Clone)]
@@ -85,22 +87,13 @@ pub struct Body {
     tolerance: f64,
 }
 
-/// Returns what is accepted on a body; each combination is run.
+/// Returns what is accepted on a body; what is refused has a reason.
 fn accepted(body: &Body) -> Accepted {
-    // By what is wrong: how many, and the last of them.
-    let mut wrong = BTreeMap::<String, (usize, String)>::new();
-    let accepted = LAWS.map(|law| {
+    LAWS.map(|law| {
         ACTUATORS.map(|actuator| {
             ESTIMATORS.map(|estimator| {
                 SENSORS.map(|sensor| match combined(body.text, Parts { law, sensor, estimator, actuator }) {
-                    Ok(scenario) => {
-                        if let Err(why) = run(&scenario, body, &[law.0], actuator.0) {
-                            let (count, name) = wrong.entry(why).or_default();
-                            *count += 1;
-                            *name = [law.0, sensor.0, estimator.0, actuator.0].join(", ");
-                        }
-                        true
-                    }
+                    Ok(_) => true,
                     Err(error) => {
                         let text = error.to_string();
                         assert!(text.contains('`') && text.len() > 40, "no reason: {text}");
@@ -109,9 +102,54 @@ fn accepted(body: &Body) -> Accepted {
                 })
             })
         })
-    });
+    })
+}
+
+/// Returns what is accepted on each body. Every combination is parsed once, for all tests.
+fn all_accepted() -> &'static [Accepted] {
+    static ALL: LazyLock<Vec<Accepted>> = LazyLock::new(|| on_all(accepted));
+    &ALL
+}
+
+/// Returns the position of a kind among those of a role.
+fn position(kinds: &[Kind], kind: Kind) -> usize {
+    kinds.iter().position(|known| known.0 == kind.0).expect("a known kind")
+}
+
+/// Returns true if a combination is accepted on a body.
+pub fn is_accepted(body: &Body, parts: Parts) -> bool {
+    let Parts { law, sensor, estimator, actuator } = parts;
+    let body = bodies().iter().position(|known| known.name == body.name).expect("a known body");
+    let on_actuator = &all_accepted()[body][position(&LAWS, law)][position(&ACTUATORS, actuator)];
+    on_actuator[position(&ESTIMATORS, estimator)][position(&SENSORS, sensor)]
+}
+
+/// Runs each accepted combination of a body.
+fn run_all(body: &Body) {
+    // By what is wrong: how many, and the last of them.
+    let mut wrong = BTreeMap::<String, (usize, String)>::new();
+    for law in LAWS {
+        for actuator in ACTUATORS {
+            for (estimator, sensor) in readers() {
+                let parts = Parts { law, sensor, estimator, actuator };
+                if !is_accepted(body, parts) {
+                    continue;
+                }
+                let scenario = combined(body.text, parts).expect("an accepted combination");
+                if let Err(why) = run(&scenario, body, &[law.0], actuator.0) {
+                    let (count, name) = wrong.entry(why).or_default();
+                    *count += 1;
+                    *name = format!("{parts:?}");
+                }
+            }
+        }
+    }
     assert!(wrong.is_empty(), "{}: {wrong:#?}", body.name);
-    accepted
+}
+
+/// Returns the estimators and sensors.
+pub fn readers() -> impl Iterator<Item = (Kind, Kind)> {
+    ESTIMATORS.into_iter().flat_map(|estimator| SENSORS.map(|sensor| (estimator, sensor)))
 }
 
 /// Returns the torques of the jets on a body with this centre of mass (N m).
@@ -168,7 +206,7 @@ pub fn run(scenario: &Scenario, body: &Body, laws: &[&str], actuator: &str) -> R
 
 /// Bodies of combinations.
 pub fn bodies() -> &'static [Body; 5] {
-    static BODIES: std::sync::LazyLock<[Body; 5]> = std::sync::LazyLock::new(|| {
+    static BODIES: LazyLock<[Body; 5]> = LazyLock::new(|| {
         let turning =
             SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =") + HINGED;
         let small = SPACECRAFT.replace("points =", "small_angles = {}\npoints =");
@@ -233,10 +271,9 @@ pub fn on_all<T: Send>(of: impl Fn(&'static Body) -> T + Sync) -> Vec<T> {
 
 #[test]
 fn parts_combine_as_the_documents_say() {
-    let bodies = bodies();
-    let all_accepted: Vec<Accepted> = on_all(accepted);
+    on_all(run_all);
     let mut made = Vec::new();
-    for (body, accepted) in bodies.iter().zip(&all_accepted) {
+    for (body, accepted) in pairs(bodies(), all_accepted()) {
         assert!(total(accepted) >= body.least, "{}: {}", body.name, total(accepted));
         made.push(section(body.name, accepted));
     }

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-use crate::flight_code::{EXPORTED, document, is_installed, make, prepared, text};
+use crate::flight_exports::{EXPORTED, WITH_MODES, document, exported, is_installed, make, text};
 use crate::util::Dir;
 
 /// Returns the most instructions of each function on each board, as `make instructions` prints them.
@@ -25,8 +25,7 @@ fn instructions_are_those_of_the_document_but_for_a_tenth() {
     }
     let document = document();
     for name in EXPORTED {
-        let (dir, arguments) = prepared(name);
-        dir.run(&format!("export-c {arguments} -o out --calls 2000")).exits(0);
+        let dir = exported(name);
         let printed = text(&make(&dir, "out", &["instructions"]));
         assert_eq!(printed.matches("a loop of 2000 instructions: 2000 counted").count(), 2, "{printed}");
         assert_eq!(printed.matches("calls equal").count(), 2, "{printed}");
@@ -67,24 +66,22 @@ fn static_analysis_finds_what_the_document_lists() {
         .lines()
         .filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0.to_owned()))
         .collect();
-    // With modes of operation too, one of which has a compensator without states.
-    let names = EXPORTED.into_iter().chain(["site-pass"]);
-    let all: Vec<(&str, (Dir, String))> = names.map(|name| (name, prepared(name))).collect();
-    for (_, (dir, arguments)) in &all {
-        dir.run(&format!("export-c {arguments} -o out --calls 1")).exits(0);
+    let all: Vec<(&str, Dir)> =
+        EXPORTED.into_iter().chain([WITH_MODES]).map(|name| (name, exported(name))).collect();
+    for (_, dir) in &all {
         assert_eq!(accepted(&dir.text("out/Makefile")), told);
     }
     if !is_installed("make") {
         return;
     }
-    for (name, (dir, _)) in &all {
+    for (name, dir) in &all {
         let output = make(dir, "out", &["lint"]);
         let said = text(&output);
         assert!(output.status.success(), "{name}: {said}");
         said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
     }
     // A finding of another kind is an error.
-    let (_, (dir, _)) = &all[0];
+    let (_, dir) = &all[0];
     let source = dir.text("out/relay_sampled.c");
     if is_installed("cppcheck") {
         let body = "\nint relay_sampled_spoilt(int count);\nint relay_sampled_spoilt(int count)\n{\n    int list[2];\n    \

@@ -1,88 +1,24 @@
 //! Exported control systems: the same bits as the engine's in every home that the machine has, and what is refused.
 
-use std::collections::BTreeMap;
-use std::process::{Command, Output};
+use std::process::Output;
 
 use flexsc_core::Scenario;
 use flexsc_export_c::control_system::ControlSystem;
 use flexsc_export_c::{self_test, vectors};
 
+use crate::flight_exports::{EXPORTED, document, exported, hashes, is_installed, make, scenario_of, text};
 use crate::frozen::is_frozen;
 use crate::util::Dir;
 
-/// A relay at samples, a PD law with a gain schedule, phase planes with active damping, attitude laws with wheels, a compensator
-/// about three axes, PD laws on Kalman filters, and B-dot laws in a mode of operation.
-pub const EXPORTED: [&str; 7] = [
-    "relay-sampled",
-    "wheel-scheduled-gain",
-    "iss-ringdown",
-    "earth-observer",
-    "earth-observer-lqg",
-    "attitude-hold",
-    "safe-mode --mode detumble",
-];
-
-/// Returns a directory with the file of an exported scenario, and the arguments of its export.
-pub fn prepared(exported: &str) -> (Dir, String) {
-    let (name, mode) = exported.split_once(' ').unwrap_or((exported, ""));
-    let dir = Dir::with(&[name]);
-    if !mode.is_empty() {
-        // B-dot laws read no attitude.
-        let watched = "[estimator.attitude]\nwatch_only = true\n";
-        let text = dir.text(&format!("{name}.toml")).replace("[estimator.attitude]\n", watched);
-        dir.write(&format!("{name}.toml"), text);
-    }
-    (dir, format!("{name}.toml {mode}"))
-}
-
-/// Returns an exported scenario, in the mode that is exported.
-fn scenario_of(exported: &str) -> Scenario {
-    let (dir, arguments) = prepared(exported);
-    let (file, mode) = arguments.split_once(' ').expect("a file, and perhaps a mode");
-    let scenario = Scenario::load(&dir.path(file)).expect("an exportable scenario");
-    match mode.strip_prefix("--mode ") {
-        Some(mode) => scenario.in_mode(mode).expect("a mode of the scenario"),
-        None => scenario,
-    }
-}
+/// Cycles of the self-test on the host, and on emulated processors and boards. The last of 16 blocks of 256 is extreme.
+const HOST_CYCLES: u64 = 20_000;
+const EMULATED_CYCLES: u64 = 4096;
+const BOARD_CYCLES: u64 = 1000;
 
 /// Returns a shipped scenario.
 fn shipped(name: &str) -> Scenario {
     let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     Scenario::load(path.as_ref()).expect("a shipped scenario")
-}
-
-/// True if a command is installed; else it says aloud what is skipped.
-pub fn is_installed(command: &str) -> bool {
-    let is_there = Command::new(command).arg("--version").output().is_ok_and(|out| out.status.success());
-    if !is_there {
-        eprintln!("skipped: {command} is not installed");
-    }
-    is_there
-}
-
-/// Runs `make` in a directory of another.
-pub fn make(dir: &Dir, within: &str, arguments: &[&str]) -> Output {
-    Command::new("make").arg("-C").arg(dir.path(within)).args(arguments).output().expect("make runs")
-}
-
-/// Returns what a command printed.
-pub fn text(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
-}
-
-/// Returns the page about flight code.
-pub fn document() -> String {
-    let path = format!("{}/../../docs/flight-code.md", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).expect("the document")
-}
-
-/// Returns the hashes in the description of an exported control system.
-fn hashes(dir: &Dir, within: &str) -> BTreeMap<u64, String> {
-    let readme = dir.text(&format!("{within}/README.md"));
-    let rows =
-        readme.lines().filter_map(|line| line.strip_prefix("| ")?.strip_suffix(" |")?.split_once(" | "));
-    rows.filter_map(|(cycles, hash)| Some((cycles.parse().ok()?, hash.to_owned()))).collect()
 }
 
 #[test]
@@ -113,22 +49,35 @@ fn exported_laws_have_equal_bits_in_every_home() {
         return;
     }
     for name in EXPORTED {
-        let (dir, arguments) = prepared(name);
-        dir.run(&format!("export-c {arguments} -o out --calls 2000"))
-            .exits(0)
-            .says(&["calls of the run as vectors"]);
-        let hashes = hashes(&dir, "out");
-        let [hash, board] = [20_000, 1000].map(|cycles| &hashes[&cycles]);
-        let (hash, board) = (format!("HASH={hash}"), format!("BOARD_HASH={board}"));
-        let output = make(&dir, "out", &["check-all", "CYCLES=20000", &hash, "BOARD_CYCLES=1000", &board]);
-        let said = text(&output);
-        assert!(output.status.success(), "{name}: {said}");
-        said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
-        if is_installed("gcc") {
-            assert!(
-                said.contains("gcc -O0: 20000 cycles") && said.contains("gcc -O3: 20000 cycles"),
-                "{said}"
-            );
+        let dir = exported(name);
+        let system = ControlSystem::new(&scenario_of(name)).expect("an exportable scenario");
+        let [host, emulated] = self_test::self_tests(&system, [HOST_CYCLES, EMULATED_CYCLES]);
+        let (known, emulated) = (hashes(&dir, "out"), format!("{emulated:016x}"));
+        assert_eq!(known[&HOST_CYCLES], format!("{host:016x}"), "{name}");
+        let homes = [
+            (&["check-gcc", "check-clang"][..], HOST_CYCLES, &known[&HOST_CYCLES]),
+            (&["check-aarch64", "check-riscv64", "check-m4", "check-m7"], EMULATED_CYCLES, &emulated),
+        ];
+        let makefile = dir.text("out/Makefile");
+        let all = homes
+            .iter()
+            .flat_map(|(targets, ..)| *targets)
+            .fold(String::new(), |all, target| all + " " + target);
+        assert!(makefile.contains(&format!("\ncheck-all:{all}\n")), "{all}");
+        let board = [format!("BOARD_CYCLES={BOARD_CYCLES}"), format!("BOARD_HASH={}", known[&BOARD_CYCLES])];
+        for (targets, cycles, hash) in homes {
+            let own = [format!("CYCLES={cycles}"), format!("HASH={hash}")];
+            let variables = own.iter().chain(&board).map(String::as_str);
+            let output = make(&dir, "out", &targets.iter().copied().chain(variables).collect::<Vec<_>>());
+            let said = text(&output);
+            assert!(output.status.success(), "{name}: {said}");
+            said.lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{name}: {line}"));
+            if targets.contains(&"check-gcc") && is_installed("gcc") {
+                assert!(
+                    said.contains("gcc -O0: 20000 cycles") && said.contains("gcc -O3: 20000 cycles"),
+                    "{said}"
+                );
+            }
         }
     }
 }
@@ -139,11 +88,11 @@ fn contraction_and_fast_mathematics_are_found() {
     if !is_installed("make") || !is_installed("gcc") {
         return;
     }
-    let dir = Dir::with(&["earth-observer"]);
-    dir.run("export-c earth-observer.toml -o out --calls 10").exits(0);
+    let dir = exported("earth-observer");
     let has_fma = std::fs::read_to_string("/proc/cpuinfo").is_ok_and(|text| text.contains(" fma "));
     if has_fma {
-        let output = make(&dir, "out", &["check-contraction"]);
+        let hash = format!("HASH={}", hashes(&dir, "out")[&HOST_CYCLES]);
+        let output = make(&dir, "out", &["check-contraction", &format!("CYCLES={HOST_CYCLES}"), &hash]);
         assert!(text(&output).contains("contraction: differs, as it must"), "{}", text(&output));
     } else {
         eprintln!("skipped: the processor has no fused multiply-add");
@@ -179,8 +128,7 @@ fn sizes_are_those_of_the_document_but_for_a_tenth() {
     }
     let document = document();
     for name in EXPORTED {
-        let (dir, arguments) = prepared(name);
-        dir.run(&format!("export-c {arguments} -o out --calls 1")).exits(0);
+        let dir = exported(name);
         let found = sizes(&text(&make(&dir, "out", &["size"])));
         let row = document.lines().find_map(|line| line.strip_prefix(&format!("| `{name}` | ")));
         let cells = row.expect("a row of the table").trim_end_matches(" |").split(" | ");

@@ -3,7 +3,10 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::flight_code::{is_installed, text};
+use flexsc_export_c::control_system::ControlSystem;
+use flexsc_export_c::self_test::self_tests;
+
+use crate::flight_exports::{CALLS, is_installed, scenario_of, text};
 use crate::util::Dir;
 
 /// Returns a page of the documentation.
@@ -26,20 +29,28 @@ fn lines_of(page: &str, language: &str) -> Vec<String> {
     lines
 }
 
+/// Options that shorten the commands of a page: of `flexsc export-c`, and variables of `make`.
+#[derive(Default)]
+struct Shortened {
+    export: String,
+    make: String,
+}
+
 /// Runs the commands of a page in one directory, and returns their number. Those whose tools are absent are left out.
-fn run_commands(dir: &Dir, page: &str) -> usize {
+fn run_commands(dir: &Dir, page: &str, shortened: &Shortened) -> usize {
     let lines = lines_of(page, "console");
     for line in &lines {
         let (command, arguments) = line.trim().split_once(' ').expect("a command and its arguments");
         if command == "flexsc" {
-            dir.run(arguments).exits(0);
+            let options = if arguments.starts_with("export-c ") { shortened.export.as_str() } else { "" };
+            dir.run(&format!("{arguments} {options}")).exits(0);
             continue;
         }
         if !["make", "gcc", "g++"].iter().all(|command| is_installed(command)) {
             continue;
         }
         let mut made = Command::new(command);
-        made.args(arguments.split(' ')).current_dir(dir.path(""));
+        made.args(arguments.split(' ')).current_dir(dir.path("")).env("MAKEFLAGS", &shortened.make);
         let output = made.output().expect(line);
         assert!(output.status.success(), "{line}: {}", text(&output));
         text(&output).lines().filter(|line| line.contains("skipped")).for_each(|line| eprintln!("{line}"));
@@ -49,7 +60,8 @@ fn run_commands(dir: &Dir, page: &str) -> usize {
 
 #[test]
 fn commands_about_guests_run() {
-    let count = run_commands(&Dir::with(&["earth-observer"]), &page("flight-guests.md"));
+    let count =
+        run_commands(&Dir::with(&["earth-observer"]), &page("flight-guests.md"), &Shortened::default());
     assert!(count >= 3, "{count} commands");
 }
 
@@ -58,10 +70,18 @@ fn commands_from_a_scenario_to_a_board_run_and_the_code_compiles() {
     let page = page("flight-code.md");
     let (head, tutorial) = page.split_once("## From a scenario to a Cortex-M board").expect("the section");
     let tutorial = tutorial.split("\n## ").next().expect("a section");
-    let count = run_commands(&Dir::with(&["earth-observer"]), head);
+    // At full length: a million cycles on the host.
+    let count = run_commands(&Dir::with(&["earth-observer"]), head, &Shortened::default());
     assert!(count >= 2, "{count} commands");
     let dir = Dir::new();
-    let count = run_commands(&dir, tutorial);
+    // The last of 16 blocks of 256 cycles has extreme inputs.
+    let system = ControlSystem::new(&scenario_of("earth-observer")).expect("an exportable scenario");
+    let [host, board] = self_tests(&system, [20_000, 4096]);
+    let shortened = Shortened {
+        export: format!("--calls {CALLS}"),
+        make: format!("CYCLES=20000 HASH={host:016x} BOARD_CYCLES=4096 BOARD_HASH={board:016x}"),
+    };
+    let count = run_commands(&dir, tutorial, &shortened);
     assert!(count >= 6, "{count} commands");
     let code = lines_of(tutorial, "c").join("\n");
     assert!(code.contains("aocs_init"), "{code}");

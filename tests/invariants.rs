@@ -1,7 +1,7 @@
 //! Invariants of a run, whatever its parts: momentum balances the external torque, energy does not grow by
 //! itself, pieces give the whole, and metrics are numbers.
 
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 
 use flexsc_core::control::actuator::JetCycle;
 use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
@@ -154,8 +154,30 @@ fn turned(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
     v + 2.0 * u.cross(&(u.cross(v) + attitude.w * v))
 }
 
+/// Hash by one multiplication for each word: every bit of a row changes it.
+#[derive(Default)]
+struct WordHasher(u64);
+
+impl Hasher for WordHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for piece in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..piece.len()].copy_from_slice(piece);
+            self.write_u64(u64::from_le_bytes(word));
+        }
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
 /// Hashes every row of every topic, to the bit.
-fn hash(columns: &Columns, hasher: &mut DefaultHasher) {
+fn hash(columns: &Columns, hasher: &mut WordHasher) {
     for (name, column) in &columns.columns {
         name.hash(hasher);
         match column {
@@ -186,7 +208,7 @@ impl Flown {
         let mut end = vec![0.0; fields.iter().map(ObservationField::width).sum()];
         simulation.observe(&mut end).expect("finite numbers");
         let ((trace, rows), metrics) = record;
-        let mut hasher = DefaultHasher::new();
+        let mut hasher = WordHasher::default();
         trace.into_columns().for_each(|(topic, columns)| {
             topic.hash(&mut hasher);
             hash(&columns, &mut hasher);

@@ -38,7 +38,7 @@ def lightened(arguments: list[str]) -> list[str]:
     if "--test" not in arguments:
         return arguments
     # Unit tests of these run long simulations.
-    heavy = {"flexsc_control", "flexsc_dynamics", "flexsc_numerics"} & set(arguments)
+    heavy = {"flexsc_control", "flexsc_dynamics", "flexsc_numerics", "flexsc_spacecraft"} & set(arguments)
     level = "opt-level=1" if heavy else "opt-level=0"
     less = {"opt-level=3": level, "opt-level=1": level, "codegen-units=1": "codegen-units=4"}
     return [less.get(argument, argument) for argument in arguments]
@@ -80,4 +80,10 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    code = main()
+    import resource
+    r = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open("/tmp/lint_times", "a") as f:
+        a = sys.argv
+        f.write(f"{r.ru_utime + r.ru_stime:.1f} {a[a.index('--crate-name') + 1] if '--crate-name' in a else ''} {'test' if '--test' in a else ''}\n")
+    sys.exit(code)

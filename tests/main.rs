@@ -114,6 +114,7 @@ mod craft_written;
 mod documented;
 mod flight_analysis;
 mod flight_code;
+mod flight_exports;
 mod flight_guests;
 mod flight_pages;
 mod foreign;

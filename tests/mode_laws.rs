@@ -4,8 +4,8 @@
 use flexsc_core::record::{Column, Trace};
 use flexsc_core::{Scenario, ScenarioError};
 
-use crate::combinations::{self, Body, Parts};
-use crate::kinds::{ACTUATORS, ESTIMATORS, Kind, LAWS, SENSORS};
+use crate::combinations::{self, Body, Parts, is_accepted, readers};
+use crate::kinds::{ACTUATORS, Kind, LAWS};
 use crate::study::pairs;
 use crate::traces::{self, column, traced};
 
@@ -40,11 +40,6 @@ fn in_turn(body: &str, parts: Parts, second: Kind) -> Result<Scenario, ScenarioE
     })
 }
 
-/// Returns the estimators and sensors.
-fn readers() -> impl Iterator<Item = (Kind, Kind)> {
-    ESTIMATORS.into_iter().flat_map(|estimator| SENSORS.map(|sensor| (estimator, sensor)))
-}
-
 /// Every row of every topic is, but of `/mode` and of `/log`, which names the mode, equal to the bit.
 fn agree(alone: &Trace, moded: &Trace) -> Result<(), String> {
     let [alone, moded] = [alone, moded].map(|trace| {
@@ -71,27 +66,26 @@ fn alone_and_in_a_mode(body: &Body) -> (usize, usize, Vec<String>) {
             let mut first = true;
             for (estimator, sensor) in readers() {
                 let parts = Parts { law, sensor, estimator, actuator };
-                let alone = combinations::combined(body.text, parts);
-                let moded = in_a_mode(body.text, parts);
-                match (alone, moded) {
-                    (Ok(alone), Ok(moded)) => {
+                match (is_accepted(body, parts), in_a_mode(body.text, parts)) {
+                    (true, Ok(moded)) => {
                         accepted += 1;
                         // A relay has rows of its own in place of those of torques.
                         if std::mem::take(&mut first) && law.0 != "relay" {
                             run += 1;
+                            let alone = combinations::combined(body.text, parts).expect("accepted");
                             if let Err(why) = agree(&traced(&alone), &traced(&moded)) {
                                 wrong.push(format!("{parts:?}: {why}"));
                             }
                         }
                     }
-                    (Err(alone), Err(moded)) => {
-                        let (alone, moded) = (alone.to_string(), moded.to_string());
+                    (false, Err(moded)) => {
+                        let moded = moded.to_string();
                         if !moded.contains('`') {
-                            wrong.push(format!("{parts:?}: {alone} {moded}"));
+                            wrong.push(format!("{parts:?}: {moded}"));
                         }
                     }
-                    (Ok(_), Err(why)) => wrong.push(format!("{parts:?}: only alone: {why}")),
-                    (Err(why), Ok(_)) => wrong.push(format!("{parts:?}: only in a mode: {why}")),
+                    (true, Err(why)) => wrong.push(format!("{parts:?}: only alone: {why}")),
+                    (false, Ok(_)) => wrong.push(format!("{parts:?}: only in a mode")),
                 }
             }
         }
@@ -122,9 +116,7 @@ fn two_in_turn(body: &Body) -> [usize; 2] {
         for (law, second) in laws().flat_map(|law| laws().map(move |second| (law, second))) {
             let on =
                 |law: Kind, (estimator, sensor): (Kind, Kind)| Parts { law, sensor, estimator, actuator };
-            let both = readers().find(|of| {
-                [law, second].iter().all(|law| combinations::combined(body.text, on(*law, *of)).is_ok())
-            });
+            let both = readers().find(|of| [law, second].iter().all(|law| is_accepted(body, on(*law, *of))));
             let Some(of) = both else { continue };
             match in_turn(body.text, on(law, of), second) {
                 Ok(scenario) => {

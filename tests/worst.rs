@@ -9,6 +9,7 @@ use flexsc_core::worst_case::{MarginKind, MarginSearch, MetricSearch, RunQuantit
 use serde_json::Value as Json;
 
 use crate::margins::wheel_loop;
+use crate::study;
 use crate::util::{Dir, SCENARIOS};
 
 fn shipped(name: &str) -> Scenario {
@@ -87,7 +88,7 @@ fn a_point_is_the_run_of_a_campaign_with_the_same_keys() {
 
 #[test]
 fn threads_have_no_effect() {
-    let scenario = shipped("relay-sampled");
+    let scenario = study::scenario("relay-sampled", &[("duration", "4000")]);
     let quantity = || RunQuantity::Metric("envelope_mean_rad".to_owned());
     let (one, four) =
         (worst_metric(&scenario, quantity(), true, 1), worst_metric(&scenario, quantity(), true, 4));

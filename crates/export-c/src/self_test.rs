@@ -53,38 +53,62 @@ impl Inputs {
     }
 }
 
+/// Function of the control system, with one entry for each word.
+struct WordLayout<'a> {
+    inputs: Vec<&'a Channel>,
+    outputs: Vec<NumberKind>,
+    is_start: bool,
+}
+
+impl<'a> WordLayout<'a> {
+    fn new(call: &'a CallLayout) -> Self {
+        let words = |channels: &'a [Channel]| {
+            channels.iter().flat_map(|channel| std::iter::repeat_n(channel, channel.count))
+        };
+        Self {
+            inputs: words(&call.inputs).collect(),
+            outputs: words(&call.outputs).map(|channel| channel.kind).collect(),
+            is_start: call.is_start,
+        }
+    }
+}
+
 /// Returns the hash (FNV-1a of 64 bits) over the outputs of all functions in a number of cycles; all NaN count as one value.
 pub fn self_test(system: &ControlSystem, cycles: u64) -> u64 {
+    self_tests(system, [cycles])[0]
+}
+
+/// Returns the hashes of [`self_test`] for several numbers of cycles, in one pass.
+pub fn self_tests<const N: usize>(system: &ControlSystem, cycles: [u64; N]) -> [u64; N] {
     let calls = system.calls();
+    let layouts: Vec<_> = calls.iter().map(WordLayout::new).collect();
     let milliseconds = cycle_milliseconds(system);
     let (mut inputs, mut hash) = (Inputs(SEED), 0xCBF2_9CE4_8422_2325_u64);
-    let mut current = system.clone();
-    for cycle in 0..cycles {
+    let mut hashes = [hash; N];
+    let (mut current, mut words) = (system.clone(), Vec::new());
+    for cycle in 0..cycles.into_iter().max().unwrap_or(0) {
         if cycle % BLOCK == 0 {
             current = system.clone();
         }
         let is_extreme = cycle / BLOCK % EXTREME_BLOCK == EXTREME_BLOCK - 1;
         let time = cycle * milliseconds;
         let now = Ticks { whole: (time / 1000) as i64, part: (time % 1000) as i64 * 1_000_000_000_000 };
-        let due = |call: &CallLayout| !call.is_start || cycle % BLOCK == 0;
-        for (index, call) in calls.iter().enumerate().filter(|(_, call)| due(call)) {
-            let words: Vec<u64> = call
-                .inputs
-                .iter()
-                .flat_map(|channel| std::iter::repeat_n(channel, channel.count))
-                .map(|channel| inputs.word(channel, is_extreme))
-                .collect();
+        let due = |call: &WordLayout<'_>| !call.is_start || cycle % BLOCK == 0;
+        for (index, call) in layouts.iter().enumerate().filter(|(_, call)| due(call)) {
+            words.clear();
+            words.extend(call.inputs.iter().map(|channel| inputs.word(channel, is_extreme)));
             let outputs = current.call(index, now, &words);
-            let channels =
-                call.outputs.iter().flat_map(|channel| std::iter::repeat_n(channel.kind, channel.count));
-            for (word, kind) in outputs.into_iter().zip(channels) {
-                for byte in canonical(word, kind).to_le_bytes() {
+            for (word, kind) in outputs.into_iter().zip(&call.outputs) {
+                for byte in canonical(word, *kind).to_le_bytes() {
                     hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01B3);
                 }
             }
         }
+        for (known, _) in hashes.iter_mut().zip(cycles).filter(|(_, cycles)| *cycles == cycle + 1) {
+            *known = hash;
+        }
     }
-    hash
+    hashes
 }
 
 /// Returns the milliseconds of a period of the self-test.

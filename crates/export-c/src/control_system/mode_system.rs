@@ -1,5 +1,7 @@
 //! Control system with modes of operation: the supervisor, and the laws of each mode. Stages of a law are modes that end at a time.
 
+use std::sync::Arc;
+
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::control::operation::ModeTables;
@@ -24,6 +26,43 @@ pub struct LawsOfMode {
     current: Option<SampledLaws>,
 }
 
+/// Inputs and outputs of a step: every call looks words up by their names.
+#[derive(Debug)]
+struct StepLayout {
+    /// Inputs of the laws of all modes, with the target attitude in place of estimates that the attitude filter gives.
+    inputs: Vec<Channel>,
+    /// Outputs of the laws of all modes.
+    outputs: Vec<Channel>,
+    /// Function of the laws of each mode; `None` of an open loop.
+    laws: Vec<Option<CallLayout>>,
+}
+
+impl StepLayout {
+    fn new(modes: &[LawsOfMode], has_estimator: bool) -> Self {
+        let laws: Vec<Option<CallLayout>> =
+            modes.iter().map(|mode| mode.start.as_ref().map(SampledLaws::layout)).collect();
+        let mut inputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.inputs));
+        if has_estimator {
+            inputs.retain(|channel| channel.name != "angle" && channel.name != "rate");
+            let about = "Target attitude: quaternion w, x, y, z";
+            inputs.insert(0, Channel::real("target_attitude", about, 4, 1.0));
+        }
+        let outputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.outputs));
+        Self { inputs, outputs, laws }
+    }
+}
+
+/// Returns the first channel of each name.
+fn each_once<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
+    let mut all: Vec<Channel> = Vec::new();
+    for channel in channels {
+        if !all.iter().any(|known| known.name == channel.name) {
+            all.push(channel.clone());
+        }
+    }
+    all
+}
+
 /// Control system with modes of operation.
 #[derive(Clone, Debug)]
 pub struct ModeSystem {
@@ -39,6 +78,8 @@ pub struct ModeSystem {
     pub inputs: ModeInputs,
     /// Angle from the target of the mode before, and that target, from a change on to the next step.
     moved: Option<(Vector3, Quaternion)>,
+    /// Inputs and outputs of a step.
+    layout: Arc<StepLayout>,
 }
 
 impl ModeSystem {
@@ -69,7 +110,8 @@ impl ModeSystem {
         let estimator = AttitudeUnit::new(scenario).filter(|_| scenario.study.axes.len() == 3);
         let inputs = ModeInputs::new(scenario, &tables, estimator.is_some());
         let supervisor = ModeSupervisor::start(&mut tables.modes, &mut tables.exits);
-        Ok(Self { tables, supervisor, modes, estimator, inputs, moved: None })
+        let layout = Arc::new(StepLayout::new(&modes, estimator.is_some()));
+        Ok(Self { tables, supervisor, modes, estimator, inputs, moved: None, layout })
     }
 
     /// Returns the shortest period of the laws (s).
@@ -110,13 +152,13 @@ impl ModeSystem {
                 time("period_part", "Period of the mode: femtoseconds past them"),
             ],
         };
-        let mut outputs = self.law_channels(|layout| layout.outputs);
+        let mut outputs = self.layout.outputs.clone();
         outputs.push(mode());
         let step = CallLayout {
             name: "step",
             about: "Decides by the laws of the present mode on the commands of a period; outputs that these laws do not have are 0.",
             is_start: false,
-            inputs: self.step_inputs(),
+            inputs: self.layout.inputs.clone(),
             outputs,
         };
         let estimator = self.estimator.iter().flat_map(AttitudeUnit::calls);
@@ -126,31 +168,6 @@ impl ModeSystem {
     /// Returns the index of a function; the calls of the attitude filter come first.
     pub fn call_index(&self, name: &str) -> usize {
         self.calls().iter().position(|call| call.name == name).unwrap_or(0)
-    }
-
-    /// Returns the inputs of a step: those of the laws of all modes, with the target attitude in place of estimates that the
-    /// attitude filter gives.
-    fn step_inputs(&self) -> Vec<Channel> {
-        let mut inputs = self.law_channels(|layout| layout.inputs);
-        if self.estimator.is_some() {
-            inputs.retain(|channel| channel.name != "angle" && channel.name != "rate");
-            let about = "Target attitude: quaternion w, x, y, z";
-            inputs.insert(0, Channel::real("target_attitude", about, 4, 1.0));
-        }
-        inputs
-    }
-
-    /// Returns the channels of the laws of all modes, each name once.
-    fn law_channels(&self, channels: fn(CallLayout) -> Vec<Channel>) -> Vec<Channel> {
-        let mut all: Vec<Channel> = Vec::new();
-        for laws in self.modes.iter().filter_map(|mode| mode.start.as_ref()) {
-            for channel in channels(laws.layout()) {
-                if !all.iter().any(|known| known.name == channel.name) {
-                    all.push(channel);
-                }
-            }
-        }
-        all
     }
 
     /// Calls the function with this index, and returns the words of its outputs.
@@ -213,8 +230,8 @@ impl ModeSystem {
 
     /// Decides by the laws of the present mode, and returns the words of the outputs.
     fn step(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
-        let channels = self.step_inputs();
-        let given = |name: &str| words_of(&channels, inputs, name);
+        let layout = &*self.layout;
+        let given = |name: &str| words_of(&layout.inputs, inputs, name);
         let mut motion = None;
         if let Some(unit) = &self.estimator {
             let target = quaternion(&mut WordReader::new(inputs));
@@ -227,11 +244,10 @@ impl ModeSystem {
             let words = |values: [f64; 3]| values.map(f64::to_bits);
             motion = Some([words([angle.x, angle.y, angle.z]), words([rate.x, rate.y, rate.z])]);
         }
-        let layout = self.law_channels(|layout| layout.outputs);
         let active = self.supervisor.active;
-        let mut outputs = vec![0; layout.iter().map(|channel| channel.count).sum()];
-        if let Some(laws) = self.modes.get_mut(active).and_then(|mode| mode.current.as_mut()) {
-            let own: CallLayout = laws.layout();
+        let mut outputs = vec![0; layout.outputs.iter().map(|channel| channel.count).sum()];
+        let laws = self.modes.get_mut(active).and_then(|mode| mode.current.as_mut());
+        if let (Some(laws), Some(Some(own))) = (laws, layout.laws.get(active)) {
             let mut words = Vec::new();
             for channel in &own.inputs {
                 match (&motion, channel.name.as_str()) {
@@ -242,7 +258,7 @@ impl ModeSystem {
             }
             let decided = laws.call(laws.step_index(), now, &words);
             for channel in &own.outputs {
-                let place = first_word(&layout, &channel.name);
+                let place = first_word(&layout.outputs, &channel.name);
                 let found = words_of(&own.outputs, &decided, &channel.name);
                 outputs[place..place + found.len()].copy_from_slice(found);
             }
@@ -253,10 +269,9 @@ impl ModeSystem {
 
     /// Returns the words of the outputs of the laws of the present mode, of those of a step; `None` of an open loop.
     pub fn law_outputs(&self, outputs: &[u64]) -> Option<Vec<u64>> {
-        let laws = self.modes.get(self.supervisor.active)?.start.as_ref()?;
-        let layout = self.law_channels(|layout| layout.outputs);
-        let own = laws.layout().outputs;
-        Some(own.iter().flat_map(|channel| words_of(&layout, outputs, &channel.name)).copied().collect())
+        let own = &self.layout.laws.get(self.supervisor.active)?.as_ref()?.outputs;
+        let words = |channel: &Channel| words_of(&self.layout.outputs, outputs, &channel.name);
+        Some(own.iter().flat_map(words).copied().collect())
     }
 }
 

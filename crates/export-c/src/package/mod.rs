@@ -19,7 +19,7 @@ use flexsc_core::Scenario;
 
 use crate::control_system::{CallLayout, ControlSystem};
 use crate::flight_sources::flight_sources;
-use crate::self_test::self_test;
+use crate::self_test::self_tests;
 use crate::translate::{TranslationError, translate};
 use crate::vectors::{self, CallVector, VectorError};
 
@@ -107,7 +107,7 @@ pub fn export(
     };
     let translation = translate(&flight_sources(), &source::roots(&system, &functions), prefix)
         .map_err(ExportError::Translation)?;
-    let hashes = HASHED_CYCLES.map(|cycles| (cycles, self_test(&system, cycles)));
+    let hashes: Vec<(u64, u64)> = HASHED_CYCLES.into_iter().zip(self_tests(&system, HASHED_CYCLES)).collect();
     let (header, source) =
         (header::header(&plan, &translation, &state), source::source(&plan, &translation, &functions));
     let mut files: Vec<PackageFile> =

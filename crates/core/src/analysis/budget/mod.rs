@@ -83,6 +83,9 @@ fn bisect(value: f64, most: f64, function: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, most);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
+        if middle == low || middle == high {
+            break;
+        }
         if function(middle) < value {
             low = middle;
         } else {

@@ -166,8 +166,9 @@ fn the_bound_is_that_of_the_addition_theorem_and_holds() {
     ] {
         let radius = EARTH + altitude;
         assert!((model.bound(radius) * 1e9 - bound).abs() < 1.0, "{}", model.bound(radius) * 1e9);
-        let sizes = || grid(40_000).map(|up| model.at(&(up * radius)).norm() * 1e9);
-        let (found_most, found_least) = (sizes().fold(0.0, f64::max), sizes().fold(f64::INFINITY, f64::min));
+        let sizes = grid(40_000).map(|up| model.at(&(up * radius)).norm() * 1e9);
+        let (found_least, found_most) = sizes
+            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), size| (least.min(size), most.max(size)));
         assert!((found_most - most).abs() < 10.0 && found_most < bound, "{found_most}");
         assert!((found_least - least).abs() < 10.0, "{found_least}");
     }
@@ -181,16 +182,17 @@ struct Deviation {
     sizes: Vec<f64>,
 }
 
+/// Returns a field over an equal-area grid at an altitude.
+fn over_grid(altitude: f64, field: impl Fn(&Vector) -> Vector) -> Vec<Vector> {
+    grid(40_000).map(|up| field(&(up * (EARTH + altitude)))).collect()
+}
+
 impl Deviation {
-    fn new(altitude: f64, model: &dyn Fn(&Vector) -> Vector, truth: &dyn Fn(&Vector) -> Vector) -> Self {
-        let fields = || {
-            grid(40_000).map(|up| {
-                let position = up * (EARTH + altitude);
-                (model(&position), truth(&position))
-            })
-        };
-        let angle = |(model, truth): (Vector, Vector)| {
-            libm::atan2(model.cross(&truth).norm(), model.dot(&truth)).to_degrees()
+    fn new(model: &[Vector], truth: &[Vector]) -> Self {
+        assert_eq!(model.len(), truth.len());
+        let fields = || model.iter().zip(truth);
+        let angle = |(model, truth): (&Vector, &Vector)| {
+            libm::atan2(model.cross(truth).norm(), model.dot(truth)).to_degrees()
         };
         let mut angles: Vec<f64> = fields().map(angle).collect();
         angles.sort_by(f64::total_cmp);
@@ -220,8 +222,8 @@ fn the_dipole_is_as_wrong_as_the_table_of_the_documentation_has_it() {
         (1000e3, [10.0, 6.8, 22.15, 31.8, 18.9, -27.3, 61.3], [0.1, 0.2]),
         (35_786e3, [1.33, 1.174, 2.288, 2.99, 2.79, -4.6, 5.1], [0.011, 0.06]),
     ] {
-        let off =
-            Deviation::new(altitude, &|position| dipole.at(position, 0.0), &|position| truth.at(position));
+        let model = over_grid(altitude, |position| dipole.at(position, 0.0));
+        let off = Deviation::new(&model, &over_grid(altitude, |position| truth.at(position)));
         let found = [
             Deviation::rms(&off.angles),
             off.quantile(0.5),
@@ -248,6 +250,8 @@ fn the_dipole_is_as_wrong_as_the_table_of_the_documentation_has_it() {
 fn a_lower_degree_is_as_wrong_as_the_table_of_the_documentation_has_it() {
     // Degree: angle rms and largest (degrees) at 500 km in 2026.9, by other code.
     let truth = FieldModel::Igrf14.harmonics_in(13, 2026.9).expect("a model");
+    let at_500_km = |model: &SphericalHarmonics| over_grid(500e3, |position| model.at(position));
+    let true_fields = at_500_km(&truth);
     for (degree, rms, most) in [
         (2, 6.6, 20.1),
         (3, 2.81, 7.23),
@@ -257,14 +261,13 @@ fn a_lower_degree_is_as_wrong_as_the_table_of_the_documentation_has_it() {
         (10, 0.0191, 0.0692),
         (12, 0.0052, 0.0171),
     ] {
-        let model = truth.truncated(degree);
-        let off = Deviation::new(500e3, &|position| model.at(position), &|position| truth.at(position));
+        let off = Deviation::new(&at_500_km(&truth.truncated(degree)), &true_fields);
         let found = [Deviation::rms(&off.angles), off.quantile(1.0)];
         assert!((found[0] / rms - 1.0).abs() < 0.01, "{degree}: {}", found[0]);
         assert!((found[1] / most - 1.0).abs() < 0.02, "{degree}: {}", found[1]);
     }
     let old = FieldModel::Igrf14.harmonics_in(13, 2020.0).expect("a model");
-    let off = Deviation::new(500e3, &|position| old.at(position), &|position| truth.at(position));
+    let off = Deviation::new(&at_500_km(&old), &true_fields);
     let found = [Deviation::rms(&off.angles), off.quantile(1.0)];
     assert!((found[0] - 0.711).abs() < 2e-3 && (found[1] - 2.88).abs() < 0.03, "{found:?}");
 }
