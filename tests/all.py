@@ -158,8 +158,23 @@ def wait_for_installation() -> None:
 
 
 def rust() -> str:
+    """The integration tests, and beside them the others, few of which keep more than one core busy."""
     wait_for_installation()
-    return tally(run("cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING))
+    others = [word for file in sorted(ROOT.glob("crates/*/tests/*.rs")) for word in ("--test", file.stem)]
+    others += [
+        word
+        for file in sorted(ROOT.glob("crates/*/tests/*/main.rs"))
+        for word in ("--test", file.parent.name)
+    ]
+    printed: list[str] = []
+
+    def tested(*which: str) -> Callable[[], None]:
+        command = ("cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING, *which)
+        return lambda: printed.append(run(*command))
+
+    one = ("--", "--test-threads", "1")
+    side_by_side(tested("--test", "tests"), tested("--lib", "--bins", *others, *one), tested("--doc", *one))
+    return tally("".join(printed))
 
 
 def rust_light() -> str:

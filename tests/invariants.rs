@@ -362,3 +362,21 @@ pub fn energy_does_not_grow(run: &Flown, frequencies: &[f64]) -> Result<(), Stri
     }
     Ok(())
 }
+
+/// A hash that never differs would prove nothing.
+#[test]
+fn every_bit_of_a_row_changes_the_hash() {
+    let hashed = |values: Vec<f64>| {
+        let mut hasher = WordHasher::default();
+        let columns = vec![("angle_rad".to_owned(), Column::Numbers(values))];
+        hash(&Columns { columns }, &mut hasher);
+        hasher.finish()
+    };
+    let row = [1e-3, -0.0, f64::NAN];
+    let whole = hashed(row.to_vec());
+    for (place, bit) in (0..row.len()).flat_map(|place| (0..64).map(move |bit| (place, bit))) {
+        let mut other = row.to_vec();
+        other[place] = f64::from_bits(row[place].to_bits() ^ (1 << bit));
+        assert_ne!(hashed(other), whole, "{place} {bit}");
+    }
+}

@@ -37,7 +37,7 @@ def lightened(arguments: list[str]) -> list[str]:
     """The arguments of the compiler for tests: what they call in other crates is optimised."""
     if "--test" not in arguments:
         return arguments
-    # Unit tests of these run long simulations.
+    # Unit tests of these run for longer than it takes to optimise them.
     heavy = {"flexsc_control", "flexsc_dynamics", "flexsc_numerics", "flexsc_spacecraft"} & set(arguments)
     level = "opt-level=1" if heavy else "opt-level=0"
     less = {"opt-level=3": level, "opt-level=1": level, "codegen-units=1": "codegen-units=4"}
@@ -80,10 +80,4 @@ def main() -> int:
 
 
 if __name__ == "__main__":
-    code = main()
-    import resource
-    r = resource.getrusage(resource.RUSAGE_CHILDREN)
-    with open("/tmp/lint_times", "a") as f:
-        a = sys.argv
-        f.write(f"{r.ru_utime + r.ru_stime:.1f} {a[a.index('--crate-name') + 1] if '--crate-name' in a else ''} {'test' if '--test' in a else ''}\n")
-    sys.exit(code)
+    sys.exit(main())
