@@ -2,6 +2,9 @@
 
 import shutil
 import zipfile
+from collections.abc import Callable, Iterator
+from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,30 +17,57 @@ fmpy = pytest.importorskip("fmpy", reason="FMPy imports FMUs: pip install fmpy")
 
 SCENARIOS = ["relay-fixed", "wheel-fixed-gain", "earth-observer", "station-keeping"]
 PARTS: list[Literal["loop", "plant"]] = ["loop", "plant"]
+Part = Literal["loop", "plant", "controller"]
+Exported = Callable[..., str]
 
 
-def exported(
-    tmp_path: Path,
-    name: str,
-    fmi: Literal[2, 3] = 3,
-    part: Literal["loop", "plant", "controller"] = "loop",
-    **keys: Any,
-) -> str:
-    """The FMU of a shipped scenario."""
-    path = tmp_path / f"{name}-{fmi}-{part}.fmu"
+def export(directory: Path, name: str, fmi: Literal[2, 3] = 3, part: Part = "loop", **keys: Any) -> str:
+    """Exports the FMU of a shipped scenario."""
+    path = directory / f"{name}-{fmi}-{part}.fmu"
     shipped(name).with_(keys).export_fmu(path, fmi=fmi, part=part)
     return str(path)
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Exported:
+    """Returns the path of the FMU of a shipped scenario, which is exported once."""
+
+    @cache
+    def exported(name: str, fmi: Literal[2, 3] = 3, part: Part = "loop", **keys: Any) -> str:
+        return export(tmp_path_factory.mktemp("fmu"), name, fmi, part, **keys)
+
+    return exported
+
+
+@pytest.fixture(scope="module", autouse=True)
+def names_are_parsed_once() -> Iterator[None]:
+    """Lets FMPy parse each name of a variable once: it takes most of the time of a validation."""
+    lark: Any = import_module("lark")
+    parse = lark.Lark.parse
+
+    @cache
+    def parsed(grammar: str, text: str) -> object:
+        return parse(grammars[grammar], text)
+
+    def once(self: Any, text: str) -> object:
+        grammars[self.source_grammar] = self
+        return parsed(self.source_grammar, text)
+
+    grammars: dict[str, Any] = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lark.Lark, "parse", once)
+        yield
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("part", PARTS)
 def test_descriptions_are_valid(
-    tmp_path: Path, name: str, fmi: Literal[2, 3], part: Literal["loop", "plant"]
+    exported: Exported, name: str, fmi: Literal[2, 3], part: Literal["loop", "plant"]
 ) -> None:
     from fmpy.validation import validate_fmu
 
-    path = exported(tmp_path, name, fmi, part)
+    path = exported(name, fmi, part)
     assert validate_fmu(path) == []
     described = fmpy.read_model_description(path)
     names = {variable.name for variable in described.modelVariables}
@@ -47,8 +77,8 @@ def test_descriptions_are_valid(
         assert variable.description
 
 
-def test_units_have_exponents_of_base_units(tmp_path: Path) -> None:
-    described = fmpy.read_model_description(exported(tmp_path, "earth-observer"))
+def test_units_have_exponents_of_base_units(exported: Exported) -> None:
+    described = fmpy.read_model_description(exported("earth-observer"))
     units = {unit.name: unit.baseUnit for unit in described.unitDefinitions}
     torque = units["N m"]
     assert (torque.kg, torque.m, torque.s, torque.rad) == (1, 2, -2, 0)
@@ -56,8 +86,8 @@ def test_units_have_exponents_of_base_units(tmp_path: Path) -> None:
     assert units["m sqrt(kg)"] is None
 
 
-def test_a_relay_has_the_switchings_of_the_native_run(tmp_path: Path) -> None:
-    path = exported(tmp_path, "relay-fixed", duration=400.0)
+def test_a_relay_has_the_switchings_of_the_native_run(exported: Exported) -> None:
+    path = exported("relay-fixed", duration=400.0)
     rows = shipped("relay-fixed").with_("duration", 400.0).simulate(log="events")["command"]
     expected = list(zip(rows["time_whole_s"], rows["time_fs"], rows["torque_nm"], strict=True))
     for size in [0.1, 0.37, 1 / 3, 400.0]:
@@ -76,12 +106,12 @@ def test_a_relay_has_the_switchings_of_the_native_run(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_both_versions_and_the_event_mode_have_equal_points(tmp_path: Path, name: str) -> None:
+def test_both_versions_and_the_event_mode_have_equal_points(exported: Exported, name: str) -> None:
     state = "state.angle" if "body" in shipped(name).to_dict() else "state.error[1]"
     outputs = [state, "events"]
 
     def run(fmi: Literal[2, 3], **options: Any) -> dict[float, tuple[float, ...]]:
-        path = exported(tmp_path, name, fmi, duration=20.0)
+        path = exported(name, fmi, duration=20.0)
         result = fmpy.simulate_fmu(path, stop_time=20.0, output_interval=0.25, output=outputs, **options)
         return {row["time"]: tuple(row[output] for output in outputs) for row in result}
 
@@ -92,8 +122,8 @@ def test_both_versions_and_the_event_mode_have_equal_points(tmp_path: Path, name
     assert all(events[time] == values for time, values in third.items())
 
 
-def test_a_plant_takes_commands(tmp_path: Path) -> None:
-    path = exported(tmp_path, "wheel-fixed-gain", 3, "plant", duration=20.0)
+def test_a_plant_takes_commands(exported: Exported) -> None:
+    path = exported("wheel-fixed-gain", 3, "plant", duration=20.0)
     dtype = [("time", float), ("disturbance_torque", float)]
     pushed = np.array([(0.0, 0.0), (5.0, 0.0), (5.0, 1e-3), (20.0, 1e-3)], dtype=dtype)
     result = fmpy.simulate_fmu(path, stop_time=20.0, input=pushed, output=["state.rate"], output_interval=1.0)
@@ -106,7 +136,7 @@ def test_a_plant_takes_commands(tmp_path: Path) -> None:
 def test_two_exports_have_equal_bytes(tmp_path: Path) -> None:
     (tmp_path / "again").mkdir()
     for fmi in (2, 3):
-        first, second = (exported(path, "relay-fixed", fmi) for path in (tmp_path, tmp_path / "again"))
+        first, second = (export(path, "relay-fixed", fmi) for path in (tmp_path, tmp_path / "again"))
         assert Path(first).read_bytes() == Path(second).read_bytes()
         with zipfile.ZipFile(first) as archive:
             assert {entry.date_time for entry in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
@@ -144,14 +174,15 @@ def slave(path: str, fmi: Literal[2, 3]) -> tuple[Any, dict[str, int]]:
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize(("name", "period"), LAWS)
 def test_plant_and_controller_equal_the_closed_loop(
-    tmp_path: Path, name: str, period: float, fmi: Literal[2, 3]
+    exported: Exported, name: str, period: float, fmi: Literal[2, 3]
 ) -> None:
     from fmpy.validation import validate_fmu
 
     count = 60
-    parts: list[Literal["plant", "controller", "loop"]] = ["plant", "controller", "loop"]
-    paths = {part: exported(tmp_path, name, fmi, part, duration=40.0) for part in parts}
-    assert all(validate_fmu(path) == [] for path in paths.values())
+    parts: list[Part] = ["plant", "controller", "loop"]
+    paths = {part: exported(name, fmi, part) for part in parts}
+    # The others are those of the test of descriptions.
+    assert validate_fmu(paths["controller"]) == []
     (plant, plant_names), (laws, law_names) = slave(paths["plant"], fmi), slave(paths["controller"], fmi)
     described = fmpy.read_model_description(paths["controller"])
     variables = [of for of in described.modelVariables if of.causality == "input" and of.type != "Clock"]
@@ -183,8 +214,8 @@ def test_plant_and_controller_equal_the_closed_loop(
 
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("text", [b"", b"duration = ", b"\xff\x00", None])
-def test_damaged_resources_are_refused(tmp_path: Path, fmi: Literal[2, 3], text: bytes | None) -> None:
-    unpacked = fmpy.extract(exported(tmp_path, "relay-fixed", fmi))
+def test_damaged_resources_are_refused(exported: Exported, fmi: Literal[2, 3], text: bytes | None) -> None:
+    unpacked = fmpy.extract(exported("relay-fixed", fmi))
     resource = Path(unpacked) / "resources" / "scenario.toml"
     if text is None:
         resource.unlink()

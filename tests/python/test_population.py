@@ -110,13 +110,13 @@ def test_a_population_costs_what_a_campaign_does(sampled: Scenario) -> None:
         return time.process_time() - began
 
     keys = sorted(sampled.to_dict()["uncertain"])
-    drawn = flexsc.campaign(sampled, 256, metrics=["duty"])
+    drawn = flexsc.campaign(sampled, 128, metrics=["duty"])
     population = np.column_stack([drawn[key] for key in keys])
     certain = sampled.without("uncertain")
     pairs = [
         (
             cpu(lambda: flexsc.evaluate(certain, keys, population, "duty")),
-            cpu(lambda: flexsc.campaign(sampled, 256, metrics=["duty"])),
+            cpu(lambda: flexsc.campaign(sampled, 128, metrics=["duty"])),
         )
         for _ in range(5)
     ]

@@ -32,9 +32,18 @@ def test_a_scenario_survives_every_form(name: str) -> None:
 
 # Shortened, so that no run takes a second.
 SHORTER = {
+    "basilisk-momentum": 600.0,
+    "blinded-tracker": 600.0,
+    "cubesat-day": 900.0,
     "detumble-and-point": 600.0,
+    "eclipse-snap": 600.0,
+    "field-aligned": 600.0,
+    "forty-two-leo": 300.0,
     "magnetic-unloading": 300.0,
+    "molniya": 2000.0,
+    "s2e-sample": 100.0,
     "sun-tracking": 400.0,
+    "two-line-orbit": 600.0,
     "wheel-friction": 20.0,
     "wheel-run-up": 5.0,
 }

@@ -14,7 +14,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="terminals of PO
 
 ESCAPE = b"\x1b"
 SAMPLED = str(SCENARIOS / "relay-sampled.toml")
-CAMPAIGN = ["simulate", SAMPLED, "--set", "duration=2000", "--runs", "300", "--table", "csv", "-o", "out"]
+CAMPAIGN = ["simulate", SAMPLED, "--set", "duration=300", "--runs", "300", "--table", "csv", "-o", "out"]
 MISTAKE = ["simulate", str(SCENARIOS / "relay-fixed.toml"), "--set", "law.relay.kt=1"]
 
 # What a machine may have set, and what changes what is shown.

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import builtins
 import importlib.util
 import json
 import os
+import re
 import subprocess
+import symtable
 import sys
 from pathlib import Path
 from typing import Any
@@ -65,6 +68,34 @@ def test_the_notebooks_are_current(written: Path) -> None:
         assert "](../" not in text
 
 
+def cells(path: Path) -> list[str]:
+    """The code of the cells of a notebook."""
+    notebook = json.loads(path.read_text("utf-8"))
+    return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_notebook_needs_no_names_of_jupyter(name: str, written: Path) -> None:
+    """All that is not of Python is made or imported by a cell above: what runs in Jupyter runs without it."""
+    known = {*dir(builtins), "__name__"}
+    for cell in cells(written / f"{name}.ipynb"):
+        made: set[str] = set()
+        used: set[str] = set()
+        waiting = [symtable.symtable(cell, name, "exec")]
+        while waiting:
+            table = waiting.pop()
+            waiting += table.get_children()
+            for symbol in table.get_symbols():
+                if symbol.is_global() or table.get_type() == "module":
+                    made |= {symbol.get_name()} if symbol.is_assigned() or symbol.is_imported() else set()
+                    used |= {symbol.get_name()} if symbol.is_referenced() else set()
+        known |= made
+        assert used <= known
+    text = "\n".join(cells(written / f"{name}.ipynb"))
+    imported = set(re.findall(r"^\s*(?:import|from) (\w+)", text, re.MULTILINE))
+    assert not imported & set(OTHERS)
+
+
 def test_the_command_lists_them() -> None:
     lines = command().stdout.splitlines()
     assert [line.split()[0] for line in lines] == NAMES
@@ -88,10 +119,9 @@ def test_other_files_are_kept(written: Path, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_notebook_runs_with_matplotlib_alone(name: str, written: Path) -> None:
-    notebook = json.loads((written / f"{name}.ipynb").read_text("utf-8"))
-    cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
-    assert len(cells) > 3
-    script = f"CELLS = {cells!r}\nOTHERS = {OTHERS!r}\n{RUN}"
+    found = cells(written / f"{name}.ipynb")
+    assert len(found) > 3
+    script = f"CELLS = {found!r}\nOTHERS = {OTHERS!r}\n{RUN}"
     done = subprocess.run(
         [sys.executable, "-c", script], cwd=written, capture_output=True, text=True, check=False
     )

@@ -34,8 +34,7 @@ def test_the_tests_are_typed() -> None:
 
 
 def test_the_tutorials_and_examples_are_typed() -> None:
-    for tutorial in [*TUTORIALS, *EXAMPLES]:
-        run("mypy", "--strict", tutorial)
+    run("mypy", "--strict", *TUTORIALS, *EXAMPLES)
 
 
 def test_pyright_agrees() -> None:
