@@ -312,7 +312,7 @@ STEPS = [
         form_and_light,
     ),
     Step("building the command, the tests and the fuzzer, with clippy", 350, build),
-    Step("Rust tests", 120, rust),
+    Step("Rust tests", 210, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
     Step("fuzzing, and the wheel", 65, fuzz_and_wheel),
     Step(
