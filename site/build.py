@@ -25,7 +25,7 @@ def main() -> None:
     if not ENVIRONMENT.exists():
         venv.create(ENVIRONMENT, with_pip=True)
     python = ENVIRONMENT / ("Scripts" if sys.platform == "win32" else "bin") / "python"
-    pip = (python, "-m", "pip", "--quiet", "--disable-pip-version-check", "install", "--no-compile")
+    pip = (python, "-m", "pip", "--quiet", "--disable-pip-version-check", "install")
     wheels = ROOT / "target" / "wheels"
     if not list(wheels.glob("*.whl")):
         run(python, "-m", "pip", "--quiet", "wheel", "--no-deps", "-w", wheels, ".")

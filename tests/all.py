@@ -25,13 +25,15 @@ TARGET = ROOT / "target"
 ENVIRONMENT = TARGET / "venv"
 # pyNastran wants an older numpy than the newest Pythons have: it has an environment of its own.
 NASTRAN = TARGET / "venv-nastran"
+# The environment of `site/build.py`.
+SITE = TARGET / "venv-site"
 # The benchmarks are checked, and not built.
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 # What is part of the full build alone.
 FULL = ("flexsc-fuzz", "flexsc-papers", "flexsc-py")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
-# Python tests that take long, and run beside the others: type checkers, and executors.
-LONG = ("tests/python/test_types.py", "tests/python/test_executor.py")
+# Python tests that take long, and run beside the others: executors, and type checkers.
+LONG = ("tests/python/test_executor.py", "tests/python/test_types.py")
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 12 s each.
@@ -142,11 +144,34 @@ def check_light() -> None:
     os.environ.pop("FLEXSC_LINTS", None)
 
 
-def build() -> None:
+def compile_all() -> None:
     """Builds with clippy beside the compiler (`lint.py` says why); later steps use the same artifacts."""
     if os.name == "posix":
         os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
     run("cargo", "build", "--release", "--quiet", *EVERYTHING, "--bins", "--tests")
+
+
+def packages() -> None:
+    """Gets what the Python steps need of others. What cannot be installed is reported where it is needed."""
+    text = (ROOT / "pyproject.toml").read_text("utf-8")
+
+    def of_extra(name: str) -> list[str]:
+        found = re.search(rf"^{name} = \[(.*)\]$", text, re.MULTILINE)
+        assert found, name
+        return re.findall(r'"([^"]+)"', found[1])
+
+    for path, names in (
+        (ENVIRONMENT, of_extra("test")),
+        (SITE, ["-r", "site/requirements.txt"]),
+        (NASTRAN, [*of_extra("nastran"), "pytest"]),
+    ):
+        command = [environment(path), *PIP, "install", *names]
+        subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def build() -> None:
+    """Builds; meanwhile the network brings packages."""
+    side_by_side(compile_all, packages)
 
 
 def wait_for_installation() -> None:
@@ -226,14 +251,18 @@ def python() -> str:
     finally:
         INSTALLED.set()
     others = (f"--ignore={file}" for file in LONG)
-    told = tally(run(python, "-m", "pytest", "tests/python", "-q", *others))
-    return f"{told}, with pyNastran {nastran()}"
+    # The site runs all tutorials.
+    return tally(run(python, "-m", "pytest", "tests/python", "-q", *others, "-k", "not matplotlib_alone"))
 
 
-def long_python() -> str:
-    """They take a third of the time of all Python tests."""
+def executors() -> str:
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", *LONG, "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", LONG[0], "-q"))
+
+
+def types() -> str:
+    INSTALLED.wait()
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", LONG[1], "-q"))
 
 
 def extras() -> None:
@@ -258,11 +287,11 @@ def nastran() -> str:
                 "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
             )
     files = sorted(map(str, (ROOT / "tests/python").glob("test_nastran*.py")))
-    return tally(run(python, "-m", "pytest", *files, "-q"))
+    return f"with pyNastran {tally(run(python, '-m', 'pytest', *files, '-q'))}"
 
 
 def side_by_side(*works: Callable[[], str | None]) -> str:
-    """Work that keeps one core busy, on all of them: each shows what it printed when it is done."""
+    """Work that keeps one core busy, two at a time: each shows what it printed when it is done."""
 
     def kept(work: Callable[[], str | None]) -> tuple[bytes, str | SystemExit | None]:
         OUT.kept = bytearray()
@@ -274,7 +303,7 @@ def side_by_side(*works: Callable[[], str | None]) -> str:
         return printed, told
 
     results = []
-    with ThreadPoolExecutor(len(works)) as pool:
+    with ThreadPoolExecutor(2) as pool:
         for done in as_completed([pool.submit(kept, work) for work in works]):
             printed, told = done.result()
             OUT.show(printed)
@@ -283,13 +312,6 @@ def side_by_side(*works: Callable[[], str | None]) -> str:
         if isinstance(told, SystemExit):
             raise told
     return ", ".join(str(told) for told in results if told)
-
-
-def around() -> str:
-    """What surrounds the wheel, one after the other."""
-    extras()
-    site()
-    return f"beside the others {long_python()}"
 
 
 def form_and_light() -> str:
@@ -301,7 +323,8 @@ def fuzz_and_wheel() -> str:
 
 
 def python_and_around() -> str:
-    return side_by_side(python, around)
+    """The longest first; who is done takes the next."""
+    return side_by_side(python, extras, site, executors, types, nastran)
 
 
 STEPS = [
