@@ -331,11 +331,11 @@ STEPS = [
     Step("licences, sources and duplicates of all crates", 5, crates),
     Step(
         "form of the code: rustfmt, ruff, spelling; light build and benchmarks without warnings; rustdoc",
-        75,
+        110,
         form_and_light,
     ),
     Step("building the command, the tests and the fuzzer, with clippy", 350, build),
-    Step("Rust tests", 210, rust),
+    Step("Rust tests", 260, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
     Step("fuzzing, and the wheel", 65, fuzz_and_wheel),
     Step(

@@ -365,9 +365,13 @@ fn a_compensator_without_states_has_the_margins_of_an_attitude_law() {
     assert!(text.contains(law));
     let other = "law.attitude = { period = 0.25, bandwidth = 0.2, damping = 0.8 }";
     dir.write("other.toml", text.replace(law, other));
+    // A state that nothing reads changes no margin.
+    let unread = "a = [[-1.0]], b = [[0.0, 0.0]], c = [[0.0]], d = [[0.04, 0.32]]";
+    dir.write("unread.toml", text.replace("d = [[0.04, 0.32]]", unread));
     let margins = |name: &str| {
         let printed = dir.run(&format!("margins {name}.toml --mode pass")).exits(0).out;
-        printed.replace("site-pass", "other")
+        printed.replace("site-pass", "other").replace("unread", "other")
     };
     assert_eq!(margins("site-pass"), margins("other"));
+    assert_eq!(margins("unread"), margins("other"));
 }

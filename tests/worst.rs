@@ -142,6 +142,10 @@ fn what_has_no_worst_case_is_refused() {
     refused("slew-wheel-lqg.toml -o witness.toml", "a witness is of one quantity");
     refused("slew-wheel-lqg.toml --metric itae --margin gain", "cannot be used with");
     refused("slew-wheel-lqg.toml --margin modulus --points 0", "0 is not in");
+    refused("slew-wheel-lqg.toml --mode turn", "has no modes of operation, got `turn`");
+    dir.run("budget slew-wheel-lqg.toml --mode turn")
+        .exits(2)
+        .says(&["has no modes of operation, got `turn`"]);
     refused("relay-sampled.toml --metric itae", "No such file");
 }
 

@@ -61,6 +61,7 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
     let path = &args.scenario.scenario;
     let target = args.output.target(&[path])?;
     let scenario = scenario::load(path, &args.scenario.set, args.runs_with.seed)?;
+    let scenario = args.scenario.in_mode(scenario)?;
     let budgets = results(scenario, args)?;
     if let Some(target) = &target {
         target.save(&budgets)?;

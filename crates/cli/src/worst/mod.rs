@@ -98,6 +98,7 @@ pub fn run(args: &WorstArgs) -> Result<(), CliError> {
     let witness = args.output.scenario_file(&inputs)?;
     let target = if witness.is_some() { None } else { args.output.target(&inputs)? };
     let scenario = scenario::load(&args.scenario.scenario, &args.scenario.set, args.runs.seed)?;
+    let scenario = args.scenario.in_mode(scenario)?;
     if witness.is_some() && args.quantities(&scenario)?.len() > 1 {
         let why = "-o: a witness is of one quantity; give --requirement, --metric or --margin";
         return Err(CliError::Arguments(why.to_owned()));
