@@ -14,46 +14,14 @@ use crate::analysis::open_loop::OpenLoop;
 
 /// Number of sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
-/// Shifts with which the search is tried again, over the norm of the matrix, and the form of the matrix.
-const SHIFTS: [(f64, MatrixForm); 9] = [
-    (1.0, MatrixForm::Plain),
-    (0.0, MatrixForm::Transposed),
-    (1.0, MatrixForm::Transposed),
-    (-1.0, MatrixForm::Plain),
-    (0.618, MatrixForm::Transposed),
-    (2.414, MatrixForm::Plain),
-    (0.0, MatrixForm::Reflected),
-    (1.0, MatrixForm::Reflected),
-    (0.618, MatrixForm::Reflected),
-];
+/// Shifts with which the search is tried again, over the norm of the matrix, and whether of its transpose.
+const SHIFTS: [(f64, bool); 6] =
+    [(1.0, false), (0.0, true), (1.0, true), (-1.0, false), (0.618, true), (2.414, false)];
+/// Largest entries below the diagonal that the search takes for 0, relative to those on it: its own rounding of equal loops can
+/// exceed the first.
+const NEGLIGIBLE: [f64; 2] = [f64::EPSILON, 8.0 * f64::EPSILON];
 /// Poles this near to the unit circle are on it, within rounding.
 pub const ROUNDING: f64 = 1e-8;
-
-/// Form of a matrix with the same eigenvalues.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
-enum MatrixForm {
-    Plain,
-    Transposed,
-    /// In coordinates that a reflection mixes, so that no block stands alone.
-    Reflected,
-}
-
-impl MatrixForm {
-    /// Returns the matrix in this form.
-    fn of_matrix(self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
-        match self {
-            Self::Plain => matrix.clone(),
-            Self::Transposed => matrix.transpose(),
-            Self::Reflected => {
-                let order = matrix.nrows();
-                let normal =
-                    DVector::from_fn(order, |row, _| 1.0 + (0.618 * (row + 1) as f64).fract()).normalize();
-                let reflection = DMatrix::identity(order, order) - &normal * normal.transpose() * 2.0;
-                &reflection * matrix * &reflection
-            }
-        }
-    }
-}
 
 /// Loop without margins.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,21 +69,26 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     }
     let mut balanced = matrix.clone();
     balance_parlett_reinsch(&mut balanced);
-    let values = |matrix: DMatrix<f64>| -> Option<Vec<Complex<f64>>> {
-        let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?;
+    let values = |matrix: DMatrix<f64>, negligible: f64| -> Option<Vec<Complex<f64>>> {
+        let schur = Schur::try_new(matrix, negligible, SWEEPS)?;
         Some(schur.complex_eigenvalues().iter().copied().collect())
     };
     // The search compares entries below the diagonal with those on it, and never ends for a defective eigenvalue 0, such as
     // that of delays. A shifted matrix has none: the error is a rounding of the whole matrix, as LAPACK's is. Equal loops
-    // about several axes can keep the search in a cycle, which another shift, the transposed matrix or other coordinates leave.
+    // about several axes can keep the search in a cycle, which another shift or the transposed matrix leaves.
     let (size, order) = (balanced.norm(), balanced.nrows());
-    values(balanced.clone()).or_else(|| {
-        SHIFTS.iter().find_map(|(factor, form)| {
-            let (shift, matrix) = (factor * size, form.of_matrix(&balanced));
-            let shifted = values(matrix + DMatrix::from_diagonal_element(order, order, shift))?;
-            Some(shifted.into_iter().map(|value| value - shift).collect())
+    let searched = |negligible: f64| {
+        values(balanced.clone(), negligible).or_else(|| {
+            SHIFTS.iter().find_map(|(factor, is_transposed)| {
+                let shift = factor * size;
+                let matrix = if *is_transposed { balanced.transpose() } else { balanced.clone() };
+                let shifted =
+                    values(matrix + DMatrix::from_diagonal_element(order, order, shift), negligible)?;
+                Some(shifted.into_iter().map(|value| value - shift).collect())
+            })
         })
-    })
+    };
+    NEGLIGIBLE.into_iter().find_map(searched)
 }
 
 /// Returns the spectral radius of a closed loop with these poles; the pole that makes it unstable as an error.
