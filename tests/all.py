@@ -33,7 +33,8 @@ EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 FULL = ("flexsc-fuzz", "flexsc-papers", "flexsc-py")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
 # Python tests that take long, and run beside the others: executors, and type checkers.
-LONG = ("tests/python/test_executor.py", "tests/python/test_types.py")
+EXECUTORS = "tests/python/test_executor.py"
+TYPES = "tests/python/test_types.py"
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 12 s each.
@@ -250,19 +251,19 @@ def python() -> str:
         run(python, *PIP, "install", f"{built()}[test]")
     finally:
         INSTALLED.set()
-    others = (f"--ignore={file}" for file in LONG)
+    others = (f"--ignore={file}" for file in (EXECUTORS, TYPES))
     # The site runs all tutorials.
     return tally(run(python, "-m", "pytest", "tests/python", "-q", *others, "-k", "not matplotlib_alone"))
 
 
 def executors() -> str:
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", LONG[0], "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", EXECUTORS, "-q"))
 
 
 def types() -> str:
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", LONG[1], "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", TYPES, "-q"))
 
 
 def extras() -> None:

@@ -19,7 +19,7 @@ pub struct ModeTargetStart {
 }
 
 /// Motion of a three-axis body at the start of a cycle, after its law has decided.
-#[derive(Copy, Clone, Debug, Default, PartialEq)]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ThreeAxisCycle {
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,

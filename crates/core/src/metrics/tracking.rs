@@ -22,8 +22,7 @@ pub struct ObserverMetrics {
 impl ObserverMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let adaptive = scenario.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some());
-        Self { last: adaptive.then(Vec::new), ..Self::default() }
+        Self { last: scenario.has_adaptive_observers().then(Vec::new), ..Self::default() }
     }
 
     /// Returns true if the scenario has adaptive observers.

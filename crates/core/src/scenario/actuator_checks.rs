@@ -88,7 +88,7 @@ impl ScenarioSpec {
                 "must be left out with a `[manoeuvre]`, whose torque all actuators execute from its begin to its end",
             );
         }
-        if self.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some()) {
+        if self.has_adaptive_observers() {
             return at(
                 "must be left out with `[estimator.adaptive]`, which predicts what the same actuators do throughout",
             );

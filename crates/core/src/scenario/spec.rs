@@ -143,6 +143,11 @@ impl ScenarioSpec {
         self.mode_targets = first.map(ModeTarget::at_start).into_iter().collect();
     }
 
+    /// Returns true if the estimator is a set of adaptive observers.
+    pub fn has_adaptive_observers(&self) -> bool {
+        self.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some())
+    }
+
     /// Returns true if modes have targets, which replace those of the scenario.
     pub fn has_mode_targets(&self) -> bool {
         self.mode.iter().any(|mode| mode.target.is_some())

@@ -48,6 +48,7 @@ impl AdaptationObjective {
         }
     }
 
+    /// Adds the pieces of the motion up to `now` to the meter.
     fn integrate_motion(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
         let Some(meter) = &mut self.0 else { return };
         if !meter.integrates() || now <= meter.measured {
@@ -74,6 +75,7 @@ impl AdaptationObjective {
         }
     }
 
+    /// Sets the torques, or adds the pulses, that the meter measures from `now` on.
     fn set_torque(&mut self, now: Instant, axes: usize, loads: &Loads) {
         let Some(meter) = &mut self.0 else { return };
         let applied = || {
@@ -154,6 +156,7 @@ impl AdaptationObjective {
         if self.closes() == Some(now) { self.close(now, plant, loads) } else { None }
     }
 
+    /// Closes the window that ends now.
     fn close(&mut self, now: Instant, plant: &Plant, loads: &Loads) -> Option<ObjectiveWindow> {
         self.add_motion(now, plant, loads);
         self.0.as_mut().map(|meter| meter.close_window(now))

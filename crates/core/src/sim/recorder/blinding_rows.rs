@@ -37,6 +37,7 @@ impl BlindingRows {
         self.record_changes(run, journal, record)
     }
 
+    /// Records the exclusion angles whose state has changed.
     fn record_changes(
         &mut self,
         run: &RunView<'_>,

@@ -14,7 +14,7 @@ pub struct CycleRows {
     revisions: LoggedRevisions,
     /// How wheels and magnetorquers reach their limits.
     saturation: Saturation,
-    /// True if adaptive observers report their cycles, and with them active damping.
+    /// True if there are adaptive observers, whose elastic rates active damping needs.
     has_observers: bool,
     /// Reports of the last cycle: of the body and its actuators, and of the estimator.
     actuator_report: Report,
@@ -25,9 +25,8 @@ impl CycleRows {
     /// Creates the memory of a scenario's rows, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         let saturation = Saturation::new(&scenario.actuator, scenario.duration.seconds());
-        let estimator = scenario.estimator.as_ref();
         Self {
-            has_observers: estimator.is_some_and(|estimator| estimator.adaptive().is_some()),
+            has_observers: scenario.has_adaptive_observers(),
             revisions: LoggedRevisions::default(),
             saturation,
             actuator_report: Report::new(),
@@ -57,8 +56,8 @@ impl CycleRows {
         run.record_report(report, record)?;
         let error = || run.sensors.angles_of(&truth.orientation, &run.guidance.target(now));
         journal.target(now, run.guidance, error, record)?;
-        if self.has_observers {
-            let damped = run.laws.damping_status();
+        if run.estimation.has_estimator {
+            let damped = if self.has_observers { run.laws.damping_status() } else { Default::default() };
             let report = &mut self.estimator_report;
             report.clear();
             run.add_estimator_cycle(&damped, report);

@@ -66,7 +66,7 @@ impl MotionRows {
         }
     }
 
-    /// Records the rows of the current instant, at which or after which a row is due at `due`.
+    /// Records the rows that are due at the current instant; the next row of a dense record is due at `due`.
     fn record_until(
         &mut self,
         due: Instant,
@@ -119,6 +119,7 @@ impl MotionRows {
         self.record_changed_state(run, decision, record)
     }
 
+    /// Records the state that the law has after a decision.
     fn record_changed_state(
         &self,
         run: &RunView<'_>,

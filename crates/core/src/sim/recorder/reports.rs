@@ -97,7 +97,7 @@ impl RunView<'_> {
         let (rigid, elastic) = motion.body().rates;
         let (elastic_energy_j, visible_energy_j) = motion.elastic_energies();
         let actuator = &*self.loads.actuator;
-        let cycle = ThreeAxisCycle {
+        report.add_value(ThreeAxisCycle {
             elastic_energy_j,
             visible_energy_j,
             rigid_rate_rad_s: rigid.into(),
@@ -106,8 +106,7 @@ impl RunView<'_> {
             slewing: self.guidance.slews(self.now),
             friction_heat_j: motion.friction_heat(),
             stored_momentum_nm_s: actuator.capabilities().stored_momentum(self.now),
-        };
-        report.write_value(|place| *place = cycle);
+        });
         self.add_reports(Occasion::Cycle, &[], &[actuator], report);
     }
 

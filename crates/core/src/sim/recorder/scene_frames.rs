@@ -56,6 +56,7 @@ impl SceneFrames {
         if self.scene.is_none() { Ok(()) } else { self.record_frames(run, journal, record) }
     }
 
+    /// Records the frames and plumes of a scene that is drawn.
     fn record_frames(
         &mut self,
         run: &RunView<'_>,
