@@ -1,7 +1,8 @@
 """All tests of flexsc, Rust and Python: `python3 tests/all.py`; `--quick` runs what a change needs first.
 
 Each step tells about how long it takes on two cores from a clean checkout, and then how long it took. All
-Rust is built with one profile, and but for the light build one set of features: nothing is compiled twice.
+Rust is built with one profile and one set of features: nothing is compiled twice. `lint.py` checks the light
+build, the benchmarks and the documentation beside the compiler.
 """
 
 import argparse
@@ -29,9 +30,12 @@ NASTRAN = TARGET / "venv-nastran"
 SITE = TARGET / "venv-site"
 # The benchmarks are checked, and not built.
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
-# What is part of the full build alone.
-FULL = ("flexsc-fuzz", "flexsc-papers", "flexsc-py")
+BENCHMARKS = ("--bench", "bars", "--bench", "engine")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
+# What is imported is compiled then; most of the packages' modules are not.
+INSTALL = (*PIP, "install", "--no-compile")
+# Third-party crates with features for more than the light build: for lanes, for hand-over, and for tests.
+MORE_FEATURES = {"prost", "pulp", "rand"}
 # Python tests that take long, and run beside the others: executors, and type checkers.
 EXECUTORS = "tests/python/test_executor.py"
 TYPES = "tests/python/test_types.py"
@@ -118,7 +122,7 @@ def environment(path: Path) -> Path:
 def form() -> None:
     python = environment(ENVIRONMENT)
     run("cargo", "fmt", "--all", "--check")
-    run(python, *PIP, "install", "codespell", "ruff")
+    run(python, *INSTALL, "codespell", "ruff")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")
     run(python, "-m", "codespell_lib", *WORDS)
@@ -128,28 +132,35 @@ def crates() -> None:
     run(sys.executable, "tests/deny.py")
     if shutil.which("cargo-deny") is not None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
+    compare_features()
 
 
-def check_light() -> None:
-    """Checks the light build and the benchmarks, and the code's documentation with rustdoc."""
-    others = [word for name in FULL for word in ("--exclude", name)]
-    # The full build is linted by clippy, with the tests.
-    targets = ("--lib", "--bins", "--benches", "--no-default-features")
-    if os.name == "posix":
-        os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
-        os.environ["FLEXSC_LINTS"] = "benches"
-    run("cargo", "check", "--release", "--quiet", "--workspace", *others, *targets)
-    # What rustdoc warns of: links to what there is not, and to what is private.
-    os.environ["RUSTDOCFLAGS"] = "-D warnings"
-    run("cargo", "doc", "--release", "--quiet", "--no-deps", "--workspace", *others, "--no-default-features")
-    os.environ.pop("FLEXSC_LINTS", None)
+def features(*options: str) -> dict[str, set[str]]:
+    """The features of all crates on which crates of the workspace depend."""
+    shown = ("--depth", "1", "--no-dedupe", "--prefix", "none", "--format", "{p}|{f}")
+    command = ["cargo", "tree", *options, *shown]
+    told = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
+    pairs = (line.removesuffix(" (*)").split("|") for line in told.splitlines() if "|" in line)
+    return {crate: set(names.split(",")) for crate, names in pairs}
+
+
+def compare_features() -> None:
+    """The light build is checked with third-party crates of the full one: their features must be the same."""
+    light, full = features("--edges", "normal"), features("--workspace")
+    for crate, names in light.items():
+        more = full[crate] - names
+        # Crates of the workspace have paths.
+        if more and "(/" not in crate and crate.split()[0] not in MORE_FEATURES:
+            sys.exit(f"{crate} has features in the full build alone: {', '.join(more)}: see MORE_FEATURES")
 
 
 def compile_all() -> None:
-    """Builds with clippy beside the compiler (`lint.py` says why); later steps use the same artifacts."""
+    """Builds with checks beside the compiler (`lint.py` has them); later steps use the same artifacts."""
     if os.name == "posix":
         os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
-    run("cargo", "build", "--release", "--quiet", *EVERYTHING, "--bins", "--tests")
+    else:
+        run("cargo", "check", "--release", "--quiet")
+    run("cargo", "build", "--release", "--quiet", "--workspace", "--bins", "--tests", *BENCHMARKS)
 
 
 def packages() -> None:
@@ -166,7 +177,7 @@ def packages() -> None:
         (SITE, ["-r", "site/requirements.txt"]),
         (NASTRAN, [*of_extra("nastran"), "pytest"]),
     ):
-        command = [environment(path), *PIP, "install", *names]
+        command = [environment(path), *INSTALL, *names]
         subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -247,8 +258,8 @@ def built() -> Path:
 def python() -> str:
     python = environment(ENVIRONMENT)
     try:
-        run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
-        run(python, *PIP, "install", f"{built()}[test]")
+        run(python, *INSTALL, "--force-reinstall", "--no-deps", built())
+        run(python, *INSTALL, f"{built()}[test]")
     finally:
         INSTALLED.set()
     others = (f"--ignore={file}" for file in (EXECUTORS, TYPES))
@@ -281,7 +292,7 @@ def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
     python = environment(NASTRAN)
     for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
-        install = [python, *PIP, "install", *options]
+        install = [python, *INSTALL, *options]
         OUT.show(f"+ {' '.join(map(str, install))}\n".encode())
         if subprocess.run(install, cwd=ROOT, check=False, stdout=subprocess.DEVNULL).returncode != 0:
             return (
@@ -315,10 +326,6 @@ def side_by_side(*works: Callable[[], str | None]) -> str:
     return ", ".join(str(told) for told in results if told)
 
 
-def form_and_light() -> str:
-    return side_by_side(form, check_light)
-
-
 def fuzz_and_wheel() -> str:
     return side_by_side(fuzz, wheel)
 
@@ -329,13 +336,11 @@ def python_and_around() -> str:
 
 
 STEPS = [
-    Step("licences, sources and duplicates of all crates", 5, crates),
+    Step("licences, sources, duplicates and features of all crates", 5, crates),
+    Step("form of the code: rustfmt, ruff, spelling", 10, form),
     Step(
-        "form of the code: rustfmt, ruff, spelling; light build and benchmarks without warnings; rustdoc",
-        110,
-        form_and_light,
+        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 350, build
     ),
-    Step("building the command, the tests and the fuzzer, with clippy", 350, build),
     Step("Rust tests", 260, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
     Step("fuzzing, and the wheel", 65, fuzz_and_wheel),

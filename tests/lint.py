@@ -1,36 +1,42 @@
 #!/usr/bin/env python3
-"""Runs the compiler on a crate of this workspace, and clippy beside it: RUSTC_WORKSPACE_WRAPPER in `all.py`.
+"""Runs the compiler on a crate of this workspace, and checks beside it: RUSTC_WORKSPACE_WRAPPER in `all.py`.
 
-`cargo clippy` would check all third-party crates again, which takes four times as long as the lints. Here
-clippy gets the arguments of the compiler for each crate that is built. A warning of either fails the build.
+`cargo clippy`, `cargo doc` and a `cargo check` of the light build would each check all third-party crates
+again, which takes longer than what they are for. Here the checks get the arguments that cargo gives the
+compiler for a crate. A warning of the compiler or of a check fails the build. The checks are:
 
-A crate is compiled a second time for its unit tests, which are quick: with less or no optimisation, which
-cargo can set for a crate, and not for its tests alone. No result depends on how much a crate is optimised. A
-library that has unit tests is linted with them, once. With `FLEXSC_LINTS=benches` only the benchmarks are
-linted, which the full build does not have, and a warning of the compiler fails the build.
+- clippy: a library that has unit tests is compiled a second time with them, and linted then alone;
+- rustdoc, which warns of links that lead nowhere, or to what is private;
+- the light build, which consists of the default members of the workspace without features. The metadata of
+  its libraries is in `target/release/light`. Third-party crates are those of the full build: `all.py`
+  compares their features.
+
+Tests are compiled with less or no optimisation, which cargo can set for a crate, but not for its tests alone.
+No result depends on it. Benchmarks are checked, and not built.
 """
 
+import contextlib
 import os
 import re
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+# The feature of `flexsc-flight` that the light build has as well.
+KEPT = 'feature="std"'
+# Options whose values are arguments of their own.
+PAIRED = ("-C", "-L", "--cfg", "--check-cfg", "--crate-name", "--crate-type", "--extern", "--out-dir")
+
+# Each option with its value, if that is an argument of its own.
+Options = list[list[str]]
 
 
-def linted(arguments: list[str], out: str) -> list[str]:
-    """The arguments of the compiler for clippy, whose only output is metadata that nothing reads."""
-    changed = []
-    for before, argument in zip(["", *arguments], arguments, strict=False):
-        if before == "--out-dir":
-            argument = out
-        elif argument.startswith("--emit="):
-            argument = "--emit=metadata"
-        elif argument.startswith("--json="):
-            # Cargo waits for one set of artifacts, the compiler's.
-            kinds = argument.removeprefix("--json=").split(",")
-            argument = "--json=" + ",".join(kind for kind in kinds if kind != "artifacts")
-        changed.append(argument)
-    return [*changed, "-Dwarnings"]
+def options(arguments: list[str]) -> Options:
+    """The compiler's arguments, put in pairs."""
+    words = iter(arguments)
+    return [[word, next(words)] if word in PAIRED else [word] for word in words]
 
 
 def lightened(arguments: list[str]) -> list[str]:
@@ -44,39 +50,102 @@ def lightened(arguments: list[str]) -> list[str]:
     return [less.get(argument, argument) for argument in arguments]
 
 
+def checked(given: Options, out: Path) -> list[str]:
+    """The arguments of the compiler for a check, whose only output is metadata."""
+    changed = []
+    for name, *value in given:
+        if name == "--out-dir":
+            changed += [name, str(out)]
+        elif name.startswith("--emit="):
+            changed.append("--emit=metadata")
+        elif name.startswith("--json="):
+            # Cargo waits for one set of artifacts, the compiler's.
+            changed.append(name.replace(",artifacts", ""))
+        else:
+            changed += [name, *value]
+    return [*changed, "-Dwarnings"]
+
+
+def light(given: Options, manifest: str, out: Path) -> list[str]:
+    """The arguments of the compiler for the metadata of a crate in the light build."""
+    named = re.findall(r"^([\w-]+) = \{[^}]*\boptional = true", manifest, re.MULTILINE)
+    optional = [name.replace("-", "_") for name in named]
+    changed = []
+    for name, *value in given:
+        if name == "--cfg" and value[0].startswith("feature=") and value != [KEPT]:
+            continue
+        if name == "--extern":
+            crate, _, path = value[0].partition("=")
+            if crate in optional:
+                continue
+            if crate.startswith("flexsc_"):
+                own = (out / Path(path).name).with_suffix(".rmeta")
+                if not own.is_file():
+                    sys.exit(f"error: {own} is not there: run `cargo clean --release --workspace`")
+                value = [f"{crate}={own}"]
+        changed.append([name, *value])
+    return [*checked(changed, out), "-L", f"dependency={out}"]
+
+
+def run(*commands: list[str]) -> int:
+    """Runs commands side by side, the first of which tells cargo of artifacts; returns a failure's code."""
+    codes = []
+    with contextlib.ExitStack() as stack:
+        others = []
+        for command in commands[1:]:
+            told = stack.enter_context(tempfile.TemporaryFile())
+            # All inherit cargo's jobserver, which says how many threads there may be.
+            process = subprocess.Popen(command, stdout=told, stderr=told, close_fds=False)
+            others.append((stack.enter_context(process), told))
+        codes.append(subprocess.run(commands[0], check=False, close_fds=False).returncode)
+        # After the compiler's output, so that no line of either is torn.
+        for process, told in others:
+            codes.append(process.wait())
+            told.seek(0)
+            sys.stderr.buffer.write(told.read())
+    return next((code for code in codes if code != 0), 0)
+
+
 def has_unit_tests(manifest: str) -> bool:
     """Whether cargo compiles a library a second time, with its unit tests."""
     library = re.search(r"^\[lib\]\n(?:(?!\[).*\n)*", manifest, re.MULTILINE)
     return library is None or "\ntest = false\n" not in library.group(0)
 
 
-def is_linted_later(arguments: list[str]) -> bool:
-    """Whether these are the arguments for a library that is compiled with its unit tests as well."""
-    if "--test" in arguments or "bin" in arguments:
-        return False
-    with open(os.path.join(os.environ["CARGO_MANIFEST_DIR"], "Cargo.toml"), encoding="utf-8") as manifest:
-        return has_unit_tests(manifest.read())
+def is_light(package: Path) -> bool:
+    """Whether the light build has a package."""
+    members = re.search(r"^default-members = .*", (ROOT / "Cargo.toml").read_text("utf-8"), re.MULTILINE)
+    assert members
+    return f'"{os.path.relpath(package, ROOT)}"' in members.group(0)
 
 
 def main() -> int:
     command = lightened(sys.argv[1:])
-    # Cargo also asks for the version, and builds crates that the command does not name.
-    if "--crate-name" not in command or "CARGO_PRIMARY_PACKAGE" not in os.environ:
+    # Cargo also asks for the version, and build scripts of other crates try what the compiler can do.
+    if "--out-dir" not in command or not os.environ.get("CARGO_PKG_NAME", "").startswith("flexsc"):
         return subprocess.run(command, check=False, close_fds=False).returncode
-    if os.environ.get("FLEXSC_LINTS") == "benches":
-        lint = ["clippy-driver"] if os.environ["CARGO_PKG_NAME"] == "flexsc-bench" else []
-        return subprocess.run([*lint, *command, "-Dwarnings"], check=False, close_fds=False).returncode
-    if is_linted_later(command):
-        return subprocess.run([*command, "-Dwarnings"], check=False, close_fds=False).returncode
-    with tempfile.TemporaryDirectory() as out, tempfile.TemporaryFile() as told:
-        lint = ["clippy-driver", *linted(command, out)]
-        # Both inherit cargo's jobserver, which says how many threads there may be.
-        with subprocess.Popen(lint, stderr=told, close_fds=False) as clippy:
-            compiled = subprocess.run(command, check=False, close_fds=False).returncode
-        told.seek(0)
-        # After the compiler's output, so that no line of either is torn.
-        sys.stderr.buffer.write(told.read())
-        return compiled or clippy.returncode
+    compiler, given = Path(command[0]), options(command[1:])
+    package = Path(os.environ["CARGO_MANIFEST_DIR"])
+    manifest = (package / "Cargo.toml").read_text("utf-8")
+    is_test, is_program = "--test" in command, "bin" in command
+    if not is_test and is_light(package):
+        place = Path(command[command.index("--out-dir") + 1]).parent / "light"
+        place.mkdir(exist_ok=True)
+        # First: crates that depend on this one are compiled as soon as the compiler has its metadata.
+        if code := run([command[0], *light(given, manifest, place)]):
+            return code
+    clippy = [str(compiler.with_name("clippy-driver")), *command, "-Dwarnings"]
+    if package.name == "benches":
+        clippy = [re.sub(r"^--emit=.*", "--emit=dep-info,metadata", argument) for argument in clippy]
+    if is_test or package.name == "benches":
+        return run(clippy)
+    with tempfile.TemporaryDirectory() as out:
+        check = checked(given, Path(out))
+        stable = [argument for argument in check if not argument.startswith("--emit=")]
+        beside = [[str(compiler.with_name("rustdoc")), *stable]]
+        if is_program or not has_unit_tests(manifest):
+            beside.append([clippy[0], command[0], *check])
+        return run([*command, "-Dwarnings"], *beside)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,11 @@
 //! - `run("simulate scenarios/relay-fixed.toml")`: output of the command with `--json`,
 //! - `each("plan ... suppress={}", [0, 1])`: list of outputs, with each value in place of `{}`,
 //! - `column("simulate ...", "/attitude", "angle_rad")`: column of the run's full log,
-//! - `drawing(name, chart, caption, command)`: [`Chart`] of the page's own numbers,
+//! - `drawing(name, chart, caption, command)`: `Chart` of the page's own numbers,
 //! - `figure(name, command, what, caption)`: figure `what` that the command draws, or of the run,
 //! - `yes("subject", condition)` and `no(...)`: verdicts that are known to hold, or known not to,
 //!
-//! and the filters and tests of [`crate::number`]. An unknown name is an error.
+//! and the filters and tests of `number`. An unknown name is an error.
 
 use std::sync::{Arc, Mutex};
 
