@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Runs the compiler on a crate of this workspace, and checks beside it: RUSTC_WORKSPACE_WRAPPER in `all.py`.
+"""Compiles and checks a crate of this workspace: RUSTC_WORKSPACE_WRAPPER in `all.py`.
 
 `cargo clippy`, `cargo doc` and a `cargo check` of the light build would each check all third-party crates
 again, which takes longer than what they are for. Here the checks get the arguments that cargo gives the
 compiler for a crate. A warning of the compiler or of a check fails the build. The checks are:
 
-- clippy: a library that has unit tests is compiled a second time with them, and linted then alone;
-- rustdoc, which warns of links that lead nowhere, or to what is private;
-- the light build, which consists of the default members of the workspace without features. The metadata of
-  its libraries is in `target/release/light`. Third-party crates are those of the full build: `all.py`
-  compares their features.
+- clippy. It compiles the tests in place of the compiler, and checks what has no unit tests beside it.
+- rustdoc, which warns of links that lead nowhere, or to what is private.
+- the light build, which consists of the workspace's default members without features. The metadata of its
+  libraries is in `target/release/light`. Third-party crates are those of the full build: `all.py` compares
+  their features.
 
 Tests are compiled with less or no optimisation, which cargo can set for a crate, but not for its tests alone.
 No result depends on it. Benchmarks are checked, and not built.
@@ -124,27 +124,27 @@ def main() -> int:
     # Cargo also asks for the version, and build scripts of other crates try what the compiler can do.
     if "--out-dir" not in command or not os.environ.get("CARGO_PKG_NAME", "").startswith("flexsc"):
         return subprocess.run(command, check=False, close_fds=False).returncode
-    compiler, given = Path(command[0]), options(command[1:])
+    compiler, given = command[0], options(command[1:])
+    clippy, rustdoc = (str(Path(compiler).with_name(name)) for name in ("clippy-driver", "rustdoc"))
     package = Path(os.environ["CARGO_MANIFEST_DIR"])
+    if package.name == "benches":
+        metadata = (re.sub("^--emit=.*", "--emit=dep-info,metadata", argument) for argument in command)
+        return run([clippy, *metadata, "-Dwarnings"])
+    if "--test" in command:
+        return run([clippy, *command, "-Dwarnings"])
     manifest = (package / "Cargo.toml").read_text("utf-8")
-    is_test, is_program = "--test" in command, "bin" in command
-    if not is_test and is_light(package):
+    if is_light(package):
         place = Path(command[command.index("--out-dir") + 1]).parent / "light"
         place.mkdir(exist_ok=True)
         # First: crates that depend on this one are compiled as soon as the compiler has its metadata.
-        if code := run([command[0], *light(given, manifest, place)]):
+        if code := run([compiler, *light(given, manifest, place)]):
             return code
-    clippy = [str(compiler.with_name("clippy-driver")), *command, "-Dwarnings"]
-    if package.name == "benches":
-        clippy = [re.sub(r"^--emit=.*", "--emit=dep-info,metadata", argument) for argument in clippy]
-    if is_test or package.name == "benches":
-        return run(clippy)
     with tempfile.TemporaryDirectory() as out:
         check = checked(given, Path(out))
         stable = [argument for argument in check if not argument.startswith("--emit=")]
-        beside = [[str(compiler.with_name("rustdoc")), *stable]]
-        if is_program or not has_unit_tests(manifest):
-            beside.append([clippy[0], command[0], *check])
+        beside = [[rustdoc, *stable]]
+        if "bin" in command or not has_unit_tests(manifest):
+            beside.append([clippy, compiler, *check])
         return run([*command, "-Dwarnings"], *beside)
 
 
