@@ -339,7 +339,7 @@ STEPS = [
     Step("licences, sources, duplicates and features of all crates", 5, crates),
     Step("form of the code: rustfmt, ruff, spelling", 10, form),
     Step(
-        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 350, build
+        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 390, build
     ),
     Step("Rust tests", 260, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
