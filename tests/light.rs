@@ -23,6 +23,25 @@ fn fmus_are_left_out() {
     }
 }
 
+#[cfg(not(feature = "flight-code"))]
+#[test]
+fn flight_code_is_left_out() {
+    for arguments in ["export-c", "export-c relay-quiet.toml -o flight", "vectors --help"] {
+        Dir::new().run(arguments).exits(2).says(&["the feature `flight-code`", HINT]);
+    }
+}
+
+#[cfg(not(feature = "handover"))]
+#[test]
+fn formats_of_whole_runs_are_left_out() {
+    let dir = Dir::with(&["relay-quiet"]);
+    dir.run("simulate relay-quiet.toml --set duration=300").exits(0);
+    for options in ["--format aem", "-o run.glb", "-o run.bin --epoch 2026-03-20T14:46:00Z"] {
+        dir.run(&format!("export relay-quiet.mcap {options}")).exits(2).says(&["the feature `handover`", HINT]);
+    }
+    assert!(!dir.has("run.glb") && !dir.has("run.bin"));
+}
+
 #[cfg(not(feature = "live"))]
 #[test]
 fn live_runs_are_left_out() {

@@ -113,9 +113,13 @@ mod bad_structures;
 mod craft_written;
 mod documented;
 mod flight_analysis;
+#[cfg(feature = "flight-code")]
 mod flight_code;
+#[cfg(feature = "flight-code")]
 mod flight_exports;
+#[cfg(feature = "flight-code")]
 mod flight_guests;
+#[cfg(feature = "flight-code")]
 mod flight_pages;
 mod foreign;
 #[cfg(feature = "full")]
@@ -176,8 +180,11 @@ mod export_fmu;
 mod extending;
 mod frozen;
 mod habits;
+#[cfg(feature = "handover")]
 mod handover;
+#[cfg(feature = "handover")]
 mod handover_glb;
+#[cfg(feature = "handover")]
 mod handover_vizard;
 mod rooms;
 mod words;

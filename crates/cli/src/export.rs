@@ -3,13 +3,14 @@
 mod handover;
 mod metrics;
 mod table;
+#[cfg_attr(not(feature = "handover"), path = "export/whole_run/unavailable.rs")]
+mod whole_run;
 
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use flexsc_core::record::{Log, LogError};
-use flexsc_handover::HandoverFormat;
 
 use crate::error::{CliError, for_terminal};
 use crate::{files, out};
@@ -61,15 +62,9 @@ impl ExportFormat {
         ("bin", Self::Vizard),
     ];
 
-    /// Returns the format of a whole run; `None` for a table.
-    fn handover(self) -> Option<HandoverFormat> {
-        match self {
-            Self::Csv | Self::Jsonl => None,
-            Self::Aem => Some(HandoverFormat::Aem),
-            Self::Oem => Some(HandoverFormat::Oem),
-            Self::Glb => Some(HandoverFormat::Glb),
-            Self::Vizard => Some(HandoverFormat::Vizard),
-        }
+    /// Returns true if the format holds one topic, and false if it holds the whole run.
+    fn is_table(self) -> bool {
+        matches!(self, Self::Csv | Self::Jsonl)
     }
 }
 
@@ -95,12 +90,12 @@ impl ExportArgs {
 
 pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let format = args.form()?;
-    if let Some(of_run) = format.handover() {
+    if !format.is_table() {
         if args.topic.is_some() {
             let why = "--topic: this format holds the whole run, and only csv and jsonl hold one topic";
             return Err(CliError::Arguments(why.to_owned()));
         }
-        return handover::run(args, of_run);
+        return whole_run::run(args, format);
     }
     args.handover.refuse_for_table()?;
     if args.out.is_some() && args.topic.is_none() {

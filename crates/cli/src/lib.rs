@@ -10,6 +10,7 @@ mod damping;
 mod error;
 mod examples;
 mod export;
+#[cfg_attr(not(feature = "flight-code"), path = "export_c/unavailable.rs")]
 mod export_c;
 #[cfg_attr(not(feature = "fmu"), path = "export_fmu/unavailable.rs")]
 mod export_fmu;
@@ -56,7 +57,14 @@ mod sweep;
 mod terminal;
 mod top;
 mod tune;
-#[cfg(not(all(feature = "fmu", feature = "live", feature = "papers", feature = "png")))]
+#[cfg(not(all(
+    feature = "flight-code",
+    feature = "fmu",
+    feature = "handover",
+    feature = "live",
+    feature = "papers",
+    feature = "png"
+)))]
 mod unavailable;
 mod worst;
 
