@@ -100,7 +100,7 @@ fn a_part_of_ones_own_logs_its_state_from_one_file() {
 #[test]
 fn a_row_is_named_by_its_part_and_its_readers() {
     let mut all = Vec::new();
-    for part in ["control", "core", "cli", "py"] {
+    for part in ["control", "scenario", "sim", "analysis", "core", "cli", "py"] {
         sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut all);
     }
     for row in ROWS {

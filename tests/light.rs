@@ -37,7 +37,9 @@ fn formats_of_whole_runs_are_left_out() {
     let dir = Dir::with(&["relay-quiet"]);
     dir.run("simulate relay-quiet.toml --set duration=300").exits(0);
     for options in ["--format aem", "-o run.glb", "-o run.bin --epoch 2026-03-20T14:46:00Z"] {
-        dir.run(&format!("export relay-quiet.mcap {options}")).exits(2).says(&["the feature `handover`", HINT]);
+        dir.run(&format!("export relay-quiet.mcap {options}"))
+            .exits(2)
+            .says(&["the feature `handover`", HINT]);
     }
     assert!(!dir.has("run.glb") && !dir.has("run.bin"));
 }

@@ -9,7 +9,7 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 const LONGEST: usize = 400;
 
 /// The crates of the engine, each above those before it.
-pub const ENGINE: [&str; 12] = [
+pub const ENGINE: [&str; 15] = [
     "flight",
     "numerics",
     "dynamics",
@@ -18,6 +18,9 @@ pub const ENGINE: [&str; 12] = [
     "spacecraft",
     "record",
     "control",
+    "scenario",
+    "sim",
+    "analysis",
     "core",
     "view",
     "handover",

@@ -32,8 +32,8 @@ use thiserror::Error;
 use toml::{Table, Value};
 
 use crate::metrics::{self, Metrics, MetricsCollector, Selection};
-use crate::scenario::{Cost, MOST_RUNS, Scenario};
-use crate::sim::{Simulation, SimulationError};
+use flexsc_scenario::{Cost, MOST_RUNS, Scenario};
+use flexsc_sim::{Simulation, SimulationError};
 
 pub use command_log::CommandLog;
 pub use design::{Design, DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS};

@@ -41,31 +41,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod analysis;
 pub mod batch;
 pub mod campaign;
-mod metric_list;
 pub mod metrics;
-pub mod order_statistics;
 pub mod prelude;
-mod relay_setup;
 pub mod requirement_verdict;
-pub mod scenario;
-mod sim;
 pub mod statistics;
-pub mod uncertain;
 pub mod worst_case;
 
+pub use flexsc_analysis as analysis;
 pub use flexsc_control as control;
 pub use flexsc_dynamics as dynamics;
 pub use flexsc_formats as formats;
 pub use flexsc_numerics as numerics;
+pub use flexsc_numerics::order_statistics;
 pub use flexsc_record as record;
+pub use flexsc_scenario as scenario;
+pub use flexsc_scenario::uncertain;
 pub use flexsc_spacecraft as spacecraft;
 
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
-pub use scenario::Scenario;
-pub use sim::{
+pub use flexsc_scenario::Scenario;
+pub use flexsc_sim::{
     ControlCall, ControlDecision, ModeTrial, ObservationField, ObservationGroup, SensorSample,
     SensorTelemetry, Simulation, SimulationError, StopAt, Telemetry, TelemetryField, TelemetryLayout,
     TelemetrySensor,

@@ -11,5 +11,5 @@ pub use flexsc_formats::document::{Document, ScenarioError};
 pub use flexsc_numerics::time::{Instant, Span};
 pub use flexsc_record::{Detail, LogFile, Record, RecordError, Trace};
 
-pub use crate::scenario::Scenario;
-pub use crate::sim::{Simulation, SimulationError};
+pub use flexsc_scenario::Scenario;
+pub use flexsc_sim::{Simulation, SimulationError};

@@ -4,9 +4,9 @@ use flexsc_formats::document::{ConfigError, nearest};
 use serde_json::{Value as Json, json};
 
 use crate::metrics::{MetricValue, Metrics, MetricsCollector};
-use crate::order_statistics::{confidence, order_statistic, runs_needed};
-use crate::scenario::{AssessedRequirement, Interpretation, RequirementSource, Scenario};
 use crate::statistics::wilson;
+use flexsc_numerics::order_statistics::{confidence, order_statistic, runs_needed};
+use flexsc_scenario::{AssessedRequirement, Interpretation, RequirementSource, Scenario};
 
 /// Part of a level by which a mean of shares may be below it because of rounding.
 const ROUNDING: f64 = 1e-12;

@@ -7,6 +7,7 @@
 //! singular direction (\[Wie01\]).
 
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -123,7 +124,7 @@ fn least(columns: &[Vector], gram: &Matrix3<f64>, demanded: &Vector) -> Vec<f64>
 
 /// Returns A' M^-1 u; zeros if the matrix has no inverse.
 fn through(columns: &[Vector], matrix: &Matrix3<f64>, demanded: &Vector) -> Vec<f64> {
-    let solved = matrix.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * demanded);
+    let solved = inverse_3x3(*matrix).map_or_else(Vector::zeros, |inverse| inverse * demanded);
     columns.iter().map(|column| column.dot(&solved)).collect()
 }
 

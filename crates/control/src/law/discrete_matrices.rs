@@ -2,6 +2,7 @@
 
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::exponential::exponential;
+use flexsc_numerics::inverse::inverse;
 use flexsc_numerics::quantity::Finite;
 use nalgebra::DMatrix;
 
@@ -60,7 +61,7 @@ impl DiscreteMatrices {
     pub fn tustin(self, h: f64) -> Option<Self> {
         let one = DMatrix::identity(self.a.nrows(), self.a.nrows());
         let half = &self.a * (0.5 * h);
-        let inverse = if self.a.is_empty() { one.clone() } else { (&one - &half).try_inverse()? };
+        let inverse = if self.a.is_empty() { one.clone() } else { inverse(&one - &half)? };
         let (a, c) = (&inverse * (one + half), &self.c * &inverse);
         let b = inverse * &self.b * h;
         let d = &self.d + &c * &self.b * (0.5 * h);

@@ -6,6 +6,7 @@
 
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
@@ -103,7 +104,7 @@ impl SunCells {
     pub fn covariance(&self) -> Matrix3<f64> {
         let spread: Matrix3<f64> = self.normals().map(|normal| normal * normal.transpose()).sum();
         let variance = self.noise.get() * self.noise.get();
-        spread.try_inverse().map_or_else(Matrix3::zeros, |inverse| inverse * (2.0 * variance))
+        inverse_3x3(spread).map_or_else(Matrix3::zeros, |inverse| inverse * (2.0 * variance))
     }
 
     /// Adds the requirements of the sensor on the other parts of a scenario.
@@ -177,7 +178,7 @@ impl SunCellsState {
         if spread.determinant() < LEAST_SPREAD {
             return None;
         }
-        (spread.try_inverse()? * sum).try_normalize(f64::MIN_POSITIVE)
+        (inverse_3x3(spread)? * sum).try_normalize(f64::MIN_POSITIVE)
     }
 
     fn measure(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {

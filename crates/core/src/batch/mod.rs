@@ -9,7 +9,7 @@ mod sampled;
 use flexsc_numerics::lanes::Processor;
 
 use crate::metrics::{Metrics, Selection};
-use crate::scenario::{RequirementSource, Scenario};
+use flexsc_scenario::{RequirementSource, Scenario};
 
 /// Run to simulate, without a log.
 #[derive(Copy, Clone, Debug)]

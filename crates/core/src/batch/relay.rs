@@ -16,11 +16,11 @@ use flexsc_record::{self, Command, PieceDemand, Record, Sample, Trigger};
 
 use super::{BatchJob, BatchKernel};
 use crate::metrics::{Metrics, MetricsCollector};
-use crate::relay_setup::{
+use flexsc_scenario::Scenario;
+use flexsc_sim::relay_setup::{
     CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState, MOST, RunSetup, apply_crossing, apply_state,
     guards, instant, is_supported, lane_setup, lane_shape, law_state, run_lanes,
 };
-use crate::scenario::Scenario;
 
 /// Number of runs that share the lanes of one call of the kernel, one after the other.
 const RUNS: usize = 128;

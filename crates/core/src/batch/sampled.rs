@@ -13,8 +13,8 @@ use flexsc_record::{PieceDemand, Record};
 
 use super::{BatchJob, BatchKernel};
 use crate::metrics::{LaneManoeuvreMetrics, LanePiece, Metrics, MetricsCollector};
-use crate::scenario::Scenario;
-use crate::sim::{AppliedTorque, Simulation};
+use flexsc_scenario::Scenario;
+use flexsc_sim::{AppliedTorque, Simulation};
 use motions::LaneMotions;
 
 /// Batch of sampled loops.

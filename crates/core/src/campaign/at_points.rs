@@ -4,7 +4,7 @@ use flexsc_formats::document::ScenarioError;
 use toml::Value;
 
 use super::{Campaign, Design, DesignBlock};
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 impl Campaign {
     /// Returns the campaign of a scenario whose runs have the uncertain keys at given points, in the order of the keys, all

@@ -8,7 +8,7 @@ use flexsc_record::{Attachment, COMMANDS, Provenance, Record};
 
 use super::{Campaign, CampaignRun};
 use crate::metrics::{Metrics, MetricsCollector};
-use crate::sim::{Simulation, SimulationError};
+use flexsc_sim::{Simulation, SimulationError};
 
 /// Columns of commands that are all torques, and of others.
 const TORQUES: &str = "time_whole_s,time_fs,x,y,z";
@@ -148,8 +148,8 @@ impl CommandLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Scenario;
     use flexsc_numerics::time::Span;
+    use flexsc_scenario::Scenario;
 
     const TEXT: &str = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
 

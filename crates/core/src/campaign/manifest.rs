@@ -6,11 +6,12 @@ use flexsc_formats::document::ScenarioError;
 use flexsc_numerics::random::fnv1a;
 use flexsc_record::difference;
 use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
 
 use super::design::Design;
 use super::{Campaign, part};
 use crate::metrics::Selection;
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Version of the directory format that this program writes.
 const FORMAT: u32 = 1;
@@ -105,21 +106,18 @@ impl Manifest {
 
     /// Parses a manifest.
     pub fn parse(text: &str) -> Result<Self, ManifestError> {
-        #[derive(Deserialize)]
-        struct ManifestFile {
-            format: Option<u32>,
-        }
         if !text.starts_with(MARK.trim_end()) {
             return Err("is not the manifest of a campaign".to_owned());
         }
         let wrong =
             |error: toml::de::Error| format!("is not the manifest of a campaign: {}", error.message());
-        let form = toml::from_str::<ManifestFile>(text).map_err(wrong)?.format;
-        if form != Some(FORMAT) {
-            let form = form.map_or("none".to_owned(), |form| form.to_string());
+        let table: Table = toml::from_str(text).map_err(wrong)?;
+        let form = table.get("format");
+        if form.and_then(Value::as_integer) != Some(i64::from(FORMAT)) {
+            let form = form.map_or("none".to_owned(), Value::to_string);
             return Err(format!("has the form {form}, and this version of flexsc reads form {FORMAT}"));
         }
-        let manifest: Self = toml::from_str(text).map_err(wrong)?;
+        let manifest: Self = table.try_into().map_err(wrong)?;
         if manifest.hash != manifest.hashed() {
             return Err("was changed: its hash does not match".to_owned());
         }

@@ -4,7 +4,7 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 
 use super::{CampaignRun, CommandLog};
-use crate::sim::{Simulation, SimulationError};
+use flexsc_sim::{Simulation, SimulationError};
 
 /// Number of snapshots of a run, evenly spaced in time.
 const SNAPSHOTS: usize = 64;

@@ -13,7 +13,7 @@ use super::parquet::encode;
 use super::rows::{ColumnHeading, RunRows};
 use super::{Campaign, CampaignRun, RunError, RunOutcome, part};
 use crate::metrics::{Metrics, Selection};
-use crate::sim::SimulationError;
+use flexsc_sim::SimulationError;
 
 /// Metadata name of the campaign to which a part belongs.
 pub(super) const NOTE: &str = "flexsc.campaign";

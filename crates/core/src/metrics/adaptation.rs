@@ -8,7 +8,7 @@ use super::{
     GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, MetricDescription, MetricValue, NamedMetric,
     OBJECTIVE_FINAL, OBJECTIVE_INITIAL, OBJECTIVE_LATE, OBJECTIVE_WINDOWS,
 };
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Descriptions of the objective's metrics, for each unit of an objective.
 static UNITS: [[MetricDescription; 4]; 6] =

@@ -8,7 +8,7 @@ use super::{
     ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, MetricDescription, MetricValue,
     NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Descriptions of the metrics.
 pub(super) const METRICS: &[MetricDescription] =

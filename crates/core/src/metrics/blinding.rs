@@ -3,7 +3,7 @@
 use flexsc_record::{BlindingEvent, Onset};
 
 use super::{MetricValue, NamedMetric, TRACKER_BLINDED};
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Collector of the events of all star trackers with exclusion angles.
 #[derive(Clone, Debug)]

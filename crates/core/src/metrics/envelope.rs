@@ -6,7 +6,7 @@ use super::{
     ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, MetricDescription, MetricValue, NamedMetric, REDUCTION,
     WINDOW_MEANS,
 };
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Descriptions of the metrics.
 pub const METRICS: &[MetricDescription] =

@@ -7,7 +7,7 @@ use super::{
     FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, MetricDescription, MetricValue,
     NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Descriptions of the metrics.
 pub(super) const METRICS: &[MetricDescription] =

@@ -4,7 +4,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, Sample};
 
 use super::requirements::RequirementMetrics;
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Values of the pointing indices of a run.
 #[derive(Clone, Debug)]

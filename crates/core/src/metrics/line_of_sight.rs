@@ -5,7 +5,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::{LineOfSightAxis, LineOfSightSample};
 
 use super::{MetricValue, NamedMetric, POINT_DISPLACEMENT, SIGHT_JITTER, SIGHT_PEAK, SIGHT_RMS};
-use crate::scenario::{LineOfSight, Scenario};
+use flexsc_scenario::{LineOfSight, Scenario};
 
 /// Collector of the samples of all lines of sight.
 #[derive(Clone, Debug)]

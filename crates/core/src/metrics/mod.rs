@@ -23,12 +23,12 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Estimate, Estimates, Record, RecordError, Sample};
 use flexsc_spacecraft::body::BodyAxes;
 
-use crate::metric_list;
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
+use flexsc_scenario::metric_list;
 
-pub use crate::metric_list::{ALL, list_element};
+pub use flexsc_scenario::metric_list::{ALL, list_element};
 
-use crate::metric_list::*;
+use flexsc_scenario::metric_list::*;
 
 pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
 

@@ -5,7 +5,7 @@ use flexsc_numerics::attitude::rotation_vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::ModeTargetStart;
 
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Bands of the modes of a scenario; none with a band of the scenario.
 #[derive(Clone, Debug, Default)]

@@ -4,7 +4,7 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::ModeEvent;
 
 use super::{MODE_CHANGES, MODE_STARTS, MODE_TIMES, MetricValue, NamedMetric};
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Collector of the changes of the mode.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use std::collections::{BinaryHeap, VecDeque};
 
 use flexsc_numerics::attitude::Vector;
 
-use crate::order_statistics::order_rank;
-use crate::scenario::{IndexWindow, WindowConvention};
+use flexsc_numerics::order_statistics::order_rank;
+use flexsc_scenario::{IndexWindow, WindowConvention};
 
 /// Pointing index of an error that is sampled.
 #[derive(Clone, Debug)]

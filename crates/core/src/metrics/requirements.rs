@@ -9,8 +9,8 @@ use super::pointing_index::{IndexStream, LargestValues};
 use super::{
     MetricValue, Metrics, NamedMetric, NumberWithUnit, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES,
 };
-use crate::metric_list;
-use crate::scenario::{
+use flexsc_scenario::metric_list;
+use flexsc_scenario::{
     AssessedRequirement, ErrorAxis, Interpretation, RequirementSource, SampledError, SampledQuantity,
     Scenario,
 };

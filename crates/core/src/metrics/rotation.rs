@@ -18,8 +18,8 @@ use super::{
     PEAK_ACCELERATION, PEAK_FEEDBACK, PEAK_FEEDBACK_ACCELERATION, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY,
     RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection,
 };
-use crate::analysis::sampled_loop::{DiscretePlant, SampledLoop};
-use crate::scenario::Scenario;
+use flexsc_analysis::sampled_loop::{DiscretePlant, SampledLoop};
+use flexsc_scenario::Scenario;
 
 pub use lanes::{LaneManoeuvreMetrics, LanePiece};
 

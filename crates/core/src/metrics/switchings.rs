@@ -16,8 +16,8 @@ use super::{
     MetricDescription, MetricValue, NamedMetric, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS,
     Selection,
 };
-use crate::analysis::limit_cycle::LimitCycleDetector;
-use crate::scenario::Scenario;
+use flexsc_analysis::limit_cycle::LimitCycleDetector;
+use flexsc_scenario::Scenario;
 
 /// Collector of the switchings of a relay law, of window means and of the adaptation's steps.
 #[derive(Clone, Debug)]

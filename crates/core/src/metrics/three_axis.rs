@@ -16,7 +16,7 @@ use super::{
     NamedMetric, POINTING_END, POINTING_RMS, RATE_END, SINGULARITY, SLEW_PEAK, SLEW_RMS, TORQUE_ERROR,
     TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS, ZERO_CROSSINGS,
 };
-use crate::scenario::{Pointing, Scenario};
+use flexsc_scenario::{Pointing, Scenario};
 
 /// Length of the end of a run over which elastic rates are averaged (s).
 const LATE: f64 = 200.0;

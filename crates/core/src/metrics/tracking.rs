@@ -6,7 +6,7 @@ use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
     INFLUENCE_ESTIMATES, MetricValue, NamedMetric, TRACKING_ERROR,
 };
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
 
 /// Collector of the cycles of a run.
 #[derive(Clone, Debug, Default)]

@@ -1,7 +1,7 @@
 //! Verdicts against counts by hand, Wilson's interval and Clopper-Pearson's confidence as SciPy has them.
 
 use super::*;
-use crate::scenario::RequirementSource;
+use flexsc_scenario::RequirementSource;
 
 fn requirement(level: f64, interpretation: Interpretation, wanted: Option<f64>) -> AssessedRequirement {
     AssessedRequirement {

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 
 use super::box_search::{Assessed, BoxSearch};
 use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
-use crate::analysis::margins::{StabilityMargins, UnstableLoop};
-use crate::analysis::open_loop::LoopBreak;
-use crate::analysis::structured_tuning::ScenarioLoops;
-use crate::scenario::Scenario;
+use flexsc_analysis::margins::{StabilityMargins, UnstableLoop};
+use flexsc_analysis::open_loop::LoopBreak;
+use flexsc_analysis::structured_tuning::ScenarioLoops;
+use flexsc_scenario::Scenario;
 
 /// Badness of an unstable loop: above that of any margin, and larger the further its poles are outside.
 const UNSTABLE: f64 = 1e6;

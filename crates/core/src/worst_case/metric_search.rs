@@ -7,9 +7,9 @@ use flexsc_formats::document::{ConfigError, ScenarioError, nearest};
 use super::box_search::{Assessed, BoxSearch};
 use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
 use crate::campaign::{Campaign, CampaignRun, RunError};
-use crate::metric_list;
 use crate::metrics::{self, Metrics, Selection, list_element, metric_value};
-use crate::scenario::Scenario;
+use flexsc_scenario::Scenario;
+use flexsc_scenario::metric_list;
 
 /// Quantity of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]

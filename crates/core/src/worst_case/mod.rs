@@ -14,9 +14,9 @@ use std::fmt;
 use flexsc_formats::document::{ConfigError, ScenarioError};
 use serde_json::{Map, Value as Json, json};
 
-use crate::scenario::Scenario;
-use crate::uncertain::{UncertainBox, UncertainKey};
 pub use box_search::{Assessed, SearchPoint};
+use flexsc_scenario::Scenario;
+use flexsc_scenario::uncertain::{UncertainBox, UncertainKey};
 pub use margin_search::{MarginKind, MarginSearch};
 pub use metric_search::{MetricSearch, RunQuantity};
 

@@ -8,6 +8,7 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
+use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::periodic_torque::PeriodicTorque;
@@ -50,7 +51,7 @@ impl RigidBody {
     pub fn new(body: &ThreeAxisModel) -> Self {
         let inertia = body.inertia;
         // A validated body has an inverse.
-        let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
+        let inverse = inverse_3x3(inertia).unwrap_or_else(Matrix3::identity);
         // Symmetric to the last bit, so that the energy is a quadratic form.
         let inverse = (inverse + inverse.transpose()) * 0.5;
         Self { inertia, inverse, mobility: inverse.norm(), disturbance: body.disturbance }

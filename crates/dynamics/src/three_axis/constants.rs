@@ -1,6 +1,7 @@
 //! Constants of a body that the integrator derives once: inverse and residual inertia, and mode constants in SIMD order.
 
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::inverse::inverse_3x3;
 use flexsc_numerics::lanes::{LaneFloat, SimdWidth4};
 use nalgebra::{DMatrix, Matrix3};
 
@@ -136,7 +137,7 @@ impl BodyConstants {
     /// Computes the constants of a body.
     pub fn new(body: &FlexibleBody) -> Self {
         // A validated body has an invertible inertia.
-        let inverted = |m: Matrix3<f64>| symmetric(m.try_inverse().unwrap_or_else(Matrix3::identity));
+        let inverted = |m: Matrix3<f64>| symmetric(inverse_3x3(m).unwrap_or_else(Matrix3::identity));
         let inverse = inverted(body.inertia);
         let bending = body.modes.iter().fold(Matrix3::zeros(), |sum: Matrix3<f64>, mode| {
             sum + mode.rotation * mode.rotation.transpose()

@@ -1,5 +1,6 @@
 //! Steady state of a linear Kalman filter, with constant gains.
 
+use flexsc_numerics::inverse::inverse;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -90,7 +91,7 @@ fn settled_covariance(
     let (mut a, mut g, mut p) = (transition.transpose(), information.clone(), noise.clone());
     let mut is_settled = false;
     for _ in 0..DOUBLINGS {
-        let inverse = (&one + &g * &p).try_inverse()?;
+        let inverse = inverse(&one + &g * &p)?;
         let step = &a * &inverse;
         let added = a.transpose() * &p * &inverse * &a;
         g += &step * &g * a.transpose();
@@ -110,6 +111,6 @@ fn settled_covariance(
         return None;
     }
     // From the predicted covariance to that after the measurements.
-    let corrected = (one + &p * information).try_inverse()? * p;
+    let corrected = inverse(one + &p * information)? * p;
     Some((&corrected + corrected.transpose()) * 0.5)
 }

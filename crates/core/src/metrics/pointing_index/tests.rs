@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::order_statistics::order_statistic;
-use crate::scenario::PointingIndex;
+use flexsc_numerics::order_statistics::order_statistic;
+use flexsc_scenario::PointingIndex;
 
 const SAMPLES: u64 = 600;
 

@@ -1,6 +1,7 @@
 //! Configuration of an articulated body at an instant: the coefficients of its kinetic energy.
 
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{Matrix3, Matrix3xX};
 
 use super::hinge::HingedPanel;
@@ -152,7 +153,7 @@ impl ArticulatedBody {
         }
         let sum = translations.iter().fold(Matrix3::zeros(), |sum: Matrix3<f64>, t| sum + t * t.transpose());
         configuration.mass_inverse =
-            (Matrix3::identity() * mass - sum).try_inverse().unwrap_or_else(Matrix3::zeros);
+            inverse_3x3(Matrix3::identity() * mass - sum).unwrap_or_else(Matrix3::zeros);
         (configuration.centre, configuration.inertia, configuration.momentum) =
             (centre, 0.5 * (inertia + inertia.transpose()), momentum);
         (configuration.energy, configuration.panel_momentum, configuration.mass) =

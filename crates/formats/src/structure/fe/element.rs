@@ -3,6 +3,7 @@
 //! Shape functions are the polynomials of a kind that are 1 at one node and 0 at the others, and follow from nodes and
 //! monomials.
 
+use flexsc_numerics::inverse::inverse;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 /// Kinds of elements, with the order of nodes that `CalculiX` writes.
@@ -183,7 +184,7 @@ impl ShapeFunctions {
         let count = kind.count();
         let at_nodes = DMatrix::from_fn(count, count, |node, power| monomial(monomials[power], nodes[node]));
         // Nodes of these elements determine their polynomials.
-        let coefficients = at_nodes.try_inverse().unwrap_or_else(|| DMatrix::zeros(count, count));
+        let coefficients = inverse(at_nodes).unwrap_or_else(|| DMatrix::zeros(count, count));
         Self { kind, monomials, coefficients }
     }
 

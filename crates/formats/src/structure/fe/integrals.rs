@@ -5,6 +5,7 @@
 
 use std::collections::BTreeMap;
 
+use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::deck::{Deck, PointMass};
@@ -301,7 +302,7 @@ impl Found {
                 matrix += (Matrix3::identity() * along.norm_squared() - along * along.transpose()) * weight;
                 side += along.cross(&slopes.column(axis)) * weight;
             }
-            rotation += matrix.try_inverse().unwrap_or_else(Matrix3::zeros) * side * part;
+            rotation += inverse_3x3(matrix).unwrap_or_else(Matrix3::zeros) * side * part;
         }
         [displacement.into(), rotation.into()]
     }
@@ -319,7 +320,7 @@ fn locate(
     for _ in 0..20 {
         let values = functions.at(natural.into());
         let directions = values.slopes(positions());
-        let step = directions.try_inverse()? * (position - values.interpolate(positions()));
+        let step = inverse_3x3(directions)? * (position - values.interpolate(positions()));
         if step.amax() < 1e-12 {
             let inside = functions.kind().outside(&natural) < INSIDE;
             return inside.then_some(Within { element: index, natural, values, directions });

@@ -1,0 +1,51 @@
+//! Outputs of a loop: angles, rates, coordinates of the body, lines of sight, and commands.
+
+use flexsc_numerics::attitude::{AXES, Vector};
+use nalgebra::RowDVector;
+
+use super::motion::OutputRow;
+use crate::linear_model::Signal;
+use crate::open_loop::LoopParts;
+use flexsc_scenario::Scenario;
+
+/// Returns the outputs of a loop, with rows over the states of the body.
+pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
+    let model = &parts.body.model;
+    let order = model.states.len();
+    let measured = model.outputs.len() - order;
+    let mut all: Vec<(Signal, OutputRow)> = Vec::new();
+    let row = |place: usize| OutputRow::Body(RowDVector::from_row_slice(&model.c[place]));
+    all.extend((0..measured).map(|place| (model.outputs[place].clone(), row(place))));
+    all.extend(
+        parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))),
+    );
+    all.extend(line_of_sight_rows(parts.scenario, order));
+    all.extend((measured..model.outputs.len()).map(|place| (model.outputs[place].clone(), row(place))));
+    all.into_iter().unzip()
+}
+
+/// Returns the error of each line of sight about the axes of the body: the rotation of its point perpendicular to it.
+fn line_of_sight_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
+    let Some(body) = scenario.model.three_axis() else { return Vec::new() };
+    let mut all = Vec::new();
+    for (index, line) in scenario.line_of_sight.iter().enumerate() {
+        let direction = line.direction();
+        let across = |rotation: &Vector| rotation - direction * direction.dot(rotation);
+        let shapes = body.shapes(&line.point);
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let mut row = RowDVector::zeros(order);
+            for rigid in 0..AXES.len() {
+                row[rigid] = across(&Vector::ith(rigid, 1.0))[axis];
+            }
+            for (mode, (_, rotation)) in shapes.iter().enumerate() {
+                row[6 + 2 * mode] = across(rotation)[axis];
+            }
+            // A line along an axis has no error about it.
+            if row.amax() > 1e-12 {
+                let name = format!("line_of_sight{index}_{name}");
+                all.push((Signal { name, unit: "rad".to_owned() }, OutputRow::Body(row)));
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,218 @@
+//! Noise of the outputs of a loop in numbers: rms by source, densities, and indices over windows.
+
+use flexsc_formats::document::ConfigError;
+use serde::Serialize;
+
+use super::density::cumulative_rms;
+use super::imbalance::{WheelImbalance, WheelSpectrum};
+use super::lines::LineLoop;
+use super::noisy_loop::{NoiseError, NoisyLoop};
+use super::windows::{Window, WindowVariances};
+use flexsc_scenario::Scenario;
+
+/// Largest number of speeds of the wheels.
+const MOST_SPEEDS: usize = 2000;
+
+/// Request for the noise of a loop.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct NoiseRequest {
+    /// Names of outputs, or `all`; empty for measured angles and lines of sight.
+    pub signals: Vec<String>,
+    /// Window of the indices, if there is one.
+    pub window: Option<Window>,
+    /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for those up to their largest.
+    pub speeds: Option<Vec<f64>>,
+}
+
+/// Noise of some outputs of a loop.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NoiseReport {
+    /// Largest magnitude of a pole of the closed loop over a period.
+    pub spectral_radius: f64,
+    /// Period after which the loop repeats (s).
+    pub period_s: f64,
+    /// Samples of the law in a period.
+    pub samples: usize,
+    /// Nyquist frequency of the law (Hz).
+    pub nyquist_hz: f64,
+    /// Sources of noise: keys of the scenario.
+    pub sources: Vec<String>,
+    /// Frequencies of the densities (Hz).
+    pub frequency_hz: Vec<f64>,
+    /// Noise of each output.
+    pub outputs: Vec<OutputNoise>,
+    /// Lines of the imbalance of the wheels, if they have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wheels: Option<WheelSpectrum>,
+}
+
+/// Noise of an output, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OutputNoise {
+    /// Name of the output.
+    pub output: String,
+    /// Unit of the output.
+    pub unit: String,
+    /// Rms over time.
+    pub rms: f64,
+    /// Rms at the samples of the law.
+    pub sample_rms: f64,
+    /// Rms over time from each source.
+    pub rms_by_source: Vec<f64>,
+    /// One-sided power spectral density at the samples (unit² per Hz).
+    pub density: Vec<f64>,
+    /// Density from each source (unit² per Hz).
+    pub density_by_source: Vec<Vec<f64>>,
+    /// Rms up to each frequency.
+    pub cumulative_rms: Vec<f64>,
+    /// Indices over windows, if a window is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window: Option<WindowRms>,
+}
+
+/// Rms of an output over windows that begin at a sample of the law, in the unit of the output.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+pub struct WindowRms {
+    /// Length of the window (s).
+    pub window_s: f64,
+    /// Time from the start of a window to that of the next (s).
+    pub separation_s: Option<f64>,
+    /// Mean over the window: mean performance error, displacement of an exposure.
+    pub mpe: f64,
+    /// Output less the mean, at any time of the window: relative performance error, jitter of an exposure with its smear.
+    pub rpe_uniform: f64,
+    /// Output less the mean, at the end of the window.
+    pub rpe_end: f64,
+    /// Output less the mean, in the middle of the window.
+    pub rpe_middle: f64,
+    /// Straight line through the output, about its mean: smear of an exposure.
+    pub smear: f64,
+    /// Rest beyond mean and straight line.
+    pub beyond_smear: f64,
+    /// Difference of the means over two windows: performance drift or reproducibility error; none without a separation.
+    pub pde: Option<f64>,
+}
+
+impl NoiseReport {
+    /// Computes the noise of a scenario's loop, and the lines of its wheels.
+    ///
+    /// # Errors
+    /// See [`NoisyLoop::from_scenario`]; a loop without noise, and a request for an output, a window or speeds that there
+    /// are not.
+    pub fn from_scenario(scenario: &Scenario, request: &NoiseRequest) -> Result<Self, NoiseError> {
+        let noisy = NoisyLoop::from_scenario(scenario)?;
+        let outputs = chosen(&noisy, &request.signals)?;
+        let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
+        if noisy.sources.is_empty() && wheels.is_none() {
+            let why =
+                "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
+            return Err(NoiseError::Key(ConfigError::new("sensor", why)));
+        }
+        let report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
+        Ok(Self { wheels, ..report })
+    }
+
+    /// Computes the noise of some outputs, with their indices over windows if there is a window.
+    ///
+    /// # Errors
+    /// See [`NoisyLoop::window_variances`].
+    pub fn new(noisy: &NoisyLoop, outputs: &[usize], window: Option<Window>) -> Result<Self, String> {
+        let frequency_hz = noisy.frequency_grid();
+        let densities = noisy.densities(outputs, &frequency_hz);
+        let (mean, sampled) = (noisy.mean_variances(outputs), noisy.sample_variances(outputs));
+        let mut found = Vec::with_capacity(outputs.len());
+        for (place, density) in densities.into_iter().enumerate() {
+            let output = &noisy.outputs[outputs[place]];
+            let rms = |variances: &[f64]| f64::sqrt(variances.iter().sum());
+            found.push(OutputNoise {
+                output: output.name.clone(),
+                unit: output.unit.clone(),
+                rms: rms(&mean[place]),
+                sample_rms: rms(&sampled[place]),
+                rms_by_source: mean[place].iter().map(|variance| f64::sqrt(*variance)).collect(),
+                cumulative_rms: cumulative_rms(&frequency_hz, &density.total),
+                density: density.total,
+                density_by_source: density.by_source,
+                window: window.map(|window| WindowRms::new(noisy, outputs[place], window)).transpose()?,
+            });
+        }
+        Ok(Self {
+            spectral_radius: noisy.spectral_radius,
+            period_s: noisy.period,
+            samples: noisy.samples,
+            nyquist_hz: noisy.nyquist(),
+            sources: noisy.sources.clone(),
+            frequency_hz,
+            outputs: found,
+            wheels: None,
+        })
+    }
+}
+
+/// Returns the indices of the outputs of these names.
+fn chosen(noisy: &NoisyLoop, names: &[String]) -> Result<Vec<usize>, NoiseError> {
+    if names.is_empty() {
+        return Ok(noisy.first_outputs());
+    }
+    if names.iter().any(|name| name == "all") {
+        return Ok((0..noisy.outputs.len()).collect());
+    }
+    let index = |name: &String| {
+        noisy.output(name).ok_or_else(|| {
+            let all: Vec<&str> = noisy.outputs.iter().map(|output| output.name.as_str()).collect();
+            NoiseError::Request(format!("signal must be `all` or some of {}, got {name}", all.join(", ")))
+        })
+    };
+    names.iter().map(index).collect()
+}
+
+/// Returns the lines of a scenario's wheels; `None` if they have no imbalance.
+fn wheel_spectrum(
+    scenario: &Scenario,
+    speeds: Option<Vec<f64>>,
+    outputs: &[usize],
+) -> Result<Option<WheelSpectrum>, NoiseError> {
+    let Some(imbalance) = WheelImbalance::from_scenario(scenario)? else {
+        return match speeds {
+            Some(_) => {
+                let why = "speeds: the scenario has no `actuator.wheels.imbalance`";
+                Err(NoiseError::Request(why.to_owned()))
+            }
+            None => Ok(None),
+        };
+    };
+    if let Some(given) = &speeds {
+        let wrong = given.iter().find(|speed| !(**speed > 0.0 && speed.is_finite()));
+        if wrong.is_some() || given.is_empty() || given.len() > MOST_SPEEDS {
+            let got =
+                wrong.map_or_else(|| format!("{} of them", given.len()), |speed| format!("{speed} rad/s"));
+            let why = format!("speeds must be positive, and from 1 to {MOST_SPEEDS} of them, got {got}");
+            return Err(NoiseError::Request(why));
+        }
+    }
+    let Some(speeds) = speeds.or_else(|| imbalance.speeds()) else {
+        let why = "speeds must be given: the scenario gives no largest speed of its wheels";
+        return Err(NoiseError::Request(why.to_owned()));
+    };
+    let lines = LineLoop::from_scenario(scenario)?;
+    Ok(Some(imbalance.spectrum(&lines, speeds, outputs)?))
+}
+
+impl WindowRms {
+    /// Returns the rms of an output over windows, from all sources together.
+    fn new(noisy: &NoisyLoop, output: usize, window: Window) -> Result<Self, String> {
+        let each = noisy.window_variances(output, window)?;
+        let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());
+        Ok(Self {
+            window_s: window.length,
+            separation_s: window.separation,
+            mpe: rms(|index| index.mpe),
+            rpe_uniform: rms(|index| index.rpe_uniform),
+            rpe_end: rms(|index| index.rpe_end),
+            rpe_middle: rms(|index| index.rpe_middle),
+            smear: rms(|index| index.smear),
+            beyond_smear: rms(WindowVariances::beyond_smear),
+            pde: window.separation.map(|_| rms(|index| index.pde)),
+        })
+    }
+}

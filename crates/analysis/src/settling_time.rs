@@ -1,0 +1,158 @@
+//! Settling times of a linear loop after a step of its target: bounds by poles and residues, smooth in the parameters of
+//! the loop.
+//!
+//! The step is a deviation of the rigid angle about one axis, at rest, with filters and estimators that have followed it and
+//! a law without a past. Each measured angle is then a sum r l^k over the poles l of the loop, and the sum of |r| |l|^k falls
+//! below the band at a time after which the angle stays in it.
+
+use flexsc_control::law::LAST_ANGLE;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::AXES;
+use nalgebra::{Complex, DMatrix};
+use serde::Serialize;
+
+use super::margins::{FrequencyResponse, ResidueResponse, eigenvalues, modulus};
+use super::open_loop::{LoopBreak, LoopParts, OpenLoop, TransferMatrices};
+use flexsc_scenario::Scenario;
+
+/// Half width of the band, relative to the step.
+pub const SETTLING_BAND: f64 = 0.05;
+
+/// Weight of the angles of the step against the steadiness of the other states.
+const STEP_WEIGHT: f64 = 1e3;
+/// Singular values below this part of the largest one are rounding.
+const LEAST_SINGULAR: f64 = 1e-12;
+/// Decay in a period up to which a pole counts as lasting.
+const STEADY: f64 = 1e-10;
+/// Change of a defective state matrix, relative to its size, that gives it a basis of eigenvectors.
+const SPLITTING: f64 = 1e-13;
+/// Decay in a sample of a pole at 0.
+const FASTEST: f64 = 700.0;
+/// Number of halvings of the interval of a settling time.
+const HALVINGS: usize = 200;
+
+/// Settling time of an angle after a step about an axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettlingTime {
+    /// Axis of the step: `roll`, `pitch` or `yaw`, and `angle` for a body with one axis.
+    pub step: &'static str,
+    /// Axis of the angle, in the same words.
+    pub angle: &'static str,
+    /// Time after which the angle stays within [`SETTLING_BAND`] of the step (s); infinite if a part does not decay.
+    pub time_s: f64,
+}
+
+/// Returns the settling times of a scenario's loop: of each angle after a step about each axis.
+///
+/// # Errors
+/// A scenario without a linear loop, and a loop whose poles have no basis of eigenvectors.
+pub fn settling_times(scenario: &Scenario) -> Result<Vec<SettlingTime>, ConfigError> {
+    let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
+    let opened = OpenLoop::from_parts(&parts)?;
+    let response = StepResponse::new(&parts, &opened);
+    let terms = response.and_then(StepResponse::terms);
+    let Some(terms) = terms else {
+        return Err(ConfigError::new("law", "has a loop whose settling time cannot be computed"));
+    };
+    let count = parts.body.inputs.len();
+    let name = |axis: usize| if count == 1 { "angle" } else { AXES[axis] };
+    let pairs = (0..count * count).map(|pair| (pair / count, pair % count));
+    Ok(pairs
+        .map(|(step, angle)| SettlingTime {
+            step: name(step),
+            angle: name(angle),
+            time_s: opened.period * settling(&terms, step * count + angle),
+        })
+        .collect())
+}
+
+/// Pole, and its residues: of each angle after each step.
+type Term = (Complex<f64>, Vec<Complex<f64>>);
+
+/// Closed loop with the states after a step about each axis, and rows of the angles.
+struct StepResponse(TransferMatrices);
+
+impl StepResponse {
+    fn new(parts: &LoopParts<'_>, opened: &OpenLoop) -> Option<Self> {
+        let axes = parts.body.inputs.len();
+        let order = opened.states.len();
+        let of_law = |name: &str| parts.law.block.states.iter().any(|state| state.name == name);
+        let others: Vec<usize> = (0..order).filter(|place| !of_law(&opened.states[*place].name)).collect();
+        let angles = DMatrix::from_fn(axes, order, |axis, place| {
+            let own = parts.body.states.iter().position(|state| state.name == opened.states[place].name);
+            own.map_or(0.0, |own| parts.body.c[(2 * axis, own)])
+        });
+        // Without commands the states other than the law's stay as they are, and the angles are those of the step.
+        let still = opened.transfer.a.select_rows(&others).select_columns(&others)
+            - DMatrix::identity(others.len(), others.len());
+        let mut equations = still.resize_vertically(others.len() + axes, 0.0);
+        let weighted = angles.select_columns(&others) * STEP_WEIGHT;
+        equations.rows_mut(others.len(), axes).copy_from(&weighted);
+        let mut right = DMatrix::zeros(others.len() + axes, axes);
+        right.rows_mut(others.len(), axes).fill_diagonal(STEP_WEIGHT);
+        let factors = equations.svd(true, true);
+        let known = factors.solve(&right, LEAST_SINGULAR * factors.singular_values.max()).ok()?;
+        let mut start = DMatrix::zeros(order, axes);
+        for (row, place) in others.iter().enumerate() {
+            start.row_mut(*place).copy_from(&known.row(row));
+        }
+        // A differentiator starts with the angle itself, as in a run; the other states of the law are 0.
+        for place in (0..order).filter(|place| opened.states[*place].name.ends_with(LAST_ANGLE)) {
+            let angle = opened.transfer.a.row(place) * &start;
+            start.row_mut(place).copy_from(&angle);
+        }
+        let a = opened.transfer.sensitivity()?.a;
+        Some(Self(TransferMatrices { a, b: start, c: angles, d: DMatrix::zeros(axes, axes) }))
+    }
+
+    /// Returns the poles with their residues.
+    fn terms(mut self) -> Option<Vec<Term>> {
+        if let Some(terms) = self.terms_as_it_is() {
+            return Some(terms);
+        }
+        // Delays have a defective pole at 0. A change within rounding parts it: its terms are then large, and gone after a few
+        // samples.
+        let size = SPLITTING * self.0.a.norm();
+        for (place, entry) in self.0.a.iter_mut().enumerate() {
+            *entry += size * libm::sin(1.0 + 3.7 * place as f64);
+        }
+        self.terms_as_it_is()
+    }
+
+    fn terms_as_it_is(&self) -> Option<Vec<Term>> {
+        let poles = eigenvalues(&self.0.a)?;
+        Some(ResidueResponse::new(&FrequencyResponse::new(&self.0), &poles)?.into_terms())
+    }
+}
+
+/// Returns the number of periods after which the sum of the terms of a response stays within the band.
+fn settling(terms: &[Term], response: usize) -> f64 {
+    let decay = |pole: Complex<f64>| (-libm::log(modulus(pole))).min(FASTEST);
+    let sizes: Vec<(f64, f64)> =
+        terms.iter().map(|(pole, residues)| (modulus(residues[response]), decay(*pole))).collect();
+    let bound = |time: f64| sizes.iter().map(|(size, decay)| size * libm::exp(-decay * time)).sum::<f64>();
+    let lasting = sizes.iter().filter(|(_, decay)| *decay <= STEADY).map(|(size, _)| size).sum::<f64>();
+    if lasting >= SETTLING_BAND || lasting.is_nan() {
+        return f64::INFINITY;
+    }
+    if bound(0.0) <= SETTLING_BAND {
+        return 0.0;
+    }
+    let mut high = 1.0;
+    while bound(high) > SETTLING_BAND {
+        high *= 2.0;
+        if high > 1e15 {
+            return f64::INFINITY;
+        }
+    }
+    let mut low = 0.0;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if bound(middle) > SETTLING_BAND {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}

@@ -1,0 +1,271 @@
+//! Scenario: everything that a user writes about a study, and the data that follow from it before a run.
+
+mod actuator_checks;
+mod adaptation_checks;
+mod appendage_drives;
+mod assembly;
+mod assessed_requirement;
+mod authority;
+mod bound;
+mod compatibility;
+mod consistency;
+mod cost;
+mod coupling;
+mod custom_parts;
+mod drift_checks;
+mod environment_checks;
+mod epoch;
+mod estimator_context;
+mod failures;
+mod fast_path;
+mod file_name;
+mod line_of_sight;
+mod log;
+mod meant;
+pub mod metric_list;
+mod mode_checks;
+mod one_mode;
+mod pace;
+mod plate_mounts;
+mod reference_values;
+mod remarks;
+mod requirement;
+mod requirement_checks;
+mod resolved;
+mod sensor_checks;
+mod small_angle_checks;
+mod spec;
+pub mod uncertain;
+
+use std::ops::Deref;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use flexsc_control::law::{ErrorBand, Setpoint};
+use flexsc_control::operation::ModeTables;
+use flexsc_control::sensor::SensorKind;
+use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::linear::LinearFlow;
+use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::{Body, BodyModel};
+use flexsc_spacecraft::manoeuvre::Plan;
+
+pub use appendage_drives::{AppendageDrives, DriveProfiles};
+pub use assessed_requirement::{
+    AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
+};
+pub use bound::BoundSpec;
+pub use cost::{Cost, MOST_RUNS};
+pub use custom_parts::CustomParts;
+pub use epoch::date_from_text;
+pub use failures::FailureInterval;
+pub use line_of_sight::LineOfSight;
+pub use log::{LogSpec, SceneSpec};
+pub use reference_values::{Pointing, Reference};
+pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, WindowConvention};
+pub use resolved::ResolvedScenario;
+pub use spec::ScenarioSpec;
+
+/// A validated scenario: the keys as written, and the data resolved from them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Keys as written, with defaults.
+    pub written: ScenarioSpec,
+    /// Model of the body.
+    pub model: BodyModel,
+    /// Plan of the manoeuvre, if there is one.
+    pub plan: Option<Plan>,
+    /// Exact flow of a one-axis body with coupled modes, where the motion has a closed form.
+    pub linear: Option<Arc<LinearFlow>>,
+    /// Data resolved from all parts together.
+    pub study: ResolvedScenario,
+}
+
+impl Deref for Scenario {
+    type Target = ScenarioSpec;
+
+    fn deref(&self) -> &ScenarioSpec {
+        &self.written
+    }
+}
+
+impl Scenario {
+    /// Reads a scenario file.
+    pub fn load(path: &Path) -> Result<Self, ScenarioError> {
+        Self::from_document(&Document::load(path)?)
+    }
+
+    /// Reads a scenario from a text. `origin` is its name in error messages.
+    pub fn parse(origin: &str, text: &str) -> Result<Self, ScenarioError> {
+        Self::from_document(&Document::parse(origin, text.to_owned())?)
+    }
+
+    /// Reads a scenario from a document.
+    pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
+        Self::solved(document, None, &CustomParts::default(), true)
+    }
+
+    /// Reads a scenario from a document that differs from `parent` in some keys. If the body is not among them, its
+    /// modes are reused.
+    pub fn from_document_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent), &parent.custom_parts(), true)
+    }
+
+    /// Reads a scenario from a document that differs from `parent` only in numeric values, without a check for unknown
+    /// keys.
+    pub fn from_numbers_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent), &parent.custom_parts(), false)
+    }
+
+    fn solved(
+        document: &Document,
+        parent: Option<&Self>,
+        own: &CustomParts,
+        new_keys: bool,
+    ) -> Result<Self, ScenarioError> {
+        let document = &*document.in_si(units)?;
+        let mut written: ScenarioSpec = document.read()?;
+        if let Some(error) = new_keys.then(|| document.unread(&written.to_table())).flatten() {
+            return Err(error);
+        }
+        written.inherit_custom_parts(own, document);
+        if !written.mode.is_empty() && document.has("law") {
+            let why = "must be left out with `[[mode]]`: each mode has a law of its own";
+            return Err(document.at_key(&ConfigError::new("law", why)));
+        }
+        written.adopt_modes();
+        if written.name.is_empty() {
+            let stem = Path::new(document.origin()).file_stem();
+            written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
+        }
+        let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
+        if let Some(fault) = written.read_environment(parent, directory) {
+            return Err(document.at_key(&fault));
+        }
+        let model = written.assemble(document, parent, directory)?;
+        if written.law.offers().is_open
+            && !document.has("law")
+            && written.manoeuvre.is_none()
+            && written.mode.is_empty()
+        {
+            return Err(document.missing("law"));
+        }
+        Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
+    }
+
+    /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
+    /// the manoeuvre.
+    fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
+        written.adopt_modes();
+        let offers = written.offers(&model);
+        let unmet = written.unmet_requirements(&offers);
+        written.validate_compatibility(&model, &offers, &unmet)?;
+        if let Some(conflict) = written.topic_conflict() {
+            return Err(conflict);
+        }
+        let study = ResolvedScenario::resolve(&written, &model, &unmet)?;
+        let mut scenario = Self { written, model, plan: None, linear: None, study };
+        scenario.validate(&offers, &unmet)?;
+        scenario.plan = scenario.planned()?;
+        scenario.linear = scenario.linear_flow()?;
+        let period = scenario.study.assessment_period;
+        scenario.study.requirements =
+            requirement_checks::assessed(&scenario.written, &scenario.model, period)?;
+        Ok(scenario)
+    }
+
+    /// Returns the one-axis body, for analyses that need one.
+    ///
+    /// # Errors
+    /// Fails for a three-axis body.
+    pub fn one_angle(&self) -> Result<&AxisModel, ScenarioError> {
+        self.model.one_axis().ok_or_else(|| ScenarioError::Key {
+            origin: self.name.clone(),
+            key: self.body_key(),
+            why: "turns about three axes, and this is done for bodies with one angle".to_owned(),
+        })
+    }
+
+    /// Returns the number of elastic modes of the body.
+    pub fn mode_count(&self) -> usize {
+        self.model.mode_count()
+    }
+
+    /// Plans the manoeuvre, if there is one.
+    fn planned(&self) -> Result<Option<Plan>, ConfigError> {
+        let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.one_axis()) else { return Ok(None) };
+        let body = manoeuvre.planned_for(own);
+        if body.drive != own.drive {
+            let why = "must be the same as the body's".to_owned();
+            return Err(ConfigError::new("manoeuvre.model.drive", why));
+        }
+        let (start, rate) = (manoeuvre.start_rate.get(), own.rate.get());
+        if start != rate {
+            let why = format!("must be the body's rate at the start, {rate}, got {start}");
+            return Err(ConfigError::new("manoeuvre.start_rate", why));
+        }
+        manoeuvre.plan(&body).map(Some).map_err(|fault| fault.within("manoeuvre"))
+    }
+
+    /// Returns the setpoint of a one-axis body: the end of the manoeuvre, or angle 0 from the start on.
+    pub fn goal(&self) -> Setpoint {
+        let planned = self.plan.as_ref().zip(self.model.one_axis());
+        planned.map_or_else(Setpoint::default, |(plan, body)| Setpoint {
+            from: Instant::START + Span::from_seconds(plan.time),
+            angle: body.angle.get() + plan.angle,
+            rate: plan.end_rate,
+            acceleration: 0.0,
+        })
+    }
+
+    /// Returns the error band about the goal: as written in the scenario, else as the manoeuvre or the law promises.
+    pub fn expected_band(&self) -> ErrorBand {
+        match (self.reference.band, &self.plan) {
+            (Some(band), _) => ErrorBand::Absolute(band.get()),
+            (None, Some(plan)) => ErrorBand::Absolute(plan.band()),
+            (None, None) => match self.study.expected_bands.first() {
+                Some(Some(band)) if self.axis_count() == 1 => ErrorBand::Absolute(*band),
+                _ => self.law.expected_band(),
+            },
+        }
+    }
+
+    /// Returns the keys without references to files: matrices of a structure are replaced by their modes, paths of mode
+    /// files by the modes.
+    #[must_use]
+    pub fn self_contained(&self) -> ScenarioSpec {
+        let mut written = self.written.clone();
+        written.inline_files();
+        if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.one_axis()) {
+            written.body = Some(Body::Planar(body.into()));
+            let of_matrices = |key: &String| key.starts_with("body.matrices");
+            written.uncertain.retain(|key, _| !of_matrices(key));
+            written.correlated.retain(|group| !group.keys.iter().any(of_matrices));
+        }
+        written
+    }
+
+    /// Returns the modes of operation as lists of numbers, before a run.
+    pub fn mode_tables(&self) -> ModeTables {
+        let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
+        ModeTables::from_modes(&self.mode, &kinds, self.study.assessment_period)
+    }
+
+    /// Returns the JSON Schema of scenarios.
+    pub fn schema() -> serde_json::Value {
+        schemars::schema_for!(ScenarioSpec).to_value()
+    }
+
+    /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.
+    pub fn unit_of(&self, key: &str) -> Option<&'static str> {
+        let unit = flexsc_formats::document::unit_at(units(), key)?;
+        Some(if unit == "N m" && self.model.has_unit_inertia() { "rad/s²" } else { unit })
+    }
+}
+
+/// Returns the JSON Schema, whose descriptions contain the units of the keys.
+fn units() -> &'static serde_json::Value {
+    static SCHEMA: OnceLock<serde_json::Value> = OnceLock::new();
+    SCHEMA.get_or_init(Scenario::schema)
+}

@@ -1,0 +1,218 @@
+//! Scenario as written in a file.
+
+use std::collections::BTreeMap;
+
+use flexsc_control::actuator::AssignedActuator;
+use flexsc_control::adaptation::AdaptationKind;
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::{AttitudeTarget, LawKind, Stages};
+use flexsc_control::one_or_many::OneOrMany;
+use flexsc_control::operation::{ModeTarget, OperatingMode};
+use flexsc_control::sensor::SensorKind;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
+use flexsc_spacecraft::body::{Body, Drift};
+use flexsc_spacecraft::disturbance::Disturbance;
+use flexsc_spacecraft::environment::Environment;
+use flexsc_spacecraft::manoeuvre::Manoeuvre;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value, value::Datetime};
+
+use super::{BoundSpec, LineOfSight, LogSpec, Reference, Requirement, epoch};
+use crate::uncertain::{Correlated, Distribution};
+
+/// A scenario as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename = "Scenario")]
+#[schemars(description = "A scenario.")]
+pub struct ScenarioSpec {
+    /// Name of the study; default: the name of its file.
+    #[serde(default)]
+    pub name: String,
+    /// Description of the study.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// Seed of all random numbers.
+    #[serde(default)]
+    pub seed: u64,
+    /// Simulated time (s).
+    pub duration: Span,
+    /// Date and time of the start; a log counts its time from here.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::parse")]
+    #[schemars(with = "Option<String>")]
+    pub epoch: Option<Datetime>,
+    /// The controlled body, unless it is a `spacecraft`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Body")]
+    pub body: Option<Body>,
+    /// The hub of a controlled spacecraft, which is built from its parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacecraft: Option<Spacecraft>,
+    /// Appendages clamped to the hub of the spacecraft.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub appendage: Vec<Appendage>,
+    /// Drift of the natural frequencies; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<Drift>,
+    /// The sensor, or an array of several.
+    #[serde(default)]
+    pub sensor: OneOrMany<SensorKind>,
+    /// The estimator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimator: Option<EstimatorKind>,
+    /// The adaptation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<AdaptationKind>,
+    /// The planned manoeuvre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The control law. Only a scenario with a manoeuvre or with modes can omit it.
+    #[serde(default, skip_serializing_if = "LawKind::is_of_modes")]
+    pub law: LawKind,
+    /// Modes of operation, each with a law of its own; a run begins in the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mode: Vec<OperatingMode>,
+    /// Target of the first mode, at the start of the run.
+    #[serde(skip)]
+    pub(super) mode_targets: Vec<AttitudeTarget>,
+    /// The actuator, which executes the commanded torque, or an array of several.
+    #[serde(default)]
+    pub actuator: OneOrMany<AssignedActuator>,
+    /// Disturbance torques and forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<Disturbance>,
+    /// Environment of a body with three axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub environment: Option<Environment>,
+    /// Contents of a full log.
+    #[serde(default)]
+    pub log: LogSpec,
+    /// Target attitudes of a body with three axes, in the order of their times; before the first one, the target is the
+    /// inertial axes. A law `phase_plane` may have targets of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub target: Vec<AttitudeTarget>,
+    /// Lines of sight of instruments on a body with three axes, which are recorded and assessed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub line_of_sight: Vec<LineOfSight>,
+    /// Claims about outputs of the linear body, for `flexsc bound`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bound: Vec<BoundSpec>,
+    /// Reference values for the metrics.
+    #[serde(default, skip_serializing_if = "Reference::is_empty")]
+    pub reference: Reference,
+    /// Requirements, each a limit on a pointing index or on a metric.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub requirement: Vec<Requirement>,
+    /// Distributions of keys from which a campaign draws a value for each run.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertain: BTreeMap<String, Distribution>,
+    /// Correlated keys of `uncertain`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlated: Vec<Correlated>,
+}
+
+impl ScenarioSpec {
+    /// Returns the number of axes of the body.
+    pub fn axis_count(&self) -> usize {
+        self.body.as_ref().map_or(3, Body::axis_count)
+    }
+
+    /// Returns the kind of the body.
+    pub fn body_kind(&self) -> &'static str {
+        self.body.as_ref().map_or("spacecraft", Body::kind)
+    }
+
+    /// Returns the key of the body.
+    pub fn body_key(&self) -> String {
+        self.body.as_ref().map_or_else(|| "spacecraft".to_owned(), |body| format!("body.{}", body.kind()))
+    }
+
+    /// Returns the key of the damping matrix.
+    pub(super) fn damping_key(&self) -> String {
+        format!("body.{}.damping_matrix", self.body_kind())
+    }
+
+    /// Takes the laws, and the first target, from the modes of operation, if there are any.
+    pub(super) fn adopt_modes(&mut self) {
+        if self.mode.is_empty() {
+            return;
+        }
+        self.law = LawKind::Stages(Stages::for_modes(self.mode.iter().map(OperatingMode::stage).collect()));
+        let first = self.mode.first().and_then(|mode| mode.target.as_ref());
+        self.mode_targets = first.map(ModeTarget::at_start).into_iter().collect();
+    }
+
+    /// Returns true if the estimator is a set of adaptive observers.
+    pub fn has_adaptive_observers(&self) -> bool {
+        self.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some())
+    }
+
+    /// Returns true if modes have targets, which replace those of the scenario.
+    pub fn has_mode_targets(&self) -> bool {
+        self.mode.iter().any(|mode| mode.target.is_some())
+    }
+
+    /// Returns the target attitudes of a three-axis body whose times are known before the run.
+    pub fn targets(&self) -> &[AttitudeTarget] {
+        if self.has_mode_targets() {
+            return &self.mode_targets;
+        }
+        let own = self.law.own_targets();
+        if own.is_empty() { &self.target } else { own }
+    }
+
+    /// Returns the start of the last target that begins before `before`; the start of the run if there is none.
+    pub fn last_target_start(&self, before: Instant) -> Instant {
+        let begins = self.targets().iter().rev().map(AttitudeTarget::starts);
+        begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
+    }
+
+    /// Returns the scenario with all its defaults, as a table.
+    pub fn to_table(&self) -> Table {
+        // Every scenario can be expressed in TOML.
+        let mut table = Table::try_from(self).unwrap_or_default();
+        // serde knows no dates: `toml` makes a marked table of one.
+        if let Some(epoch) = self.epoch {
+            table.insert("epoch".to_owned(), Value::Datetime(epoch));
+        }
+        table
+    }
+
+    /// Returns the scenario with all its defaults, as TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(&self.to_table()).unwrap_or_default()
+    }
+
+    /// Returns the sampling period of the motion in a full log.
+    pub fn log_period(&self) -> Span {
+        self.log.period_for(self.duration)
+    }
+
+    /// Replaces references to files of modes, orbits, fields and densities by what was read from them.
+    pub fn inline_files(&mut self) {
+        if let Some(Body::Spatial(spatial)) = &mut self.body {
+            spatial.modes.inline();
+        }
+        self.appendage.iter_mut().for_each(Appendage::inline_modes);
+        let date = self.date_ns();
+        if let Some(around) = &mut self.environment {
+            around.inline_files(date);
+        }
+    }
+
+    /// The date of the start in nanoseconds since 1970 UTC, if it has one.
+    pub fn date_ns(&self) -> Option<u64> {
+        self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970)
+    }
+
+    /// The instant in nanoseconds since 1970 UTC from which a log counts: the date of the start, 0 without one.
+    pub fn epoch_ns(&self) -> u64 {
+        self.date_ns().unwrap_or(0)
+    }
+
+    /// Returns true if the torque consists of more than the switchings of a law.
+    pub fn has_torque_rows(&self) -> bool {
+        !self.law.is_switching() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
+    }
+}

@@ -1,0 +1,193 @@
+//! Guidance: the reference motion on a manoeuvre and at its end, or along the targets of a three-axis body.
+
+use std::sync::Arc;
+
+use flexsc_control::law::{AttitudeProfile, AttitudeTarget, ReferenceNeeds, Setpoint, TargetFrame};
+use flexsc_control::operation::{ModeTarget, OperatingMode, SlewStart};
+use flexsc_control::sensor::Orientation;
+use flexsc_control::state_estimate::StateEstimate;
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+use nalgebra::Quaternion;
+
+use flexsc_scenario::Scenario;
+
+/// Reference motion of a scenario.
+#[derive(Clone, Debug)]
+pub struct Guidance {
+    /// Setpoint after the manoeuvre; angle 0 without one.
+    pub setpoint: Setpoint,
+    /// Manoeuvre of a one-axis body, if there is one.
+    planned: Option<PlannedManoeuvre>,
+    /// Sequence of targets of a three-axis body.
+    profile: Option<AttitudeProfile>,
+    /// Target of each mode of operation that has one.
+    mode_targets: Vec<Option<ModeReference>>,
+}
+
+/// Target of a mode of operation, and the start of a slew to it.
+#[derive(Clone, Debug)]
+struct ModeReference {
+    target: AttitudeTarget,
+    /// For each mode before, true if a slew starts at the estimated attitude, and not at the reference.
+    from_estimate: Vec<bool>,
+}
+
+/// Manoeuvre as a rigid body executes it.
+#[derive(Clone, Debug)]
+struct PlannedManoeuvre {
+    waveform: Arc<Waveform>,
+    /// Initial angle (rad) and rate (rad/s).
+    from: (f64, f64),
+    /// Inertia (kg m²) that converts the waveform into acceleration.
+    inertia: f64,
+}
+
+impl ModeReference {
+    /// Creates the reference of a mode; a mode before whose law does not read the motion leaves the attitude anywhere.
+    fn new(target: &ModeTarget, scenario: &Scenario) -> Self {
+        let is_loose = |mode: &OperatingMode| !mode.law.offers().reads_motion();
+        let starts = |mode: &OperatingMode| match target.slew_from {
+            Some(start) => start == SlewStart::Estimate,
+            None => is_loose(mode),
+        };
+        let slews = target.acceleration.is_some();
+        Self {
+            target: target.at_start(),
+            from_estimate: scenario.mode.iter().map(|mode| slews && starts(mode)).collect(),
+        }
+    }
+}
+
+impl PlannedManoeuvre {
+    /// Creates the planned manoeuvre of a scenario; `None` without one.
+    fn new(scenario: &Scenario) -> Option<Self> {
+        let (manoeuvre, plan) = scenario.manoeuvre.as_ref().zip(scenario.plan.as_ref())?;
+        let body = scenario.model.one_axis()?;
+        Some(Self {
+            waveform: Arc::new(plan.waveform.clone()),
+            from: (body.angle.get(), body.rate.get()),
+            inertia: manoeuvre.planned_for(body).commanded_inertia(),
+        })
+    }
+}
+
+impl Guidance {
+    /// Creates the reference of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            setpoint: scenario.goal(),
+            planned: PlannedManoeuvre::new(scenario),
+            profile: scenario.model.three_axis().map(|_| scenario.study.profile.clone()),
+            mode_targets: scenario
+                .mode
+                .iter()
+                .map(|mode| mode.target.as_ref().map(|target| ModeReference::new(target, scenario)))
+                .collect(),
+        }
+    }
+
+    /// Takes the target of a mode that begins at `now`, if it has one; returns true if it has. A slew starts at the reference,
+    /// or at the estimated attitude.
+    pub fn enter_mode(&mut self, now: Instant, [before, mode]: [usize; 2], estimated: &Orientation) -> bool {
+        let reference = self.mode_targets.get(mode).and_then(Option::as_ref);
+        let (Some(reference), Some(profile)) = (reference, self.profile.as_mut()) else { return false };
+        let from_estimate = reference.from_estimate.get(before) == Some(&true);
+        if let Some(attitude) = estimated.attitude().filter(|_| from_estimate) {
+            profile.hold(attitude, now);
+        }
+        profile.enter(&reference.target, now);
+        true
+    }
+
+    /// Returns the reference angle (rad) and rate (rad/s) of a one-axis body: during the manoeuvre, those of a rigid
+    /// body.
+    pub fn manoeuvre_state(&self, now: Instant) -> (f64, f64) {
+        match &self.planned {
+            Some(PlannedManoeuvre { waveform, from: (angle, rate), inertia }) if now < self.setpoint.from => {
+                let t = now.seconds();
+                let (travel, impulse) = (waveform.travel(0.0, t), waveform.impulse(0.0, t));
+                (angle + rate * t + travel / inertia, rate + impulse / inertia)
+            }
+            _ => self.setpoint.at(now),
+        }
+    }
+
+    /// Returns the setpoint of a law about an axis: `led`, if the three-axis reference moves; for laws that track, the state
+    /// of the manoeuvre, until its end; otherwise the setpoint after the manoeuvre.
+    pub fn setpoint_for(&self, needs: ReferenceNeeds, now: Instant, led: Option<Setpoint>) -> Setpoint {
+        if let Some(goal) = led {
+            return goal;
+        }
+        if now < self.setpoint.from && needs.tracks_manoeuvre {
+            let (angle, rate) = self.manoeuvre_state(now);
+            return Setpoint { from: now, angle, rate, acceleration: 0.0 };
+        }
+        self.setpoint
+    }
+
+    /// Returns the origin of the angles: the current reference attitude of three axes, or angle 0.
+    pub fn origin(&self, now: Instant) -> Orientation {
+        let attitude = self.profile.as_ref().map(|way| way.at(now).attitude);
+        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
+    }
+
+    /// Returns true if the target of three axes moves from one attitude to another.
+    pub fn slews(&self, now: Instant) -> bool {
+        self.profile.as_ref().is_some_and(|way| way.slews(now))
+    }
+
+    /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
+    pub fn target(&self, now: Instant) -> Orientation {
+        let attitude = self.profile.as_ref().map(|way| way.target(now));
+        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
+    }
+
+    /// Returns the number of the current target, which changes with the target; 0 before the first one.
+    pub fn target_number(&self, now: Instant) -> usize {
+        self.profile.as_ref().map_or(0, |way| way.target_number(now))
+    }
+
+    /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for
+    /// one axis.
+    pub fn target_as_written(&self, now: Instant) -> Option<(TargetFrame, Quaternion<f64>)> {
+        self.profile.as_ref().map(|way| way.target_as_written(now))
+    }
+
+    /// Returns the setpoints of the three axes while the reference moves, at the estimated angles; `None` while it
+    /// rests.
+    pub fn reference_motion(&self, now: Instant, state_estimates: &[StateEstimate]) -> Option<[Setpoint; 3]> {
+        let way = self.profile.as_ref().filter(|way| way.is_moving(now))?;
+        let beyond = Vector::from_fn(|axis, _| {
+            state_estimates.get(axis).map_or(0.0, |state_estimate| state_estimate.angle)
+        });
+        let [rate, acceleration] = way.at(now).in_body_axes(&beyond);
+        let goal = |axis: usize| Setpoint {
+            from: now,
+            angle: 0.0,
+            rate: rate[axis],
+            acceleration: acceleration[axis],
+        };
+        Some([0, 1, 2].map(goal))
+    }
+
+    /// Returns the rate of the reference attitude (rad/s) in the axes of a body that is `error` (rad) away from it.
+    pub fn reference_rate(&self, now: Instant, error: &Vector) -> Vector {
+        let rate = self.profile.as_ref().map(|way| way.at(now).in_body_axes(error)[0]);
+        rate.unwrap_or_default()
+    }
+
+    /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the
+    /// start of the next target.
+    pub fn next_change(&self, now: Instant) -> Option<Instant> {
+        self.profile
+            .as_ref()
+            .and_then(|way| if way.is_moving(now) { Some(now + Span::TICK) } else { way.next(now) })
+    }
+
+    /// Returns the feedforward torque of the manoeuvre (N m).
+    pub fn feedforward(&self, now: Instant) -> f64 {
+        self.planned.as_ref().map_or(0.0, |planned| planned.waveform.at(now.seconds()))
+    }
+}

@@ -1,0 +1,194 @@
+//! Modes of operation of a run: their conditions on what the laws know, and the changes of laws, targets, sensors and
+//! actuators.
+
+use std::sync::Arc;
+
+use flexsc_control::actuator::ActuatorEvent;
+use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence};
+use flexsc_flight::mode_readings::{distance, largest_size, norm};
+use flexsc_flight::mode_supervisor::MOST_CHANGES;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
+
+use super::mode_sky::ModeSky;
+use super::run_view::RunView;
+use super::{Simulation, SimulationError};
+use flexsc_scenario::Scenario;
+
+/// Modes of operation of a run.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    sequence: Option<ModeSequence>,
+    /// For each mode, which sensors are in use.
+    in_use: Vec<Vec<bool>>,
+    /// Sky of the conditions.
+    sky: Arc<ModeSky>,
+}
+
+/// Quantities of a run at an instant, as the conditions read them.
+struct KnownQuantities<'a> {
+    run: RunView<'a>,
+    sequence: &'a ModeSequence,
+    sky: &'a ModeSky,
+}
+
+impl Operation {
+    /// Creates the modes of a scenario, before its start.
+    pub fn new(scenario: &Scenario) -> Self {
+        let sky = ModeSky::new(scenario);
+        let crossings = |quantity: ModeQuantity, limit: f64| sky.crossings(quantity, limit);
+        Self {
+            sequence: ModeSequence::new(scenario.mode_tables(), &crossings),
+            in_use: (0..scenario.mode.len()).map(|mode| scenario.sensors_in_use(mode)).collect(),
+            sky: Arc::new(sky),
+        }
+    }
+
+    /// Returns the next instant at which conditions are tested.
+    #[inline]
+    pub fn due(&self) -> Option<Instant> {
+        self.sequence.as_ref().and_then(ModeSequence::due)
+    }
+
+    /// Returns the row of the first mode, at the start of a run with modes.
+    pub fn first_event(&self, now: Instant) -> Option<ModeEvent> {
+        let to = self.sequence.as_ref()?.active();
+        let change = ModeChange { from: None, to, cause: String::new(), is_chatter: false };
+        self.event(now, change)
+    }
+
+    /// Returns the error of modes that change without end.
+    fn chatter(&self, now: Instant, change: &ModeChange) -> SimulationError {
+        let name = |mode: usize| self.sequence.as_ref().map_or("", |sequence| sequence.name(mode)).to_owned();
+        SimulationError::ModeChatter {
+            at: now,
+            count: MOST_CHANGES + 1,
+            before: change.from.map_or_else(String::new, name),
+            after: name(change.to),
+        }
+    }
+
+    fn event(&self, now: Instant, change: ModeChange) -> Option<ModeEvent> {
+        let sequence = self.sequence.as_ref()?;
+        let (time_s, time_whole_s, time_fs) = Command::times(now);
+        Some(ModeEvent {
+            time_s,
+            time_whole_s,
+            time_fs,
+            index: change.to as u64,
+            mode: sequence.name(change.to).to_owned(),
+            before: change.from.map_or("", |mode| sequence.name(mode)).to_owned(),
+            cause: change.cause,
+        })
+    }
+}
+
+impl Simulation {
+    /// Tests the conditions of the mode that are due, and enters the mode that follows: its laws decide at this instant on
+    /// its target, with its sensors and actuators.
+    pub(super) fn update_mode(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.clock.now();
+        if self.operation.due() != Some(now) {
+            return Ok(());
+        }
+        let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
+        let (before, sky) = (sequence.active(), &self.operation.sky);
+        let readings =
+            sequence.read(now, &KnownQuantities { run: self.read_view(), sequence: &sequence, sky });
+        let change = sequence.test(now, &readings);
+        self.trace_mode(now, sequence.active(), readings);
+        self.operation.sequence = Some(sequence);
+        let Some(change) = change else { return Ok(()) };
+        if change.is_chatter {
+            return Err(self.operation.chatter(now, &change));
+        }
+        let (mode, mut start) = (change.to, None);
+        self.laws.enter_mode(mode);
+        self.sensors.set_in_use(now, &self.operation.in_use[mode]);
+        self.loads.actuator.update(now, ActuatorEvent::Mode(mode));
+        let estimates = &self.estimation.estimates;
+        let angles = std::array::from_fn(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.angle));
+        let estimated = self.estimation.origin().rotated_by(angles);
+        if self.guidance.enter_mode(now, [before, mode], &estimated) {
+            self.estimation.move_origin(now, &self.guidance);
+            let errors = self.plant.truth().orientation.error_from(&self.guidance.target(now));
+            let distance = f64::sqrt(errors.iter().map(|error| error * error).sum());
+            start = Some(ModeTargetStart { mode, distance });
+        }
+        let Some(event) = self.operation.event(now, change) else { return Ok(()) };
+        self.recorder.record_mode(now, &event, record)?;
+        if let Some(start) = start {
+            let mut report = Report::new();
+            report.add_value(start);
+            record.record(now, Sample::Report(&report))?;
+        }
+        Ok(())
+    }
+}
+
+impl ModeReadings for KnownQuantities<'_> {
+    fn value(&self, quantity: ModeQuantity) -> f64 {
+        let run = &self.run;
+        let (now, estimates) = (run.now, &run.estimation.estimates);
+        match quantity {
+            ModeQuantity::Rate => norm(&run.rates()),
+            ModeQuantity::RateError => {
+                let reference: Vec<f64> = run.reference().into_iter().map(|[_, rate]| rate).collect();
+                distance(&run.rates(), &reference)
+            }
+            ModeQuantity::AttitudeError => {
+                let angles: Vec<f64> = estimates.iter().map(|estimate| estimate.angle).collect();
+                let reference: Vec<f64> = run.reference().into_iter().map(|[angle, _]| angle).collect();
+                distance(&angles, &reference)
+            }
+            ModeQuantity::Momentum => norm(&run.loads.actuator.capabilities().stored_momentum(now)),
+            ModeQuantity::WheelSpeed => {
+                let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid_rate);
+                if speeds.is_empty() { f64::NAN } else { largest_size(&speeds) }
+            }
+            ModeQuantity::Field => {
+                run.sensors.measured_field().map_or(f64::NAN, |field| norm(field.as_slice()))
+            }
+            ModeQuantity::FieldRate => {
+                run.sensors.field_rate.map_or(f64::NAN, |change| norm(change.as_slice()))
+            }
+            ModeQuantity::Silent(sensor) => run.sensors.silence(now, sensor).seconds(),
+            // The supervisor counts entries itself.
+            ModeQuantity::Entries(_) => f64::NAN,
+            ModeQuantity::LockLost => {
+                f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
+            }
+            ModeQuantity::Sunlight
+            | ModeQuantity::Elevation(_)
+            | ModeQuantity::TrueSunlight
+            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, now.seconds()),
+            clock => self.clock(clock).seconds(),
+        }
+    }
+
+    fn clock(&self, quantity: ModeQuantity) -> Span {
+        let is_of_mode = matches!(quantity, ModeQuantity::Time | ModeQuantity::TrueTime);
+        self.run.now.since(if is_of_mode { self.sequence.entered() } else { Instant::START })
+    }
+}
+
+impl RunView<'_> {
+    /// Returns the estimated rate about each axis (rad/s).
+    pub(super) fn rates(&self) -> Vec<f64> {
+        self.estimation.estimates.iter().map(|estimate| estimate.rate).collect()
+    }
+
+    /// Returns the angle (rad) of the reference about each axis, from which the estimated angles differ by the error, and
+    /// its rate (rad/s).
+    pub(super) fn reference(&self) -> Vec<[f64; 2]> {
+        let estimates = &self.estimation.estimates;
+        if estimates.len() == 1 {
+            let (angle, rate) = self.guidance.manoeuvre_state(self.now);
+            return vec![[angle, rate]];
+        }
+        match self.guidance.reference_motion(self.now, estimates) {
+            Some(setpoints) => setpoints.iter().map(|setpoint| [0.0, setpoint.rate]).collect(),
+            None => vec![[0.0; 2]; estimates.len()],
+        }
+    }
+}
