@@ -32,8 +32,6 @@ SITE = TARGET / "venv-site"
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 BENCHMARKS = ("--bench", "bars", "--bench", "engine")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
-# What is imported is compiled then; most of the packages' modules are not.
-INSTALL = (*PIP, "install", "--no-compile")
 # Third-party crates with features for more than the light build: for lanes, for hand-over, and for tests.
 MORE_FEATURES = {"prost", "pulp", "rand"}
 # Python tests that take long, and run beside the others: executors, and type checkers.
@@ -122,7 +120,7 @@ def environment(path: Path) -> Path:
 def form() -> None:
     python = environment(ENVIRONMENT)
     run("cargo", "fmt", "--all", "--check")
-    run(python, *INSTALL, "codespell", "ruff")
+    run(python, *PIP, "install", "codespell", "ruff")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")
     run(python, "-m", "codespell_lib", *WORDS)
@@ -177,7 +175,7 @@ def packages() -> None:
         (SITE, ["-r", "site/requirements.txt"]),
         (NASTRAN, [*of_extra("nastran"), "pytest"]),
     ):
-        command = [environment(path), *INSTALL, *names]
+        command = [environment(path), *PIP, "install", *names]
         subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -258,8 +256,8 @@ def built() -> Path:
 def python() -> str:
     python = environment(ENVIRONMENT)
     try:
-        run(python, *INSTALL, "--force-reinstall", "--no-deps", built())
-        run(python, *INSTALL, f"{built()}[test]")
+        run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
+        run(python, *PIP, "install", f"{built()}[test]")
     finally:
         INSTALLED.set()
     others = (f"--ignore={file}" for file in (EXECUTORS, TYPES))
@@ -292,7 +290,7 @@ def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
     python = environment(NASTRAN)
     for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
-        install = [python, *INSTALL, *options]
+        install = [python, *PIP, "install", *options]
         OUT.show(f"+ {' '.join(map(str, install))}\n".encode())
         if subprocess.run(install, cwd=ROOT, check=False, stdout=subprocess.DEVNULL).returncode != 0:
             return (
@@ -339,7 +337,7 @@ STEPS = [
     Step("licences, sources, duplicates and features of all crates", 5, crates),
     Step("form of the code: rustfmt, ruff, spelling", 10, form),
     Step(
-        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 390, build
+        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 310, build
     ),
     Step("Rust tests", 260, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
