@@ -112,6 +112,7 @@ mod bad_spatial;
 mod bad_structures;
 mod craft_written;
 mod documented;
+#[cfg(feature = "flight-code")]
 mod flight_analysis;
 #[cfg(feature = "flight-code")]
 mod flight_code;
