@@ -279,6 +279,7 @@ fn where_none_can_be_it_is_refused() {
 }
 
 /// The elements of its metrics, which are lists, have statistics and figures in a campaign, as numbers have.
+#[cfg(feature = "parquet")]
 #[test]
 fn campaigns_have_statistics_of_each_line() {
     let dir = Dir::new();
@@ -300,4 +301,17 @@ fn campaigns_have_statistics_of_each_line() {
     dir.run("plot mc -o g.svg --metric line_of_sight_peak_rad[x]")
         .exits(2)
         .says(&["no metric `line_of_sight_peak_rad[x]`"]);
+}
+
+#[test]
+fn an_element_of_a_list_is_drawn_from_a_table() {
+    let dir = Dir::new();
+    let uncertain = "[uncertain]\n\"body.spatial.attitude_error[0]\" = { uniform = [1e-3, 3e-3] }\n";
+    dir.write("v.toml", format!("{VIBRATING}{uncertain}"));
+    dir.run("simulate v.toml --runs 5 --table csv -o mc").exits(0);
+    dir.run("plot mc -o f.svg --metric line_of_sight_peak_rad[2] --what distribution").exits(0);
+    assert!(dir.has("f.svg"));
+    dir.run("plot mc -o g.svg --metric line_of_sight_peak_rad[9]")
+        .exits(2)
+        .says(&["no metric `line_of_sight_peak_rad[9]`"]);
 }

@@ -34,7 +34,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let directory = args.path.as_path();
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
-    let mut tables = table::read(directory, &files)?;
+    let mut tables = table::read(directory, &files, &args.metric)?;
     tables.extend(parts::read(directory, &files, &args.metric)?);
     let (asked, topics) = FigureName::split(&args.what);
     if let Some(topic) = topics.first() {
@@ -111,7 +111,7 @@ pub fn directory_figures(
     metric: &[String],
 ) -> Result<Vec<Named>, CliError> {
     let files = files(directory)?;
-    let mut tables = table::read(directory, &files)?;
+    let mut tables = table::read(directory, &files, metric)?;
     tables.extend(parts::read(directory, &files, metric)?);
     let mut figures = Vec::new();
     if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::Fan) {

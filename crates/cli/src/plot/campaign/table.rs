@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::metrics::{self, MetricDescription};
+use flexsc_core::metrics::{self, MetricDescription, list_element};
 use flexsc_core::record::atomic_file;
 use flexsc_core::scenario::{AssessedRequirement, RequirementSource};
 
@@ -91,18 +91,18 @@ struct TextTable {
     rows: BTreeMap<u64, (TextRow, PathBuf)>,
 }
 
-/// Reads the campaigns of a directory by their names.
+/// Reads the campaigns of a directory by their names; `named` are requested metrics, such as elements of lists.
 ///
 /// # Errors
 /// A table that cannot be read or is not of a campaign, or parts that contradict each other.
-pub fn read(directory: &Path, files: &[String]) -> Result<Vec<CampaignRuns>, CliError> {
+pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<CampaignRuns>, CliError> {
     let mut tables: BTreeMap<String, TextTable> = BTreeMap::new();
     for file in files {
         if let Some(prefix) = prefix(file) {
             tables.entry(prefix).or_default().read(&directory.join(file))?;
         }
     }
-    tables.into_iter().map(|(prefix, rows)| rows.into_runs(directory, &prefix)).collect()
+    tables.into_iter().map(|(prefix, rows)| rows.into_runs(directory, &prefix, named)).collect()
 }
 
 /// Returns the prefix of a table's name, empty or `NAME-`; `None` if the file is not a table.
@@ -163,7 +163,7 @@ impl TextTable {
         Ok(())
     }
 
-    fn into_runs(self, directory: &Path, prefix: &str) -> Result<CampaignRuns, CliError> {
+    fn into_runs(self, directory: &Path, prefix: &str, named: &[String]) -> Result<CampaignRuns, CliError> {
         if self.rows.is_empty() {
             return Err(refused(&directory.join(format!("{prefix}runs.csv")), "contains no runs"));
         }
@@ -211,6 +211,19 @@ impl TextTable {
                 });
             }
         }
+        let known = scenario.as_ref().map(|(scenario, _)| scenario);
+        all.extend(named.iter().filter_map(|name| {
+            let (list, index) = list_element(name)?;
+            let meaning = metrics::meaning(list, known)?;
+            let element = |text: &String| -> Option<f64> {
+                let values: Vec<Option<f64>> = serde_json::from_str(text).ok()?;
+                *values.get(index)?
+            };
+            let found: Vec<Option<f64>> = column(list).iter().map(element).collect();
+            found.iter().find(|value| value.is_some())?;
+            let values = found.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect();
+            Some(MetricColumn { meaning, name: name.clone(), texts: TextCells::Numbers, values })
+        }));
         let errors = column("error");
         Ok(CampaignRuns {
             name,
