@@ -265,14 +265,10 @@ def python() -> str:
     return tally(run(python, "-m", "pytest", "tests/python", "-q", *others, "-k", "not matplotlib_alone"))
 
 
-def executors() -> str:
+def beside(file: str) -> str:
+    """Runs the tests of a file beside the others, as soon as the wheel is installed."""
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", EXECUTORS, "-q"))
-
-
-def types() -> str:
-    INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", TYPES, "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", file, "-q"))
 
 
 def extras() -> None:
@@ -330,7 +326,7 @@ def fuzz_and_wheel() -> str:
 
 def python_and_around() -> str:
     """The longest first; who is done takes the next."""
-    return side_by_side(python, extras, site, executors, types, nastran)
+    return side_by_side(python, extras, site, lambda: beside(EXECUTORS), lambda: beside(TYPES), nastran)
 
 
 STEPS = [

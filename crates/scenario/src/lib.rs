@@ -22,7 +22,7 @@ mod file_name;
 mod line_of_sight;
 mod log;
 mod meant;
-pub mod metric_list;
+pub mod metric_descriptions;
 mod mode_checks;
 mod one_mode;
 mod pace;

@@ -10,7 +10,7 @@ use super::assessed_requirement::{
 };
 use super::requirement::{ErrorAxis, Interpretation, PointingIndex, Requirement};
 use super::spec::ScenarioSpec;
-use crate::metric_list;
+use crate::metric_descriptions;
 
 /// Name of the requirement of `reference.pointing.rms`.
 pub const POINTING_RMS: &str = "pointing";
@@ -308,11 +308,11 @@ fn metric_source(
 ) -> Result<(RequirementSource, &'static str), ConfigError> {
     let at = |key: &str, why: String| Err(ConfigError::new(key, why));
     let (list, element) =
-        metric_list::list_element(name).map_or((name, None), |(list, index)| (list, Some(index)));
-    let known = metric_list::meaning(list, Some(model));
+        metric_descriptions::list_element(name).map_or((name, None), |(list, index)| (list, Some(index)));
+    let known = metric_descriptions::meaning(list, Some(model));
     let Some(meaning) = known else {
         let names: Vec<&str> =
-            SAMPLED.into_iter().chain(metric_list::ALL.iter().map(|meaning| meaning.name)).collect();
+            SAMPLED.into_iter().chain(metric_descriptions::ALL.iter().map(|meaning| meaning.name)).collect();
         let hint = nearest(name, &names).map_or_else(
             || "`flexsc schema --metrics` lists them".to_owned(),
             |close| format!("did you mean `{close}`?"),
@@ -320,7 +320,7 @@ fn metric_source(
         let why = format!("must be `{}` or a metric, got `{name}`; {hint}", SAMPLED.join("`, `"));
         return at("quantity", why);
     };
-    if metric_list::is_word(list) || list.starts_with("requirement") {
+    if metric_descriptions::is_word(list) || list.starts_with("requirement") {
         return at("quantity", format!("must be a number to have a limit, and `{list}` is none"));
     }
     let given = [

@@ -24,11 +24,11 @@ use flexsc_record::{self, Estimate, Estimates, Record, RecordError, Sample};
 use flexsc_spacecraft::body::BodyAxes;
 
 use flexsc_scenario::Scenario;
-use flexsc_scenario::metric_list;
+use flexsc_scenario::metric_descriptions;
 
-pub use flexsc_scenario::metric_list::{ALL, list_element};
+pub use flexsc_scenario::metric_descriptions::{ALL, list_element};
 
-use flexsc_scenario::metric_list::*;
+use flexsc_scenario::metric_descriptions::*;
 
 pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
 
@@ -55,7 +55,7 @@ use tracking::ObserverMetrics;
 pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static MetricDescription> {
     let objectives = scenario.and_then(adaptation::descriptions);
     let objective = objectives.and_then(|some| some.iter().find(|meaning| meaning.name == name));
-    objective.or_else(|| metric_list::meaning(name, scenario.map(|scenario| &scenario.model)))
+    objective.or_else(|| metric_descriptions::meaning(name, scenario.map(|scenario| &scenario.model)))
 }
 
 /// Collector of the metrics of a run.

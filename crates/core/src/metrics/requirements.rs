@@ -9,7 +9,7 @@ use super::pointing_index::{IndexStream, LargestValues};
 use super::{
     MetricValue, Metrics, NamedMetric, NumberWithUnit, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES,
 };
-use flexsc_scenario::metric_list;
+use flexsc_scenario::metric_descriptions;
 use flexsc_scenario::{
     AssessedRequirement, ErrorAxis, Interpretation, RequirementSource, SampledError, SampledQuantity,
     Scenario,
@@ -137,7 +137,7 @@ impl RequirementMetrics {
             ValueSource::Metric(name, _) => Some(name.as_str()),
             ValueSource::Index(_) => None,
         });
-        names.filter_map(|name| Some(metric_list::meaning(name, None)?.name))
+        names.filter_map(|name| Some(metric_descriptions::meaning(name, None)?.name))
     }
 
     /// Records sampled errors.

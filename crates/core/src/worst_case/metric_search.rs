@@ -9,7 +9,7 @@ use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
 use crate::campaign::{Campaign, CampaignRun, RunError};
 use crate::metrics::{self, Metrics, Selection, list_element, metric_value};
 use flexsc_scenario::Scenario;
-use flexsc_scenario::metric_list;
+use flexsc_scenario::metric_descriptions;
 
 /// Quantity of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Looked {
                 Selection::from_names([text]).map_err(WorstCaseFault::Request)?;
                 let (name, element) =
                     list_element(text).map_or((text.as_str(), None), |(list, index)| (list, Some(index)));
-                if metric_list::is_word(name) {
+                if metric_descriptions::is_word(name) {
                     return Err(WorstCaseFault::Request(format!(
                         "metric `{name}` is a word: it has no worst value"
                     )));
@@ -104,7 +104,7 @@ impl Looked {
         match self {
             Self::Metric { name, element, .. } => metric_value(metrics, name, *element),
             Self::Requirement { index, .. } => {
-                metric_value(metrics, metric_list::REQUIREMENT_VALUES.name, Some(*index))
+                metric_value(metrics, metric_descriptions::REQUIREMENT_VALUES.name, Some(*index))
             }
         }
     }
