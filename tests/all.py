@@ -32,8 +32,6 @@ SITE = TARGET / "venv-site"
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 BENCHMARKS = ("--bench", "bars", "--bench", "engine")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
-# Third-party crates with features for more than the light build: for lanes, for hand-over, and for tests.
-MORE_FEATURES = {"prost", "pulp", "rand"}
 # Python tests that take long, and run beside the others: executors, and type checkers.
 EXECUTORS = "tests/python/test_executor.py"
 TYPES = "tests/python/test_types.py"
@@ -100,6 +98,12 @@ def run(*command: str | Path) -> str:
     return text
 
 
+def succeeds(*command: str | Path) -> bool:
+    """Runs a command, whose output is not shown."""
+    null = subprocess.DEVNULL
+    return subprocess.run(command, cwd=ROOT, check=False, stdout=null, stderr=null).returncode == 0
+
+
 def tally(printed: str) -> str:
     """How many tests passed, failed not, and were left out."""
     passed, ignored = (
@@ -120,7 +124,7 @@ def environment(path: Path) -> Path:
 def form() -> None:
     python = environment(ENVIRONMENT)
     run("cargo", "fmt", "--all", "--check")
-    run(python, *PIP, "install", "codespell", "ruff")
+    run(python, *PIP, "install", "codespell", "ruff", "uv")
     run(python, "-m", "ruff", "check", ".")
     run(python, "-m", "ruff", "format", "--check", ".")
     run(python, "-m", "codespell_lib", *WORDS)
@@ -130,26 +134,7 @@ def crates() -> None:
     run(sys.executable, "tests/deny.py")
     if shutil.which("cargo-deny") is not None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
-    compare_features()
-
-
-def features(*options: str) -> dict[str, set[str]]:
-    """The features of all crates on which crates of the workspace depend."""
-    shown = ("--depth", "1", "--no-dedupe", "--prefix", "none", "--format", "{p}|{f}")
-    command = ["cargo", "tree", *options, *shown]
-    told = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True).stdout
-    pairs = (line.removesuffix(" (*)").split("|") for line in told.splitlines() if "|" in line)
-    return {crate: set(names.split(",")) for crate, names in pairs}
-
-
-def compare_features() -> None:
-    """The light build is checked with third-party crates of the full one: their features must be the same."""
-    light, full = features("--edges", "normal"), features("--workspace")
-    for crate, names in light.items():
-        more = full[crate] - names
-        # Crates of the workspace have paths.
-        if more and "(/" not in crate and crate.split()[0] not in MORE_FEATURES:
-            sys.exit(f"{crate} has features in the full build alone: {', '.join(more)}: see MORE_FEATURES")
+    run(sys.executable, "tests/features.py")
 
 
 def compile_all() -> None:
@@ -170,13 +155,16 @@ def packages() -> None:
         assert found, name
         return re.findall(r'"([^"]+)"', found[1])
 
-    for path, names in (
-        (ENVIRONMENT, of_extra("test")),
-        (SITE, ["-r", "site/requirements.txt"]),
-        (NASTRAN, [*of_extra("nastran"), "pytest"]),
+    for path, options, names in (
+        (ENVIRONMENT, [], of_extra("test")),
+        (SITE, [], ["-r", "site/requirements.txt"]),
+        # Python warns of pyNastran when it compiles it, and a warning fails a test.
+        (NASTRAN, ["--compile-bytecode"], [*of_extra("nastran"), "pytest"]),
     ):
-        command = [environment(path), *PIP, "install", *names]
-        subprocess.run(command, cwd=ROOT, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        python = environment(path)
+        # uv needs a tenth of the time, but has no part in the settings of pip, such as its index.
+        uv = [environment(ENVIRONMENT), "-m", "uv", "pip", "install", "--python", python, *options, *names]
+        succeeds(*uv) or succeeds(python, *PIP, "install", *names)
 
 
 def build() -> None:
@@ -208,7 +196,11 @@ def rust() -> str:
         return lambda: printed.append(run(*command))
 
     one = ("--", "--test-threads", "1")
-    side_by_side(tested("--test", "tests"), tested("--lib", "--bins", *others, *one), tested("--doc", *one))
+    # Some of them wait for a while: three on two cores.
+    threads = ("--", "--test-threads", str((os.cpu_count() or 1) + 1))
+    side_by_side(
+        tested("--test", "tests", *threads), tested("--lib", "--bins", *others, *one), tested("--doc", *one)
+    )
     return tally("".join(printed))
 
 
@@ -286,9 +278,7 @@ def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
     python = environment(NASTRAN)
     for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
-        install = [python, *PIP, "install", *options]
-        OUT.show(f"+ {' '.join(map(str, install))}\n".encode())
-        if subprocess.run(install, cwd=ROOT, check=False, stdout=subprocess.DEVNULL).returncode != 0:
+        if not succeeds(python, *PIP, "install", *options):
             return (
                 "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
             )

@@ -85,11 +85,11 @@ fn runs_of_minutes_are_announced() {
         ("relay-fixed", "law.relay.strong=1e3", "note: `law.relay.hysteresis` makes 1."),
         ("detumble-and-point", "spacecraft.rate=[100,0,0]", "note: `duration` makes 2."),
     ] {
-        let running = dir.start(&format!("simulate {name}.toml --log none --set {key}"));
-        thread::sleep(Duration::from_secs(2));
-        let ran = running.signal("KILL");
-        assert_eq!(ran.code, None, "{}", ran.err);
-        assert!(ran.err.contains(what) && ran.err.contains("on one core"), "{}", ran.err);
+        let command = format!("simulate {name}.toml --log none --set {key}");
+        let mut running = dir.start_by(&format!("ulimit -t {CPU}"), &command);
+        let note = running.line("on one core");
+        assert!(note.contains(what), "{note}");
+        assert_eq!(running.signal("KILL").code, None, "{note}");
     }
 }
 

@@ -82,6 +82,19 @@ fn exported_laws_have_equal_bits_in_every_home() {
     }
 }
 
+/// As its user runs it: all calls of the run, and a million cycles.
+#[test]
+fn an_export_is_checked_at_full_length() {
+    if !is_installed("make") || !is_installed("gcc") {
+        return;
+    }
+    let dir = Dir::with(&["relay-sampled"]);
+    dir.run("export-c relay-sampled.toml -o out").exits(0);
+    let said = text(&make(&dir, "out", &["check"]));
+    assert_eq!(said.matches(" calls equal").count(), 2, "{said}");
+    assert_eq!(said.matches(": 1000000 cycles, hash ").count(), 2, "{said}");
+}
+
 /// A self-test that never differs would prove nothing.
 #[test]
 fn contraction_and_fast_mathematics_are_found() {

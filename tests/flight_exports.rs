@@ -24,7 +24,7 @@ pub const EXPORTED: [&str; 7] = [
 pub const WITH_MODES: &str = "site-pass";
 
 /// Most vectors of each export.
-pub const CALLS: u64 = 2000;
+pub const CALLS: u64 = 1000;
 
 /// Exported files, by their paths.
 type Files = Vec<(String, Vec<u8>)>;

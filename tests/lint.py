@@ -8,8 +8,8 @@ compiler for a crate. A warning of the compiler or of a check fails the build. T
 - clippy. It compiles the tests in place of the compiler, and checks what has no unit tests beside it.
 - rustdoc, which warns of links that lead nowhere, or to what is private.
 - the light build, which consists of the workspace's default members without features. The metadata of its
-  libraries is in `target/release/light`. Third-party crates are those of the full build: `all.py` compares
-  their features.
+  libraries is in `target/release/light`. Third-party crates are those of the full build: `features.py`
+  compares their features.
 
 Tests are compiled with less or no optimisation, which cargo can set for a crate, but not for its tests alone.
 No result depends on it. Benchmarks are checked, and not built.
@@ -44,7 +44,7 @@ def lightened(arguments: list[str]) -> list[str]:
     if "--test" not in arguments:
         return arguments
     # Unit tests of these run for longer than it takes to optimise them.
-    heavy = {"flexsc_control", "flexsc_dynamics", "flexsc_numerics", "flexsc_spacecraft"} & set(arguments)
+    heavy = {"flexsc_dynamics", "flexsc_formats", "flexsc_numerics", "flexsc_spacecraft"} & set(arguments)
     level = "opt-level=1" if heavy else "opt-level=0"
     less = {"opt-level=3": level, "opt-level=1": level, "codegen-units=1": "codegen-units=4"}
     return [less.get(argument, argument) for argument in arguments]

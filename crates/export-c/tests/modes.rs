@@ -147,8 +147,14 @@ fn bits_are_equal(name: &str, text: &str) {
     let [board, emulated, host] = self_test::self_tests(&system, [1000, 4096, 20_000]);
     for (targets, cycles, hash) in [
         (&["check-gcc", "check-clang"][..], 20_000, host),
-        (&["check-aarch64", "check-riscv64", "check-m4", "check-m7"], 4096, emulated),
+        (&["check-aarch64", "check-riscv64"], 4096, emulated),
+        (&["check-m4", "check-m7"], 4096, emulated),
     ] {
+        if targets[0] == "check-m4" {
+            // Boards are emulated a hundred times slower: they replay the beginning of the run.
+            let calls = vectors::record(&scenario, 2000).expect("vectors");
+            std::fs::write(dir.path().join("vectors.bin"), vectors::to_bytes(&calls)).expect("a file");
+        }
         let output = Command::new("make")
             .arg("-C")
             .arg(dir.path())

@@ -124,7 +124,7 @@ mod tests {
         let damped = w * f64::sqrt(1.0 - zeta * zeta);
         let end = turn.duration();
         let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
-        let count = 200_000;
+        let count = 50_000;
         let h = end / f64::from(count);
         // Rates are continuous and end at 0, so the integral of the acceleration is taken by parts.
         let first = turn.at(0.0).rate.dot(&axis) * libm::exp(-zeta * w * end);

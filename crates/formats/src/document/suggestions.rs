@@ -122,7 +122,9 @@ fn nearest<'a>(written: &str, known: &[&'a str]) -> Option<&'a str> {
     // A third of the letters may be wrong; the first of the nearest names counts.
     let most = written.chars().count().div_ceil(3);
     let distance = |name: &&&str| damerau_levenshtein(written, &plain(name));
-    let near = known.iter().min_by_key(distance).filter(|name| distance(name) <= most && written.len() > 1);
+    // Names of other lengths have larger distances: a name of a million letters is compared with none.
+    let alike = known.iter().filter(|name| plain(name).len().abs_diff(written.len()) <= most);
+    let near = alike.min_by_key(distance).filter(|name| distance(name) <= most && written.len() > 1);
     let begins = |name: &&&str| {
         written.len() >= 3 && (plain(name).starts_with(written) || written.starts_with(&plain(name)))
     };

@@ -8,8 +8,6 @@ mod frequency_bounds;
 mod model;
 mod sigma;
 mod steady_state;
-#[cfg(test)]
-mod tests;
 
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::flow::CoupledMatrices;

@@ -1,11 +1,11 @@
 //! Tests of the Kalman filters against each other, and with invalid measurements.
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::estimator::kalman::{FilterContext, KalmanFilter, Prediction};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::from_text;
 use flexsc_numerics::random::Seed;
 use flexsc_spacecraft::body::Planar;
-
-use super::*;
 
 const BODY: &str = "angle = 0.06\nmodes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
                     { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
@@ -17,7 +17,6 @@ fn filter(estimator: &str, rate_noise: Option<f64>) -> KalmanFilter {
 
 /// Returns a filter with a prior drawn with its own seed.
 fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> KalmanFilter {
-    use crate::estimator::EstimatorKind;
     let body: Planar = from_text(BODY).unwrap_or_else(|error| panic!("{error}"));
     let body = &AxisModel::from(&body);
     let estimator: EstimatorKind =
