@@ -161,18 +161,38 @@ impl SimdTask for MatrixBatch<'_> {
     }
 }
 
+/// Rows of a product that are summed side by side.
+const TILE: usize = 4;
+
 /// Multiplies square matrices stored by columns, each sum in the order of nalgebra's.
 #[inline(always)]
 pub fn multiply<R: LaneFloat>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
-    for column in 0..order {
-        for row in 0..order {
-            let mut sum = a[row] * b[column * order];
-            for k in 1..order {
-                sum = a[k * order + row] * b[column * order + k] + sum;
-            }
-            into[column * order + row] = sum;
+    for (factors, results) in b.chunks_exact(order).zip(into.chunks_exact_mut(order)) {
+        let mut row = 0;
+        while row + TILE <= order {
+            sum_rows::<R, TILE>(a, factors, row, results);
+            row += TILE;
+        }
+        while row < order {
+            sum_rows::<R, 1>(a, factors, row, results);
+            row += 1;
         }
     }
+}
+
+/// Computes `N` rows of a column of a product from the column `factors` of the second matrix.
+#[inline(always)]
+fn sum_rows<R: LaneFloat, const N: usize>(a: &[R], factors: &[R], row: usize, results: &mut [R]) {
+    let mut sums = [factors[0]; N];
+    for (sum, entry) in sums.iter_mut().zip(&a[row..row + N]) {
+        *sum = *entry * factors[0];
+    }
+    for (entries, factor) in a.chunks_exact(factors.len()).zip(factors).skip(1) {
+        for (sum, entry) in sums.iter_mut().zip(&entries[row..row + N]) {
+            *sum = *entry * *factor + *sum;
+        }
+    }
+    results[row..row + N].copy_from_slice(&sums);
 }
 
 #[cfg(test)]

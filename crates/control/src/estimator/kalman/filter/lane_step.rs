@@ -45,16 +45,17 @@ impl<R: LaneFloat> FilterLanes<R> {
         let root = &mut self.room;
         root.copy_from_slice(&self.covariance);
         for j in 0..order {
-            for k in 0..j {
-                let factor = -root[k * order + j];
-                for row in j..order {
-                    root[j * order + row] = factor * root[k * order + row] + root[j * order + row];
+            let (left, right) = root.split_at_mut(j * order);
+            for column in left.chunks_exact(order) {
+                let factor = -column[j];
+                for (entry, other) in right[j..order].iter_mut().zip(&column[j..]) {
+                    *entry = factor * *other + *entry;
                 }
             }
             let pivot = root[j * order + j].sqrt();
             root[j * order + j] = pivot;
-            for row in j + 1..order {
-                root[j * order + row] = root[j * order + row] / pivot;
+            for entry in &mut root[j * order + j + 1..(j + 1) * order] {
+                *entry = *entry / pivot;
             }
         }
         let (error, b) = self.tangent[..2 * order].split_at_mut(order);
@@ -65,8 +66,8 @@ impl<R: LaneFloat> FilterLanes<R> {
         for i in 0..order {
             let coefficient = b[i] / root[i * order + i];
             b[i] = coefficient;
-            for row in i + 1..order {
-                b[row] = -coefficient * root[i * order + row] + b[row];
+            for (entry, other) in b[i + 1..].iter_mut().zip(&root[i * order + i + 1..(i + 1) * order]) {
+                *entry = -coefficient * *other + *entry;
             }
         }
         for i in (0..order).rev() {

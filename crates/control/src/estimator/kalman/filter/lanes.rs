@@ -141,10 +141,9 @@ impl<R: LaneFloat> FilterLanes<R> {
         let Self { covariance, tangent, room, noise, .. } = self;
         multiply(covariance, tangent, order, room);
         for column in 0..order {
-            for row in 0..=column {
-                let (a, b) =
-                    (&tangent[row * order..(row + 1) * order], &room[column * order..(column + 1) * order]);
-                let value = dot(tangent[0].splat(0.0), a, b) + noise[column * order + row];
+            let product = &room[column * order..(column + 1) * order];
+            for (row, derivatives) in tangent.chunks_exact(order).enumerate().take(column + 1) {
+                let value = dot(tangent[0].splat(0.0), derivatives, product) + noise[column * order + row];
                 covariance[column * order + row] = value;
                 covariance[row * order + column] = value;
             }
@@ -200,11 +199,10 @@ impl<R: LaneFloat> FilterLanes<R> {
             let (displacement, velocity) = (self.mean[x], self.mean[v]);
             self.mean[x] = a * displacement + b * velocity + shift[0];
             self.mean[v] = c * displacement + d * velocity + shift[1];
-            for row in 0..order {
-                let (displacement_entry, velocity_entry) =
-                    (self.tangent[x * order + row], self.tangent[v * order + row]);
-                self.tangent[x * order + row] = a * displacement_entry + b * velocity_entry;
-                self.tangent[v * order + row] = c * displacement_entry + d * velocity_entry;
+            let (displacements, velocities) = self.tangent[x * order..(x + 2) * order].split_at_mut(order);
+            for (displacement, velocity) in displacements.iter_mut().zip(velocities) {
+                (*displacement, *velocity) =
+                    (a * *displacement + b * *velocity, c * *displacement + d * *velocity);
             }
             if let Some(ratio_index) = self.ratio[mode] {
                 let (p, q) =
@@ -231,24 +229,33 @@ impl<R: LaneFloat> FilterLanes<R> {
         for mode in 0..self.gain.len() {
             self.mean[3 + 2 * mode] = self.mean[3 + 2 * mode] - self.gain[mode] * part * rate;
         }
-        for row in 0..order {
-            let mut rate = self.tangent[order + row];
-            for index in 1..=mode_count {
-                rate = rate + self.tangent[(1 + 2 * index) * order + row];
+        let Self { tangent, room, gain, .. } = self;
+        let rates = &mut room[..order];
+        rates.copy_from_slice(&tangent[order..2 * order]);
+        let velocities = tangent.chunks_exact(order).skip(3).step_by(2);
+        for entries in velocities.take(mode_count) {
+            for (rate, entry) in rates.iter_mut().zip(entries) {
+                *rate = *rate + *entry;
             }
-            for index in 0..=self.gain.len() {
-                let gain = if index == 0 { part.splat(1.0) } else { self.gain[index - 1] };
-                let index = (1 + 2 * index) * order + row;
-                self.tangent[index] = -gain * part * rate + self.tangent[index];
+        }
+        let velocities = tangent.chunks_exact_mut(order).skip(1).step_by(2);
+        for (index, entries) in velocities.take(gain.len() + 1).enumerate() {
+            let gain = if index == 0 { part.splat(1.0) } else { gain[index - 1] };
+            let factor = -gain * part;
+            for (entry, rate) in entries.iter_mut().zip(&*rates) {
+                *entry = factor * *rate + *entry;
             }
         }
     }
 
     #[inline(always)]
     fn add_column(&mut self, to: usize, from: usize, factor: R) {
-        for row in 0..self.order {
-            let added = factor * self.tangent[from * self.order + row];
-            self.tangent[to * self.order + row] = self.tangent[to * self.order + row] + added;
+        let order = self.order;
+        let (left, right) = self.tangent.split_at_mut(to.max(from) * order);
+        let (first, last) = (&mut left[to.min(from) * order..][..order], &mut right[..order]);
+        let (to, from) = if to < from { (first, last) } else { (last, first) };
+        for (entry, added) in to.iter_mut().zip(&*from) {
+            *entry = *entry + factor * *added;
         }
     }
 
@@ -263,10 +270,10 @@ impl<R: LaneFloat> FilterLanes<R> {
         }
         let innovation = measured - angle;
         let observation = &mut self.room[..2 * order];
-        for row in 0..order {
-            observation[row] = self.covariance[row];
-            for index in (2..self.motion).step_by(2) {
-                observation[row] = observation[row] + self.covariance[index * order + row];
+        observation[..order].copy_from_slice(&self.covariance[..order]);
+        for entries in self.covariance.chunks_exact(order).take(self.motion).skip(2).step_by(2) {
+            for (observed, entry) in observation.iter_mut().zip(entries) {
+                *observed = *observed + *entry;
             }
         }
         let mut variance = observation[0];
@@ -280,12 +287,12 @@ impl<R: LaneFloat> FilterLanes<R> {
             observation[order + row] = if none { R::select(gated, gain.splat(0.0), gain) } else { gain };
             self.mean[row] = innovation * observation[order + row] + self.mean[row];
         }
+        let (observation, gains) = observation.split_at(order);
         for column in 0..order {
-            for row in 0..=column {
-                let (gain, other) = (observation[order + row], observation[order + column]);
-                let value = self.covariance[column * order + row]
-                    - (gain * observation[column] + observation[row] * other)
-                    + variance * gain * other;
+            let (observed, other) = (observation[column], gains[column]);
+            for (row, (gain, entry)) in gains.iter().zip(observation).enumerate().take(column + 1) {
+                let value = self.covariance[column * order + row] - (*gain * observed + *entry * other)
+                    + variance * *gain * other;
                 self.covariance[column * order + row] = value;
                 self.covariance[row * order + column] = value;
             }
@@ -350,22 +357,19 @@ impl<R: LaneFloat> FilterLanes<R> {
 /// Returns the dot product of two columns in the order of nalgebra: eight sums, and the rest.
 #[inline(always)]
 pub(super) fn dot<R: LaneFloat>(zero: R, a: &[R], b: &[R]) -> R {
-    let count = a.len();
-    let mut sum = zero;
-    let mut all = [sum; 8];
-    let mut position = 0;
-    while count - position >= 8 {
+    let mut all = [zero; 8];
+    let (groups, rest) = (a.chunks_exact(8).zip(b.chunks_exact(8)), a.len() - a.len() % 8);
+    for (a, b) in groups {
         for part in 0..8 {
-            all[part] = all[part] + a[position + part] * b[position + part];
+            all[part] = all[part] + a[part] * b[part];
         }
-        position += 8;
     }
+    let mut sum = zero;
     for part in 0..4 {
         sum = sum + (all[part] + all[part + 4]);
     }
-    while position < count {
-        sum = sum + a[position] * b[position];
-        position += 1;
+    for (a, b) in a[rest..].iter().zip(&b[rest..]) {
+        sum = sum + *a * *b;
     }
     sum
 }
