@@ -129,8 +129,9 @@ fn is_installed(command: &str) -> bool {
     is_there
 }
 
-/// Replays the vectors of a scenario, and repeats the self-test, in every home.
-fn bits_are_equal(name: &str, text: &str) {
+/// Replays the vectors of a scenario, and repeats the self-test, in every home: on this machine with and without optimisation, and
+/// emulated at one level.
+fn bits_are_equal(name: &str, text: &str, level: &str) {
     if !is_installed("make") || !is_installed("gcc") {
         return;
     }
@@ -145,10 +146,10 @@ fn bits_are_equal(name: &str, text: &str) {
     let system = ControlSystem::new(&scenario).expect("an exportable scenario");
     // The last of 16 blocks of 256 cycles has extreme inputs.
     let [board, emulated, host] = self_test::self_tests(&system, [1000, 4096, 20_000]);
-    for (targets, cycles, hash) in [
-        (&["check-gcc", "check-clang"][..], 20_000, host),
-        (&["check-aarch64", "check-riscv64"], 4096, emulated),
-        (&["check-m4", "check-m7"], 4096, emulated),
+    for (targets, levels, cycles, hash) in [
+        (&["check-gcc", "check-clang"][..], "-O0 -O3", 20_000, host),
+        (&["check-aarch64", "check-riscv64"], level, 4096, emulated),
+        (&["check-m4", "check-m7"], level, 4096, emulated),
     ] {
         if targets[0] == "check-m4" {
             // Boards are emulated a hundred times slower: they replay the beginning of the run.
@@ -159,7 +160,7 @@ fn bits_are_equal(name: &str, text: &str) {
             .arg("-C")
             .arg(dir.path())
             .args(targets)
-            .args([format!("CYCLES={cycles}"), format!("HASH={hash:016x}")])
+            .args([format!("LEVELS={levels}"), format!("CYCLES={cycles}"), format!("HASH={hash:016x}")])
             .args(["BOARD_CYCLES=1000".to_owned(), format!("BOARD_HASH={board:016x}")])
             .output()
             .expect("make runs");
@@ -174,17 +175,17 @@ fn bits_are_equal(name: &str, text: &str) {
 // The longest of three tests side by side comes first.
 #[test]
 fn bits_are_equal_of_attitude_laws_in_modes() {
-    bits_are_equal("three", &three_modes());
+    bits_are_equal("three", &three_modes(), "-O3");
 }
 
 #[test]
 fn bits_are_equal_of_laws_about_one_axis() {
-    bits_are_equal("one_axis", ONE_AXIS);
+    bits_are_equal("one_axis", ONE_AXIS, "-O0");
 }
 
 #[test]
 fn bits_are_equal_of_stages() {
-    bits_are_equal("stages", STAGES);
+    bits_are_equal("stages", STAGES, "-O3");
 }
 
 #[test]
