@@ -9,7 +9,7 @@ use flexsc_core::{Scenario, SimulationError};
 
 use crate::error::CliError;
 use crate::simulate;
-use crate::stop::StopRecord;
+use crate::stop::stop_flag;
 
 /// Returns the log of a scenario's own run in this detail; errors refer to it as `path`.
 pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, CliError> {
@@ -36,6 +36,6 @@ fn bytes(
     detail: Detail,
 ) -> Result<Vec<u8>, SimulationError> {
     let mut log = LogBytes::new(&commanded.provenance(run), detail)?;
-    let metrics = commanded.simulate(run, until, (&mut log, StopRecord))?;
+    let metrics = commanded.simulate(run, until, (&mut log, stop_flag()))?;
     Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
 }

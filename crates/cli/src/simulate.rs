@@ -22,7 +22,7 @@ use crate::human::UnitsArgs;
 use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
-use crate::stop::{self, StopRecord};
+use crate::stop::{self, stop_flag};
 use crate::{files, requirements, say, scenario, summary};
 
 #[derive(clap::Args)]
@@ -308,7 +308,7 @@ fn single(
     let began = WallInstant::now();
     // A live run has no bar, since the user types commands on that line.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
-    let record = (StopRecord, (&mut progress, &mut live));
+    let record = (stop_flag(), (&mut progress, &mut live));
     let result = match detail {
         None => Campaign::simulate(run, record).map(|metrics| (metrics, None)),
         Some(detail) => simulate_to_log(run, &path, (detail, args.force), record)

@@ -2,21 +2,18 @@
 
 use std::io::Write;
 use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Arc, LazyLock, Mutex, MutexGuard, Once, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::SimulationError;
-use flexsc_core::dynamics::MotionPiece;
-use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Record, RecordError, Sample};
+use flexsc_core::record::{RecordError, StopFlag};
 
 use crate::error::CliError;
 use crate::say;
 
-static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+static STOP: LazyLock<StopFlag> = LazyLock::new(StopFlag::default);
 
 /// Polling period of the flag.
 const POLL_PERIOD: Duration = Duration::from_millis(20);
@@ -125,8 +122,8 @@ fn handle() {
     for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal)) {
         // The order matters: the flag is false at the first signal and true at the second. Without a handler, a signal
         // ends the program by default.
-        let _ = flag::register_conditional_shutdown(signal, 130, Arc::clone(&ASKED))
-            .and_then(|_| flag::register(signal, Arc::clone(&ASKED)));
+        let _ = flag::register_conditional_shutdown(signal, 130, STOP.shared())
+            .and_then(|_| flag::register(signal, STOP.shared()));
     }
 }
 
@@ -144,7 +141,7 @@ fn is_ignored(signal: libc::c_int) -> bool {
 #[cfg(not(unix))]
 fn handle() {
     let _ = ctrlc::try_set_handler(|| {
-        if ASKED.swap(true, Ordering::Relaxed) {
+        if STOP.request() {
             std::process::exit(130);
         }
     });
@@ -153,32 +150,20 @@ fn handle() {
 /// Asks the program to stop, as Ctrl-C does.
 #[cfg(feature = "live")]
 pub fn request_stop() {
-    ASKED.store(true, Ordering::Relaxed);
+    STOP.request();
 }
 
 /// Returns true if the user asked to stop.
 pub fn stop_requested() -> bool {
-    ASKED.load(Ordering::Relaxed)
+    STOP.is_requested()
+}
+
+/// Returns the record that ends a simulation when the user asks to stop.
+pub fn stop_flag() -> StopFlag {
+    STOP.clone()
 }
 
 /// Returns the error of a run that was not started because of the interruption.
 pub fn interrupted() -> SimulationError {
     RecordError::Interrupted.into()
-}
-
-/// Record that ends the simulation when the user asks to stop.
-pub struct StopRecord;
-
-impl Record for StopRecord {
-    fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
-        Ok(())
-    }
-
-    fn poll(&mut self) -> Result<(), RecordError> {
-        if stop_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
-    }
-
-    fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
-        if stop_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
-    }
 }

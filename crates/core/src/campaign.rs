@@ -267,7 +267,17 @@ impl Campaign {
     pub fn simulate_metrics(
         run: &CampaignRun,
         selection: &Selection,
-        record: impl Record,
+        mut record: impl Record,
+    ) -> Result<Metrics, SimulationError> {
+        Self::simulate_recorded(run, selection, &mut record)
+    }
+
+    /// Simulates a run as [`Campaign::simulate_metrics`] does. Not generic, so that the code is compiled and optimised
+    /// here, and not in each crate that calls it.
+    fn simulate_recorded(
+        run: &CampaignRun,
+        selection: &Selection,
+        record: &mut dyn Record,
     ) -> Result<Metrics, SimulationError> {
         let mut both = (MetricsCollector::for_selection(&run.scenario, selection), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);

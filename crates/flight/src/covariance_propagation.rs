@@ -35,28 +35,46 @@ impl IntervalBlocks {
     fn new(turn: &Vector3, noise: &IntervalNoise) -> Self {
         let c: Stumpff = Stumpff::at(turn.norm_squared());
         let seconds: f64 = noise.seconds;
-        let cross: Matrix3 = Matrix3::cross(turn);
         let along: [f64; 3] = [turn.x, turn.y, turn.z];
         let both_scale: f64 = seconds * seconds * noise.walk;
         let angle_scale: f64 = 2.0 * seconds * seconds * seconds * noise.walk;
         let white: f64 = noise.white * seconds;
-        let mut blocks: Self =
-            Self { turned: Matrix3::ZERO, drifted: Matrix3::ZERO, angle: Matrix3::ZERO, both: Matrix3::ZERO };
+        let mut angle: Matrix3 = Matrix3::ZERO;
         for row in 0..3 {
-            for column in 0..3 {
-                let one: f64 = if row == column { 1.0 } else { 0.0 };
-                let once: f64 = cross.rows[row][column];
-                let twice: f64 = cross.rows[row][0] * cross.rows[0][column]
-                    + cross.rows[row][1] * cross.rows[1][column]
-                    + cross.rows[row][2] * cross.rows[2][column];
-                blocks.both.rows[row][column] = (one * 0.5 - once * c.c3 + twice * c.c4) * both_scale;
-                blocks.angle.rows[row][column] =
-                    (one * c.c3 + along[row] * along[column] * c.c5) * angle_scale + one * white;
-                blocks.turned.rows[row][column] = one - once * c.c1 + twice * c.c2;
-                blocks.drifted.rows[row][column] = (one - once * c.c2 + twice * c.c3) * seconds;
+            for column in 0..row {
+                let across: f64 = along[row] * along[column] * c.c5 * angle_scale;
+                angle.rows[row][column] = across;
+                angle.rows[column][row] = across;
             }
+            angle.rows[row][row] = (c.c3 + along[row] * along[row] * c.c5) * angle_scale + white;
         }
-        blocks
+        Self {
+            turned: cross_polynomial(turn, 1.0, c.c1, c.c2, 1.0),
+            drifted: cross_polynomial(turn, 1.0, c.c2, c.c3, seconds),
+            angle,
+            both: cross_polynomial(turn, 0.5, c.c3, c.c4, both_scale),
+        }
+    }
+}
+
+/// Returns (`one` I - `once` \[v\] + `twice` \[v\]²) `scale`, where \[v\] is the matrix of the cross product with `v`.
+#[inline]
+fn cross_polynomial(v: &Vector3, one: f64, once: f64, twice: f64, scale: f64) -> Matrix3 {
+    let x: f64 = v.x * once;
+    let y: f64 = v.y * once;
+    let z: f64 = v.z * once;
+    let xx: f64 = v.x * v.x;
+    let yy: f64 = v.y * v.y;
+    let zz: f64 = v.z * v.z;
+    let xy: f64 = v.x * v.y * twice;
+    let yz: f64 = v.y * v.z * twice;
+    let zx: f64 = v.z * v.x * twice;
+    Matrix3 {
+        rows: [
+            [(one - (yy + zz) * twice) * scale, (xy + z) * scale, (zx - y) * scale],
+            [(xy - z) * scale, (one - (zz + xx) * twice) * scale, (yz + x) * scale],
+            [(zx + y) * scale, (yz - x) * scale, (one - (xx + yy) * twice) * scale],
+        ],
     }
 }
 

@@ -1,15 +1,12 @@
 //! Work on threads without the interpreter's lock, stopped by Python's signals.
 
 use std::process;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::dynamics::MotionPiece;
-use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Record, RecordError, Sample};
+use flexsc_core::record::StopFlag;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
@@ -19,34 +16,6 @@ pub const SIGNAL_PERIOD: Duration = Duration::from_millis(20);
 const STOP_TIMEOUT: Duration = Duration::from_millis(150);
 /// Stack of a main thread on most systems (bytes).
 const STACK: usize = 8 << 20;
-
-/// Record that ends its run when Python requests it.
-#[derive(Clone, Default)]
-pub struct Stop(Arc<AtomicBool>);
-
-impl Stop {
-    pub fn request_stop(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    pub fn is_requested(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-impl Record for Stop {
-    fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
-        Ok(())
-    }
-
-    fn poll(&mut self) -> Result<(), RecordError> {
-        if self.is_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
-    }
-
-    fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
-        if self.is_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
-    }
-}
 
 /// Work of a thread.
 type Work = Box<dyn FnOnce() + Send>;
@@ -83,9 +52,9 @@ fn on_a_thread(mut work: Work) -> PyResult<()> {
 /// raises what they raise, such as `KeyboardInterrupt`.
 pub fn aside<T: Send + 'static>(
     py: Python<'_>,
-    work: impl FnOnce(Stop) -> T + Send + 'static,
+    work: impl FnOnce(StopFlag) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let stop = Stop::default();
+    let stop = StopFlag::default();
     let for_work = stop.clone();
     py.detach(|| {
         let (done, wait) = channel();
@@ -103,7 +72,9 @@ pub fn aside<T: Send + 'static>(
                 (Err(RecvTimeoutError::Timeout), None) => {
                     let error = Python::attach(|py| py.check_signals().err());
                     raised = error.map(|error| (error, WallInstant::now()));
-                    stop.0.store(raised.is_some(), Ordering::Relaxed);
+                    if raised.is_some() {
+                        stop.request();
+                    }
                 }
                 (Err(RecvTimeoutError::Timeout), Some((error, since))) => {
                     if since.elapsed() >= STOP_TIMEOUT {

@@ -11,13 +11,14 @@ use flexsc_core::campaign::{
     Manifest, RowMaker as Whole, RunRows, SECONDS,
 };
 use flexsc_core::metrics::Selection;
+use flexsc_core::record::StopFlag;
 use flexsc_core::statistics::{QUANTILES, Statistics};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-use super::aside::{Stop, aside};
+use super::aside::aside;
 use super::design::Design;
 use super::error::{allowed, no_file, scenario_error};
 use super::parts::known_thread;
@@ -287,7 +288,7 @@ impl Work {
 }
 
 /// Simulates runs, on threads that Python knows if parts are written in it.
-fn rows(work: &Whole, runs: Span, jobs: usize, stop: Stop) -> Result<RunRows, DirectoryError> {
+fn rows(work: &Whole, runs: Span, jobs: usize, stop: StopFlag) -> Result<RunRows, DirectoryError> {
     let is_own = work.campaign.scenario().has_custom_parts();
     let simulate = move |run: &CampaignRun, selection: &Selection, stop| {
         known_thread(is_own, || Campaign::simulate_metrics(run, selection, stop))
@@ -353,7 +354,7 @@ impl Directory {
         force: bool,
     ) -> PyResult<PathBuf> {
         let (directory, runs) = (self.0.clone(), runs.0..runs.1);
-        let work: Box<dyn FnOnce(Stop) -> _ + Send> = match detail(log)? {
+        let work: Box<dyn FnOnce(StopFlag) -> _ + Send> = match detail(log)? {
             None => Box::new(move |stop| directory.write_part(runs, jobs, stop)),
             Some(detail) => {
                 Box::new(move |stop| run_logs::write_part(&directory, runs, jobs, (detail, force), stop))

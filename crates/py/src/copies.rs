@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
 use flexsc_core::campaign::{Campaign, CommandLog, RunError};
-use flexsc_core::record::Record;
+use flexsc_core::record::{Record, StopFlag};
 use flexsc_core::{ObservationField, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyRuntimeError;
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::Scenario;
-use crate::aside::{SIGNAL_PERIOD, Stop};
+use crate::aside::SIGNAL_PERIOD;
 use crate::error::scenario_error;
 use crate::stepping::{FieldRow, Simulator, command_limit, command_unit, fields, span, steer};
 
@@ -96,12 +96,12 @@ impl Simulators {
     fn each(
         &mut self,
         py: Python<'_>,
-        on: impl Fn(usize, &mut Flight, &mut [f64], &mut Stop) + Send + Sync,
+        on: impl Fn(usize, &mut Flight, &mut [f64], &mut StopFlag) + Send + Sync,
     ) -> PyResult<Vec<f64>> {
         let (flights, width, pool) = (&mut self.flights, self.width, &self.pool);
         let mut rows = vec![0.0; flights.len() * width];
         let raised = py.detach(|| {
-            let (stop, (done, wait)) = (Stop::default(), channel());
+            let (stop, (done, wait)) = (StopFlag::default(), channel());
             let (stop_flag, mut raised) = (stop.clone(), None);
             let rows = &mut rows;
             pool.in_place_scope(|scope| {
@@ -120,7 +120,7 @@ impl Simulators {
                     if raised.is_none() {
                         raised = Python::attach(|py| py.check_signals().err());
                         if raised.is_some() {
-                            stop.request_stop();
+                            stop.request();
                         }
                     }
                 }

@@ -7,9 +7,7 @@ use std::path::PathBuf;
 use flexsc_cli::{NotReplaced, simulate_to_log};
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{CampaignRun, Directory, DirectoryError};
-use flexsc_core::record::{Detail, RecordError};
-
-use crate::aside::Stop;
+use flexsc_core::record::{Detail, RecordError, StopFlag};
 
 /// Computes the runs of a part with the log of each, `NAME-RUN.mcap`, and writes it.
 pub fn write_part(
@@ -17,11 +15,11 @@ pub fn write_part(
     runs: Range<u64>,
     jobs: usize,
     (detail, force): (Detail, bool),
-    stop: Stop,
+    stop: StopFlag,
 ) -> Result<PathBuf, DirectoryError> {
     let (work, place) = (directory.work(), directory.path().to_owned());
     let name = work.campaign.scenario().name.clone();
-    let simulate = move |run: &CampaignRun, stop: Stop| {
+    let simulate = move |run: &CampaignRun, stop: StopFlag| {
         // Runs that had not started before the interruption have no log.
         if stop.is_requested() {
             return Err(SimulationError::Record(RecordError::Interrupted));

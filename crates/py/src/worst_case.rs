@@ -3,6 +3,7 @@
 use flexsc_core::ScenarioError;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Selection;
+use flexsc_core::record::StopFlag;
 use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{
     MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase, WorstCaseFault,
@@ -12,7 +13,7 @@ use pyo3::prelude::*;
 use serde_json::json;
 
 use super::Scenario;
-use super::aside::{Stop, aside};
+use super::aside::aside;
 use super::error::scenario_error;
 use super::linear::loop_break;
 
@@ -45,7 +46,7 @@ pub fn worst_case_json(
         let quantity =
             if kind == "metric" { RunQuantity::Metric(name) } else { RunQuantity::Requirement(name) };
         let search = MetricSearch { quantity, is_least, most_runs: points, threads: jobs };
-        aside(py, move |stop: Stop| {
+        aside(py, move |stop: StopFlag| {
             let record = stop.clone();
             let work = move |run: &CampaignRun, selection: &Selection| {
                 Ok(Campaign::simulate_metrics(run, selection, record.clone())?)

@@ -25,8 +25,12 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).scene()
     }
 
-    fn wants_estimates(&self) -> bool {
-        (**self).wants_estimates()
+    fn wants_estimates(&self, now: Instant) -> bool {
+        (**self).wants_estimates(now)
+    }
+
+    fn wants_journal(&self) -> bool {
+        (**self).wants_journal()
     }
 
     fn wants_switchings(&self) -> bool {
@@ -60,8 +64,12 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().and_then(Record::scene)
     }
 
-    fn wants_estimates(&self) -> bool {
-        self.as_ref().is_some_and(Record::wants_estimates)
+    fn wants_estimates(&self, now: Instant) -> bool {
+        self.as_ref().is_some_and(|record| record.wants_estimates(now))
+    }
+
+    fn wants_journal(&self) -> bool {
+        self.as_ref().is_some_and(Record::wants_journal)
     }
 
     fn wants_switchings(&self) -> bool {
@@ -95,8 +103,12 @@ impl<A: Record, B: Record> Record for (A, B) {
         self.0.scene().or_else(|| self.1.scene())
     }
 
-    fn wants_estimates(&self) -> bool {
-        self.0.wants_estimates() || self.1.wants_estimates()
+    fn wants_estimates(&self, now: Instant) -> bool {
+        self.0.wants_estimates(now) || self.1.wants_estimates(now)
+    }
+
+    fn wants_journal(&self) -> bool {
+        self.0.wants_journal() || self.1.wants_journal()
     }
 
     fn wants_switchings(&self) -> bool {

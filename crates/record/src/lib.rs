@@ -27,6 +27,7 @@ mod requirement_errors;
 pub mod row;
 mod scene_source;
 mod states;
+mod stop_flag;
 mod summary;
 mod three_axis;
 mod topic_table;
@@ -54,6 +55,7 @@ pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
 pub use requirement_errors::{RequirementError, RequirementErrors};
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
+pub use stop_flag::StopFlag;
 pub use three_axis::{ModeTargetStart, SteeringRecord, ThreeAxisCycle};
 pub use topics::*;
 pub use trace::Trace;
@@ -112,9 +114,14 @@ pub trait Record {
         false
     }
 
-    /// Returns true if the record needs a filter's estimate at each sample.
-    fn wants_estimates(&self) -> bool {
+    /// Returns true if the record needs a filter's estimate at the sample of an instant.
+    fn wants_estimates(&self, _now: Instant) -> bool {
         self.wants_motion()
+    }
+
+    /// Returns true if the record keeps the lines of the run's journal.
+    fn wants_journal(&self) -> bool {
+        true
     }
 
     /// Returns true if the record needs switchings.

@@ -87,6 +87,8 @@ pub struct Report {
 struct RowSlot {
     /// Type of the row: it is compared more often than the row is read.
     kind: TypeId,
+    /// Index of the row's topic among the declared ones; `None` for a topic of a program's own.
+    topic: Option<usize>,
     row: Box<dyn LogRow>,
     /// True if the report contains the row; otherwise the memory is free for another row of its type.
     is_set: bool,
@@ -114,7 +116,8 @@ impl Report {
     /// Creates a report of one row.
     pub fn from_row(row: &dyn LogRow) -> Self {
         let kind = (row as &dyn Any).type_id();
-        let slot = RowSlot { kind, row: row.copy(), is_set: true, revision: None, is_repeated: false };
+        let topic = row.topic().declared_index();
+        let slot = RowSlot { kind, topic, row: row.copy(), is_set: true, revision: None, is_repeated: false };
         Self { rows: vec![slot], values: Vec::new() }
     }
 
@@ -134,20 +137,39 @@ impl Report {
         self.add_reported(row, Some(revision));
     }
 
-    /// Adds a row after those of topics that are written before its own.
-    fn add_reported<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
-        let kind = TypeId::of::<R>();
-        if let Some(slot) = self.rows.iter_mut().find(|slot| slot.kind == kind && !slot.is_set) {
-            if let Some(place) = (&mut *slot.row as &mut dyn Any).downcast_mut() {
-                *place = row;
-            }
-            (slot.is_set, slot.revision, slot.is_repeated) = (true, revision, false);
-            return;
+    /// Adds a row for the log, as `write` writes it over an earlier row of its type, whose memory is used again, or over
+    /// the row that `empty` returns.
+    pub fn write_row<R: LogRow>(&mut self, empty: impl FnOnce() -> R, write: impl FnOnce(&mut R)) {
+        if let Some(place) = self.free_row(None) {
+            return write(place);
         }
-        let rank = |row: &dyn LogRow| report_rank(row.topic().declared_index());
-        let own = rank(&row);
-        let place = self.rows.partition_point(|other| rank(&*other.row) <= own);
-        let slot = RowSlot { kind, row: Box::new(row), is_set: true, revision, is_repeated: false };
+        let mut row = empty();
+        write(&mut row);
+        self.insert_row(row, None);
+    }
+
+    fn add_reported<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
+        match self.free_row(revision) {
+            Some(place) => *place = row,
+            None => self.insert_row(row, revision),
+        }
+    }
+
+    /// Returns the first free row of a type, which belongs to the report from now on.
+    fn free_row<R: LogRow>(&mut self, revision: Option<u64>) -> Option<&mut R> {
+        let kind = TypeId::of::<R>();
+        let slot = self.rows.iter_mut().find(|slot| slot.kind == kind && !slot.is_set)?;
+        (slot.is_set, slot.revision, slot.is_repeated) = (true, revision, false);
+        (&mut *slot.row as &mut dyn Any).downcast_mut()
+    }
+
+    /// Adds a row after those of topics that are written before its own.
+    fn insert_row<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
+        let kind = TypeId::of::<R>();
+        let topic = row.topic().declared_index();
+        let own = report_rank(topic);
+        let place = self.rows.partition_point(|other| report_rank(other.topic) <= own);
+        let slot = RowSlot { kind, topic, row: Box::new(row), is_set: true, revision, is_repeated: false };
         self.rows.insert(place, slot);
     }
 
@@ -194,7 +216,9 @@ impl Report {
 
     /// Returns the first row for the log of this type.
     pub fn row<T: Any>(&self) -> Option<&T> {
-        self.rows().find_map(|row| row.downcast())
+        let kind = TypeId::of::<T>();
+        let slot = self.rows.iter().find(|slot| slot.kind == kind && slot.is_set && !slot.is_repeated)?;
+        slot.row.downcast()
     }
 
     /// Iterates over the rows for the log, in the order in which they are written.
@@ -210,8 +234,7 @@ impl Report {
     /// Marks the rows whose revision is already in the log, and stores the revisions of the others.
     pub fn skip_repeated(&mut self, logged: &mut LoggedRevisions) {
         for slot in self.rows.iter_mut().filter(|slot| slot.is_set) {
-            let topic = slot.row.topic().declared_index();
-            let (Some(revision), Some(topic)) = (slot.revision, topic) else { continue };
+            let (Some(revision), Some(topic)) = (slot.revision, slot.topic) else { continue };
             slot.is_repeated = std::mem::replace(&mut logged.0[topic], revision) == revision;
         }
     }

@@ -155,7 +155,9 @@ impl Simulation {
         self.respond(event, record)
     }
 
-    /// Performs steps 1 to 5 of an instant, after which a run can be stopped; returns the event for the laws.
+    /// Performs steps 1 to 5 of an instant, after which a run can be stopped; returns the event for the laws. Inlined: an
+    /// event that is returned through memory stalls every instant.
+    #[inline(always)]
     fn sense(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
         let now = self.clock.now();
         // 1. State of the body.

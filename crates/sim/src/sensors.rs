@@ -187,23 +187,19 @@ impl Sensors {
     fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.schedules.iter_mut().enumerate() {
-            let fresh = &mut self.new_readings[index];
-            if fresh.is_some() {
-                due.last = fresh.take();
+            if self.new_readings[index].is_some() {
+                due.last = self.new_readings[index].take();
             }
             if now > Instant::START && due.next.is_some_and(|next| next != now) {
                 continue;
             }
             let truth = plant.truth_at_sensor(index);
             // The state of a sensor that is not in use goes on, such as the bias of a gyro.
-            *fresh = due.sensor.read(now, &truth, due.last.as_ref());
-            if !self.in_use[index] {
-                *fresh = None;
-            }
+            let fresh = due.sensor.read(now, &truth, due.last.as_ref());
             if let Some(period) = due.period.filter(|_| now > Instant::START) {
                 due.next = Some(due.sensor.next_due(now, period));
             }
-            let Some(reading) = fresh else { continue };
+            let Some(reading) = fresh.as_ref().filter(|_| self.in_use[index]) else { continue };
             any = true;
             self.last_readings[index] = now;
             if let Some(sight) = reading.sight.filter(|_| due.is_field_source) {
@@ -221,14 +217,13 @@ impl Sensors {
             if let Some(rates) = rates {
                 self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
             }
-            let Some(all) = &mut self.reading else {
-                self.reading = Some(Reading { sight: None, ..*reading });
-                continue;
-            };
+            let all = self.reading.get_or_insert(Reading { sight: None, ..*reading });
             if due.provides_attitude {
                 all.at = reading.at;
             }
             all.rate = reading.rate.or(all.rate);
+            // At the end: a copy of the reading sooner would wait for its parts to be stored.
+            self.new_readings[index] = fresh;
         }
         self.next = self.schedules.iter().filter_map(|due| due.next).min();
         any

@@ -25,7 +25,7 @@ use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines};
-use crate::stop::{self, StopRecord};
+use crate::stop::{self, stop_flag};
 use crate::{requirements, say, scenario};
 
 /// Largest number of values of all runs, by the memory that they need.
@@ -140,7 +140,7 @@ impl CampaignSetup {
             let kept = Arc::clone(&kept);
             move |run: &flexsc_core::campaign::CampaignRun| {
                 let mut record = IndexRecord::new(&run.scenario);
-                let metrics = Campaign::simulate(run, (&mut record, StopRecord))?;
+                let metrics = Campaign::simulate(run, (&mut record, stop_flag()))?;
                 kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, record.finish());
                 Ok(metrics)
             }

@@ -16,7 +16,7 @@ use flexsc_view::with_layout;
 use super::{CampaignJob, run as run_all};
 use crate::error::{CliError, NotReplaced};
 use crate::say;
-use crate::stop::{self, StopRecord};
+use crate::stop::{self, stop_flag};
 
 /// Contents of a log.
 #[derive(Copy, Clone, PartialEq, ValueEnum)]
@@ -59,9 +59,9 @@ pub fn run(
         move |run| match detail {
             // Runs that had not started before the interruption have no log.
             _ if stop::stop_requested() => Err(stop::interrupted().into()),
-            None => Ok(Campaign::simulate_metrics(run, &selection, StopRecord)?),
+            None => Ok(Campaign::simulate_metrics(run, &selection, stop_flag())?),
             Some(detail) => {
-                Ok(selection.select(simulate_to_log(run, &log(run.number), (detail, force), StopRecord)?.0))
+                Ok(selection.select(simulate_to_log(run, &log(run.number), (detail, force), stop_flag())?.0))
             }
         }
     })?;

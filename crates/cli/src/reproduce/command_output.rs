@@ -11,7 +11,7 @@ use super::command::{PageCommand, analysed};
 use super::shipped_scenarios;
 use crate::error::CliError;
 use crate::results::Results;
-use crate::stop::StopRecord;
+use crate::stop::stop_flag;
 use crate::{Verb, bound, budget, campaign, cycle, margins, modes, simulate, spectrum};
 
 impl PageCommand {
@@ -66,7 +66,7 @@ impl PageCommand {
 fn single(campaign: &Campaign) -> Result<Json, CliError> {
     let run = simulate::scenario_run(campaign);
     let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
-    let metrics = Campaign::simulate(&run, StopRecord).map_err(failed)?;
+    let metrics = Campaign::simulate(&run, stop_flag()).map_err(failed)?;
     Ok(campaign::object(campaign, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
 }
 
@@ -78,7 +78,7 @@ fn several(campaign: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Cli
         range,
         0,
         &Selection::ALL,
-        |run| Ok(Campaign::simulate(run, StopRecord)?),
+        |run| Ok(Campaign::simulate(run, stop_flag())?),
         |outcome| {
             let Some(RunOutcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };
             let failed = |why| CliError::Runs { failed: 1, runs, number, why };

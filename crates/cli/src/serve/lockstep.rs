@@ -8,7 +8,7 @@ use flexsc_core::{Simulation, SimulationError};
 use flexsc_view::scene::Scene;
 
 use super::session::{Session, SessionEnd};
-use crate::stop::StopRecord;
+use crate::stop::stop_flag;
 
 /// Outcome of a run in lockstep.
 pub struct Served {
@@ -67,7 +67,7 @@ pub fn serve(
     let (simulation, commands) = (Simulation::new(&run.scenario, run.number), CommandLog::default());
     let mut lockstep = Lockstep { simulation, commands, session, period, cycles: 0 };
     let mut record = (MetricsCollector::new(&run.scenario), (log.as_mut(), scene));
-    let stopped = lockstep.step(&mut (&mut record, StopRecord)).err();
+    let stopped = lockstep.step(&mut (&mut record, stop_flag())).err();
     // A run whose client is missing has ended at a cycle, where everything is done under the last commands.
     let stopped = match stopped {
         Some(StopReason::Session(end)) => match lockstep.leave(&mut record) {

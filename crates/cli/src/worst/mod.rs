@@ -22,7 +22,7 @@ use crate::margins::{BreakPoint, print_table, texts};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
-use crate::stop::{StopRecord, stop_requested};
+use crate::stop::{stop_flag, stop_requested};
 use crate::{files, say, scenario};
 
 #[derive(clap::Args)]
@@ -158,7 +158,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
             threads: usize::from(args.runs.threads()),
         };
         let work = |run: &flexsc_core::campaign::CampaignRun, selection: &flexsc_core::metrics::Selection| {
-            Ok(Campaign::simulate_metrics(run, selection, StopRecord)?)
+            Ok(Campaign::simulate_metrics(run, selection, stop_flag())?)
         };
         let case = search
             .run(scenario, &origin, work, stop_requested)

@@ -60,10 +60,19 @@ impl AttitudeMetrics {
         })
     }
 
+    /// Returns true if the estimate at the sample of an instant is assessed, or its modes are needed.
+    pub fn wants_estimates(&self, now: Instant) -> bool {
+        self.is_assessed(now) || self.identified.is_some()
+    }
+
+    fn is_assessed(&self, now: Instant) -> bool {
+        let [from, to] = self.assess;
+        (from..=to).contains(&now.seconds())
+    }
+
     /// Records the filter's estimate at a sample.
     pub fn observe(&mut self, now: Instant, estimate: &AttitudeEstimate) {
-        let ([from, to], t) = (self.assess, now.seconds());
-        if t < from || t > to {
+        if !self.is_assessed(now) {
             return;
         }
         self.count.0 += 1;

@@ -153,8 +153,12 @@ impl MetricsCollector {
 }
 
 impl Record for MetricsCollector {
-    fn wants_estimates(&self) -> bool {
-        self.filter.is_some() || self.known.is_some()
+    fn wants_estimates(&self, now: Instant) -> bool {
+        self.filter.is_some() || self.known.as_ref().is_some_and(|known| known.wants_estimates(now))
+    }
+
+    fn wants_journal(&self) -> bool {
+        false
     }
 
     fn wants_switchings(&self) -> bool {

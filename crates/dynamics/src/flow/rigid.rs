@@ -190,6 +190,12 @@ impl RigidBody {
 }
 
 /// Returns Q' = 1/2 Q o (0, w).
-fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
-    *attitude * Quaternion::from_imag(rate * 0.5)
+fn spin(q: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
+    let half = rate * 0.5;
+    Quaternion::new(
+        -q.i * half.x - q.j * half.y - q.k * half.z,
+        q.w * half.x + q.j * half.z - q.k * half.y,
+        q.w * half.y - q.i * half.z + q.k * half.x,
+        q.w * half.z + q.i * half.y - q.j * half.x,
+    )
 }

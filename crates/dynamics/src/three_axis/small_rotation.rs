@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::lanes::{LaneFloat, Mask};
 
-use super::vectors::{Vectors, vector};
+use super::vectors::{StoredVectors, Vectors, vector};
 
 /// Squared angle below which the coefficients are computed by their series (rad²).
 const SMALL: f64 = 0.04;
@@ -106,7 +106,7 @@ impl<R: LaneFloat> SmallRotationLanes<R> {
         if x.lt(kind.splat(TINY)).all() {
             return Self { by, first: short(&FIRST, x), second: short(&SECOND, x), third: short(&THIRD, x) };
         }
-        let (mut each, mut all) = ([[0.0; 4]; 3], [[0.0; 4]; 3]);
+        let (mut each, mut all) = (StoredVectors::default(), [[0.0; 4]; 3]);
         by.store(&mut each);
         for lane in 0..4 {
             let SmallRotation { first, second, third, .. } = SmallRotation::new(vector(&each, lane));

@@ -7,7 +7,12 @@ use flexsc_numerics::lanes::LaneFloat;
 use nalgebra::Matrix3;
 
 /// Four vectors stored as structure of arrays: the x, y and z components, four lanes each.
-pub(super) type StoredVectors = [[f64; 4]; 3];
+///
+/// Aligned so that no register of four straddles two cache lines: memory of this type in a function also aligns the
+/// registers that the compiler stores there.
+#[derive(Copy, Clone, Debug, Default)]
+#[repr(align(32))]
+pub(super) struct StoredVectors(pub [[f64; 4]; 3]);
 
 /// Vector in each SIMD lane.
 #[derive(Copy, Clone)]
@@ -19,7 +24,7 @@ pub(super) struct Vectors<R> {
 
 /// Returns the vector in a lane of stored vectors.
 #[inline]
-pub(super) fn vector([x, y, z]: &StoredVectors, lane: usize) -> Vector {
+pub(super) fn vector(StoredVectors([x, y, z]): &StoredVectors, lane: usize) -> Vector {
     Vector::new(x[lane], y[lane], z[lane])
 }
 
@@ -40,15 +45,17 @@ impl<R: LaneFloat> Vectors<R> {
     /// Loads stored vectors.
     #[inline(always)]
     pub fn load(kind: R, from: &StoredVectors) -> Self {
-        Self { x: kind.load(&from[0]), y: kind.load(&from[1]), z: kind.load(&from[2]) }
+        let [x, y, z] = &from.0;
+        Self { x: kind.load(x), y: kind.load(y), z: kind.load(z) }
     }
 
     /// Stores the vectors.
     #[inline(always)]
     pub fn store(self, to: &mut StoredVectors) {
-        self.x.store(&mut to[0]);
-        self.y.store(&mut to[1]);
-        self.z.store(&mut to[2]);
+        let [x, y, z] = &mut to.0;
+        self.x.store(x);
+        self.y.store(y);
+        self.z.store(z);
     }
 
     #[inline(always)]

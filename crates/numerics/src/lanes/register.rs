@@ -15,8 +15,9 @@ const PLACES: [f64; 16] =
 /// Sign bit of a number.
 const SIGN: u64 = 1 << 63;
 
-/// Numbers in the lanes of N registers of a processor.
+/// Numbers in the lanes of N registers of a processor. Aligned so that no register straddles two cache lines.
 #[derive(Copy, Clone)]
+#[repr(align(64))]
 pub struct Lanes<S: Simd, const N: usize> {
     simd: S,
     registers: [S::f64s; N],

@@ -47,22 +47,26 @@ impl CycleRows {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let Some(motion) = run.plant.quantities().three_axis() else { return Ok(()) };
-        let (now, truth) = (run.now, run.plant.truth());
+        let (now, truth, is_journaled) = (run.now, run.plant.truth(), record.wants_journal());
         let report = &mut self.actuator_report;
         report.clear();
         run.add_actuator_cycle(motion, report);
         report.skip_repeated(&mut self.revisions);
-        self.saturation.observe(now.seconds(), report);
+        if is_journaled {
+            self.saturation.observe(now.seconds(), report);
+        }
         run.record_report(report, record)?;
-        let error = || run.sensors.angles_of(&truth.orientation, &run.guidance.target(now));
-        journal.target(now, run.guidance, error, record)?;
+        if is_journaled {
+            let error = || run.sensors.angles_of(&truth.orientation, &run.guidance.target(now));
+            journal.target(now, run.guidance, error, record)?;
+        }
         if run.estimation.has_estimator {
             let damped = if self.has_observers { run.laws.damping_status() } else { Default::default() };
             let report = &mut self.estimator_report;
             report.clear();
             run.add_estimator_cycle(&damped, report);
             run.record_report(report, record)?;
-            if report.row::<Tracking>().is_some() {
+            if is_journaled && report.row::<Tracking>().is_some() {
                 let trusted = |axis: usize| run.estimation.estimates[axis].elastic_is_trusted;
                 journal.damping_changed(now, &damped, [0, 1, 2].map(trusted), record)?;
             }

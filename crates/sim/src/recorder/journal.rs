@@ -28,6 +28,9 @@ impl Journal {
         message: String,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
+        if !record.wants_journal() {
+            return Ok(());
+        }
         let timestamp = self.date_of(now);
         record.record(now, Sample::Row(&Log { timestamp, level, message, name: name.to_owned() }))
     }

@@ -214,7 +214,7 @@ impl Recorder {
             estimation.axis_count(),
             record,
         )?;
-        if !record.wants_estimates() {
+        if !record.wants_estimates(run.now) {
             return Ok(());
         }
         self.sample_report.clear();

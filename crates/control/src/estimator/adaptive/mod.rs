@@ -45,13 +45,25 @@ pub struct ModeEstimate {
 impl ModeEstimate {
     /// Returns the amplitude of the elastic rate (rad/s).
     pub fn amplitude(&self) -> f64 {
-        libm::hypot(self.phase[0], self.phase[1])
+        amplitude(&self.phase)
     }
 
     /// Returns the angle of the mode (rad), from the component s that lags the rate by a quarter of a period.
     pub fn displacement(&self) -> f64 {
         self.phase[1] / self.frequency
     }
+}
+
+/// Returns the amplitude (rad/s) of an elastic rate and the component that lags it by a quarter of a period.
+fn amplitude(phase: &ModeVector) -> f64 {
+    libm::hypot(phase[0], phase[1])
+}
+
+/// Returns true if the amplitude is above a positive bound (rad/s). The root is only taken near the bound.
+fn is_above(phase: &ModeVector, bound: f64) -> bool {
+    let (square, bound_square) = (phase[0] * phase[0] + phase[1] * phase[1], bound * bound);
+    let is_clear = (square - bound_square).abs() > 1e-9 * bound_square && bound_square > f64::MIN_POSITIVE;
+    if is_clear { square > bound_square } else { amplitude(phase) > bound }
 }
 
 /// Returns the first key of either form that is inconsistent with the others, the trackers, the number of inputs or the

@@ -32,9 +32,10 @@ impl ObserverSet {
 }
 
 impl ObserverSet {
-    /// Returns the log row, with the true rates of the modes and the status of active damping about each axis.
-    fn row(&self, rates: &[f64], damped: &[DampingStatus]) -> Tracking {
-        let mut tracking = Tracking { channels: Vec::with_capacity(3), trackers: Vec::new() };
+    /// Writes the log row, with the true rates of the modes and the status of active damping about each axis.
+    fn write_row(&self, rates: &[f64], damped: &[DampingStatus], tracking: &mut Tracking) {
+        tracking.channels.clear();
+        tracking.trackers.clear();
         for (axis, (channel, design)) in self.channels.iter().zip(&self.plan.axes).enumerate() {
             let measured_rate = |mode: &usize| design.visibilities[*mode] * rates[*mode];
             let (residual, modes) = (channel.residual(), &self.modes[axis]);
@@ -68,14 +69,15 @@ impl ObserverSet {
             };
             tracking.trackers.extend(modes.iter().zip(&design.modes).map(state));
         }
-        tracking
     }
 }
 
 impl Part for ObserverSet {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         if at.occasion == Occasion::Cycle {
-            report.add(self.row(&at.truth.mode_rates(), at.damping));
+            let rates = at.truth.mode_rates();
+            let empty = || Tracking { channels: Vec::new(), trackers: Vec::new() };
+            report.write_row(empty, |row| self.write_row(&rates, at.damping, row));
         }
     }
 }
@@ -119,8 +121,9 @@ impl estimator::Estimator for ObserverSet {
 
 /// Returns the mode with the largest amplitude; its displacement follows from the quadrature.
 fn dominant(modes: &[ModeEstimate]) -> DominantMode {
-    let largest = modes.iter().max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
-    largest.map_or_else(DominantMode::default, |mode| DominantMode {
+    let amplitudes = modes.iter().map(|mode| (mode.amplitude(), mode));
+    let largest = amplitudes.max_by(|(a, _), (b, _)| a.total_cmp(b));
+    largest.map_or_else(DominantMode::default, |(_, mode)| DominantMode {
         displacement: mode.displacement(),
         rate: mode.phase[0],
         frequency: mode.frequency,

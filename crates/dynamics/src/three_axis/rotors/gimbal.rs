@@ -61,10 +61,10 @@ impl GimbalMomentum {
     /// without gimbals.
     pub fn over(gimbals: &[Gimbal], t: f64, h: f64) -> Option<Self> {
         let start = total_momentum(gimbals, t)?;
-        let mut nodes = [[0.0; 4]; 3];
+        let mut nodes = StoredVectors::default();
         for (lane, node) in NODES.into_iter().enumerate() {
             let (momentum, _) = total_momentum(gimbals, t + node * h)?;
-            nodes.iter_mut().zip(&momentum).for_each(|(row, part)| row[lane] = *part);
+            nodes.0.iter_mut().zip(&momentum).for_each(|(row, part)| row[lane] = *part);
         }
         Some(Self { start, nodes })
     }

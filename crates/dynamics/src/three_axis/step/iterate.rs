@@ -210,7 +210,7 @@ fn evaluate<R: LaneFloat>(
     // iterations between the two save whole iterations.
     let (at, mut more) = (mean_rate, Vectors::splat(kind, &Vector::zeros()));
     for _ in 0..INNER_ITERATIONS {
-        let mut kept = [[0.0; 4]; 3];
+        let mut kept = StoredVectors::default();
         momentum_rate.store(&mut kept);
         let next = self::momentum(kind, &state.mean_momentum, &kept, h);
         more = next - momentum;
@@ -250,7 +250,7 @@ fn environment_torque<R: LaneFloat>(
     tides: &mut [Option<Matrix3<f64>>; 3],
 ) -> Vectors<R> {
     let (mut elastic_rotation, mut inertia_change, mut torque) =
-        ([[0.0; 4]; 3], [[0.0; 4]; 6], [[0.0; 4]; 3]);
+        (StoredVectors::default(), [[0.0; 4]; 6], StoredVectors::default());
     deformations.elastic_rotation.store(&mut elastic_rotation);
     for entry in 0..6 {
         deformations.inertia_change[entry].store(&mut inertia_change[entry]);
@@ -261,7 +261,7 @@ fn environment_torque<R: LaneFloat>(
         let (change, tide) =
             step.environment_at(NODES[node] * step.h, &at, &vector(&elastic_rotation, node), &inertia_change);
         for axis in 0..3 {
-            torque[axis][node] = change[axis];
+            torque.0[axis][node] = change[axis];
         }
         tides[node] = tide;
     }
@@ -301,7 +301,7 @@ fn update_modal_forcing<R: LaneFloat>(
     if !others {
         return largest_of_nodes(change);
     }
-    let mut rate = [[0.0; 4]; 3];
+    let mut rate = StoredVectors::default();
     forcing.rate.store(&mut rate);
     step.update_other_forces(&rate, &forcing.tides, modes)
 }

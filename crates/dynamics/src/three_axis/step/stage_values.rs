@@ -37,7 +37,6 @@ pub fn mean_rates(stages: &[StageValues; 3]) -> [Vector; 3] {
 
 /// Stage values at the nodes of a step: each component has a lane per node; the fourth lane is unused.
 #[derive(Clone, Debug, Default)]
-#[repr(align(32))]
 pub struct NodeValues {
     pub momentum_rate: StoredVectors,
     pub mean_rate: StoredVectors,
@@ -67,11 +66,11 @@ impl NodeValues {
     pub fn set_stages(&mut self, stages: &[StageValues; 3]) {
         for (node, stage) in stages.iter().enumerate() {
             for axis in 0..3 {
-                self.momentum_rate[axis][node] = stage.momentum_rate[axis];
-                self.mean_rate[axis][node] = stage.mean_rate[axis];
-                self.rigid_rate[axis][node] = stage.rigid_rate[axis];
-                self.rigid_momentum[axis][node] = stage.rigid_momentum[axis];
-                self.com_acceleration[axis][node] = stage.com_acceleration[axis];
+                self.momentum_rate.0[axis][node] = stage.momentum_rate[axis];
+                self.mean_rate.0[axis][node] = stage.mean_rate[axis];
+                self.rigid_rate.0[axis][node] = stage.rigid_rate[axis];
+                self.rigid_momentum.0[axis][node] = stage.rigid_momentum[axis];
+                self.com_acceleration.0[axis][node] = stage.com_acceleration[axis];
             }
         }
     }

@@ -5,7 +5,7 @@ use flexsc_numerics::quantity::Fraction;
 use super::super::oscillator::{ModeVector, OscillatorModel};
 use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
-use super::super::{AdaptiveObserver, ModeEstimate, Pulse};
+use super::super::{AdaptiveObserver, ModeEstimate, Pulse, is_above};
 use super::Gradient;
 use super::parameter::{ChannelState, Parameter};
 
@@ -58,6 +58,7 @@ impl Gradient {
             period,
             motion: rest(),
             frequencies: parameters[..modes].iter().map(|parameter| libm::exp(parameter.value)).collect(),
+            transitions: vec![None; modes],
             parameters,
             residual: MovingResidual::default(),
         }
@@ -78,6 +79,8 @@ pub struct GradientObserver {
     motion: ChannelState,
     /// Natural frequency w of each mode (rad/s).
     frequencies: Vec<f64>,
+    /// Transition of each mode over a period; `None` if the frequency has changed since it was last computed.
+    transitions: Vec<Option<[ModeVector; 2]>>,
     /// ln w of each mode, then the influences of each input on the first mode, on the second, ...
     parameters: Vec<Parameter>,
     residual: MovingResidual,
@@ -108,7 +111,7 @@ impl GradientObserver {
     fn turn(&mut self, mode: usize, pulses: &[Pulse]) {
         let oscillator = self.oscillator(mode);
         let (period, first) = (self.period, self.influences(mode));
-        let transition = oscillator.transition(period);
+        let transition = *self.transitions[mode].get_or_insert_with(|| oscillator.transition(period));
         let (mut phase, mut by_frequency) =
             oscillator.propagate(&transition, period, self.motion.phases[mode]);
         for parameter in &mut self.parameters {
@@ -156,14 +159,16 @@ impl AdaptiveObserver for GradientObserver {
             let sensitivity = parameter.slope.measured();
             parameter.update_scale(sensitivity);
             let phase = self.motion.phases.get(index);
-            let excited = phase.is_none_or(|phase| libm::hypot(phase[0], phase[1]) > self.gate);
+            let excited = phase.is_none_or(|phase| is_above(phase, self.gate));
             if index >= modes || excited {
+                let before = parameter.value;
                 parameter.gradient_step(sensitivity, innovation, self.learning);
+                if index < modes && parameter.value != before {
+                    self.frequencies[index] = libm::exp(parameter.value);
+                    self.transitions[index] = None;
+                }
             }
             parameter.slope.correct(self.gains, -sensitivity);
-        }
-        for (frequency, parameter) in self.frequencies.iter_mut().zip(&self.parameters) {
-            *frequency = libm::exp(parameter.value);
         }
         // A bounded innovation cannot make the state invalid at once: validity is checked after the cycle.
         self.motion.correct(self.gains, innovation);
