@@ -81,10 +81,10 @@ fn no_crossing_is_missed() {
         let mut there = state.clone();
         let trip = search(&segment, &guards, Span::from_seconds(5.0), &mut there);
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
-        // No level is crossed before, at 20 000 instants, within the rounding of the angle.
+        // No level is crossed before, at 10 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
-        for index in 0..20_000 {
-            let sensed = segment.at(until * f64::from(index) / 20_000.0, &mut probe);
+        for index in 0..10_000 {
+            let sensed = segment.at(until * f64::from(index) / 10_000.0, &mut probe);
             let gap = guards.map(|guard| guard.gap(sensed.angle)).into_iter().fold(f64::INFINITY, f64::min);
             prop_assert!(gap > -1e-18, "crossed before {until} s");
         }

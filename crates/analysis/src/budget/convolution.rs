@@ -10,6 +10,9 @@ const FARTHEST: f64 = 9.0;
 /// by more than a part of it.
 const SMALLEST: f64 = 1e-5;
 
+/// Number of rotations after which phasors are computed anew, before their rounding errors grow.
+const RESTART: usize = 64;
+
 /// Sum of independent parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
@@ -89,13 +92,38 @@ struct Series {
 impl Series {
     /// Returns the probability that the magnitude of the sum with an offset is at most `most`.
     fn probability(&self, offset: f64, most: f64) -> f64 {
-        let (low, high) = (-most - offset, most - offset);
         let step = PI / self.half;
-        let part = |(index, coefficient): (usize, &f64)| {
-            let t = step * (index + 1) as f64;
-            coefficient * (libm::sin(t * high) - libm::sin(t * low)) / (index + 1) as f64
-        };
-        let sum: f64 = self.coefficients.iter().enumerate().map(part).sum();
+        let ends = [most - offset, -most - offset].map(|end| step * end);
+        let mut sum = 0.0;
+        for (chunk, coefficients) in self.coefficients.chunks(RESTART).enumerate() {
+            let first = chunk * RESTART + 1;
+            let [mut high, mut low] = ends.map(|angle| Phasors::new(angle, first));
+            for (index, coefficient) in coefficients.iter().enumerate() {
+                sum += coefficient * (high.next_sine() - low.next_sine()) / (first + index) as f64;
+            }
+        }
         (most / self.half + sum / PI).clamp(0.0, 1.0)
+    }
+}
+
+/// Phasors of the multiples of an angle, each from the last by a rotation: a series has half a million of them.
+struct Phasors {
+    /// Sine and cosine of the angle.
+    step: [f64; 2],
+    /// Sine and cosine of the next multiple.
+    next: [f64; 2],
+}
+
+impl Phasors {
+    /// Creates the phasors of an angle (rad) from a multiple on.
+    fn new(angle: f64, first: usize) -> Self {
+        Self { step: libm::sincos(angle).into(), next: libm::sincos(angle * first as f64).into() }
+    }
+
+    /// Returns the sine of the next multiple.
+    fn next_sine(&mut self) -> f64 {
+        let ([sin, cos], [sin_step, cos_step]) = (self.next, self.step);
+        self.next = [sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step];
+        sin
     }
 }

@@ -326,3 +326,17 @@ fn nonsense_is_never_passed_on() {
         assert!(cycle < 1210 || !trusted, "{cycle}: {:?}", observer.residual());
     }
 }
+
+#[test]
+fn amplitudes_near_a_bound_are_compared_by_their_roots() {
+    let bound = 5e-6;
+    for share in [0.0, 0.5, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 2.0, 1e150, f64::INFINITY, f64::NAN] {
+        for angle in 0..16 {
+            let (sin, cos) = libm::sincos(f64::from(angle) * PI / 8.0);
+            let phase = [share * bound * cos, share * bound * sin];
+            assert_eq!(is_above(&phase, bound), libm::hypot(phase[0], phase[1]) > bound, "{share} {angle}");
+        }
+    }
+    // The square of such a bound vanishes.
+    assert!(is_above(&[2e-200, 0.0], 1e-200) && !is_above(&[5e-201, 0.0], 1e-200));
+}
