@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use flexsc_numerics::phasor::polar;
+
 use super::{bisect, gaussian};
 
 /// Standard deviations beyond which a Gaussian number is left out: its probability is below the rounding of a double.
@@ -94,36 +96,17 @@ impl Series {
     fn probability(&self, offset: f64, most: f64) -> f64 {
         let step = PI / self.half;
         let ends = [most - offset, -most - offset].map(|end| step * end);
+        // Rotations in place of sines, of which a series has half a million.
+        let turns = ends.map(|angle| polar(1.0, angle));
         let mut sum = 0.0;
         for (chunk, coefficients) in self.coefficients.chunks(RESTART).enumerate() {
             let first = chunk * RESTART + 1;
-            let [mut high, mut low] = ends.map(|angle| Phasors::new(angle, first));
+            let [mut high, mut low] = ends.map(|angle| polar(1.0, angle * first as f64));
             for (index, coefficient) in coefficients.iter().enumerate() {
-                sum += coefficient * (high.next_sine() - low.next_sine()) / (first + index) as f64;
+                sum += coefficient * (high.im - low.im) / (first + index) as f64;
+                (high, low) = (high * turns[0], low * turns[1]);
             }
         }
         (most / self.half + sum / PI).clamp(0.0, 1.0)
-    }
-}
-
-/// Phasors of the multiples of an angle, each from the last by a rotation: a series has half a million of them.
-struct Phasors {
-    /// Sine and cosine of the angle.
-    step: [f64; 2],
-    /// Sine and cosine of the next multiple.
-    next: [f64; 2],
-}
-
-impl Phasors {
-    /// Creates the phasors of an angle (rad) from a multiple on.
-    fn new(angle: f64, first: usize) -> Self {
-        Self { step: libm::sincos(angle).into(), next: libm::sincos(angle * first as f64).into() }
-    }
-
-    /// Returns the sine of the next multiple.
-    fn next_sine(&mut self) -> f64 {
-        let ([sin, cos], [sin_step, cos_step]) = (self.next, self.step);
-        self.next = [sin * cos_step + cos * sin_step, cos * cos_step - sin * sin_step];
-        sin
     }
 }
