@@ -22,7 +22,7 @@ fn column(dir: &Dir, file: &str, name: &str) -> Vec<f64> {
 
 /// Returns the worst runs, as `plot --json` prints them.
 fn worst(dir: &Dir, arguments: &str) -> Vec<Json> {
-    let out = dir.run(&format!("plot {arguments} --json --force")).exits(0).out;
+    let out = dir.run(&format!("plot {arguments} --json --force")).printed();
     let lines = out.lines().map(|line| serde_json::from_str::<Json>(line).expect("an object"));
     lines.filter_map(|line| line.get("worst").cloned()).collect()
 }
@@ -199,7 +199,7 @@ fn parts_make_up_a_campaign_and_failures_are_listed() {
     dir.run("simulate u.toml --runs 20 --table csv -o whole").exits(1);
     dir.run("simulate u.toml --runs 0:9 --table csv -o parts").exits(1);
     dir.run("simulate u.toml --runs 9:20 --table csv -o parts").exits(1);
-    let listed = |name: &str| dir.run(&format!("plot {name} -o {name}.svg")).exits(0).out.replace(name, "");
+    let listed = |name: &str| dir.run(&format!("plot {name} -o {name}.svg")).printed().replace(name, "");
     assert_eq!(listed("parts"), listed("whole"));
     assert_eq!(dir.text("parts.svg"), dir.text("whole.svg"));
     assert!(listed("parts").contains("failed") && listed("parts").contains("law.relay.k_t"));
@@ -234,7 +234,7 @@ fn bad_tables_are_named() {
     assert_eq!(dir.names("empty"), ["runs.csv"]);
     // A table without its scenario is drawn, but its runs cannot be repeated.
     dir.write("empty/runs.csv", format!("{header}1,1,0.5,\n2,1,0.6,\n"));
-    let reported = dir.run("plot empty --json").exits(0).out;
+    let reported = dir.run("plot empty --json").printed();
     assert!(reported.contains("\"command\":null"), "{reported}");
     dir.run("plot empty").exits(0).says(&["no scenario.toml"]);
 }

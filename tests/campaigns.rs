@@ -35,7 +35,7 @@ fn a_campaign_writes_tables_and_logs() {
 fn the_runs_of_a_dated_scenario_have_its_date() {
     let dir = Dir::holding("u.toml", format!("epoch = 2026-03-20T14:46:00+01:00\n{UNCERTAIN}"));
     dir.run("simulate u.toml --runs 2 -o out --log events").exits(0).says(&["2 runs"]);
-    let toml = dir.run("log scenario out/u-1.mcap").exits(0).out;
+    let toml = dir.run("log scenario out/u-1.mcap").printed();
     assert!(toml.contains("\nepoch = 2026-03-20T14:46:00+01:00\n"), "{toml}");
     dir.run("sweep u.toml --vary law.relay.k_t=0.3:0.32:2 -o swept").exits(0).says(&["2 runs"]);
 }
@@ -52,7 +52,7 @@ fn a_run_alone_is_the_run_of_the_campaign() {
     assert_eq!(dir.names("out"), names);
     assert_eq!(table(&dir, "out/runs-3-4.csv"), table(&dir, "out/runs.csv")[3..4]);
     // The log's own scenario, with what was drawn, makes the same run.
-    let toml = dir.run("log scenario out/u-3.mcap").exits(0).out;
+    let toml = dir.run("log scenario out/u-3.mcap").printed();
     dir.write("three.toml", &toml);
     let row = &table(&dir, "out/runs.csv")[3];
     let duty = format!("\"duty\":{},", row["duty"].parse::<f64>().expect("a number"));
@@ -73,9 +73,9 @@ fn threads_change_nothing() {
         let same = dir.read(&format!("one/{name}")) == dir.read(&format!("eight/{name}"));
         assert!(same, "{name} differs");
     }
-    let lines = dir.run("simulate u.toml --runs 12 --json --jobs 1").exits(0).out;
+    let lines = dir.run("simulate u.toml --runs 12 --json --jobs 1").printed();
     assert_eq!(lines.lines().count(), 12);
-    assert_eq!(lines, dir.run("simulate u.toml --runs 12 --json --jobs 8").exits(0).out);
+    assert_eq!(lines, dir.run("simulate u.toml --runs 12 --json --jobs 8").printed());
 }
 
 #[test]

@@ -74,13 +74,13 @@ fn every_type_of_a_foreign_schema_is_read() {
     let second = small(10, 3);
     let dir =
         Dir::holding("a.mcap", log("a.All", &schema(&[inner, colours, all]), &[first.concat(), second]));
-    let csv = dir.run("export a.mcap --topic /a").exits(0).out;
+    let csv = dir.run("export a.mcap --topic /a").printed();
     let expected = "time_s,signed,zigzag,count,name,image.length,at.x,at.y,points[0].x,points[0].y,points[1].x,points[1].y,\
                     numbers[0],numbers[1],numbers[2],tags[0].key,tags[0].value,colour\n\
                     0e0,-1,-3,18446744073709551615,grün,300,5e-1,-2e0,1e0,0e0,0e0,4e0,1,2,3,b,9,BLUE\n\
                     1e0,0,0,0,,0,0e0,0e0,,,,,,,,,,\n";
     assert_eq!(csv, expected);
-    let lines = dir.run("export a.mcap --topic /a --format jsonl").exits(0).out;
+    let lines = dir.run("export a.mcap --topic /a --format jsonl").printed();
     assert_eq!(lines.lines().count(), 2);
     for reader in &READERS[1..] {
         refused(
@@ -152,7 +152,7 @@ fn schemas_without_bounds_are_refused() {
         let dir = Dir::holding("a.mcap", log(name, &schema, &[Vec::new()]));
         refused(dir.run_bounded("export a.mcap --topic /a"), words);
         // The topic is refused, and not the log.
-        assert_eq!(dir.run_bounded("export a.mcap").exits(0).out, "/a\n");
+        assert_eq!(dir.run_bounded("export a.mcap").printed(), "/a\n");
     }
     let dir = Dir::holding("a.mcap", log_in("cdr", "geometry_msgs/Point", b"float64 x", &[vec![0; 12]]));
     refused(dir.run("export a.mcap --topic /a"), &["only protobuf messages are read", "`cdr`", "`ros2msg`"]);
@@ -223,14 +223,14 @@ fn offsets_and_lengths_that_lie_are_harmless() {
     // The summary's contents are not read.
     for index in [metadata_index, attachment_index, chunk_index] {
         let dir = Dir::holding("a.mcap", with(&index, &summary));
-        assert_eq!(dir.run_bounded("export a.mcap --topic /a").exits(0).out, "time_s,x\n0e0,0e0\n");
+        assert_eq!(dir.run_bounded("export a.mcap --topic /a").printed(), "time_s,x\n0e0,0e0\n");
         for reader in &READERS[1..] {
             refused(dir.run_bounded(reader), &["contains no scenario"]);
         }
     }
     for footer in [[&far[..], &far, &[0; 4]].concat(), vec![0xff; 3]] {
         let dir = Dir::holding("a.mcap", with(&[], &footer));
-        assert_eq!(dir.run_bounded("export a.mcap").exits(0).out, "/a\n");
+        assert_eq!(dir.run_bounded("export a.mcap").printed(), "/a\n");
     }
     let long = 0xffff_fff0_u32.to_le_bytes();
     let lies: [(&str, Vec<u8>); 8] = [
@@ -331,5 +331,5 @@ fn control_characters_of_topics_are_escaped() {
     let at = bytes.windows(topic.len()).position(|window| window == topic).expect("the topic");
     bytes[at + topic.len() - 1] = 0x1b;
     let dir = Dir::holding("a.mcap", bytes);
-    assert_eq!(dir.run("export a.mcap").exits(0).out, "/\\u{1b}\n");
+    assert_eq!(dir.run("export a.mcap").printed(), "/\\u{1b}\n");
 }

@@ -59,23 +59,23 @@ fn schema_topics_and_metrics_are_frozen() {
     let dir = Dir::new();
     let mut lines = String::new();
     for arguments in ["schema", "schema --topics", "schema --metrics"] {
-        let printed = dir.run(arguments).exits(0).out;
+        let printed = dir.run(arguments).printed();
         writeln!(lines, "{arguments:<18} {:016x} {} bytes", hash(printed.as_bytes()), printed.len())
             .expect("memory");
     }
     is_frozen("schema", &lines);
-    is_frozen("topics", &dir.run("schema --topics").exits(0).out);
+    is_frozen("topics", &dir.run("schema --topics").printed());
 }
 
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn help_is_frozen() {
     let dir = Dir::new();
-    let overview = dir.run("--help").exits(0).out;
+    let overview = dir.run("--help").printed();
     let verbs = overview.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
     let mut text = overview.clone();
     for verb in verbs.filter(|word| !word.starts_with('-')) {
-        writeln!(text, "\n### {verb}\n{}", dir.run(&format!("{verb} --help")).exits(0).out).expect("memory");
+        writeln!(text, "\n### {verb}\n{}", dir.run(&format!("{verb} --help")).printed()).expect("memory");
     }
     is_frozen("help", &text);
 }

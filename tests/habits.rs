@@ -110,7 +110,7 @@ fn a_sweep_has_a_log_of_each_row() {
     assert_eq!(logs, ["relay-fixed-0.mcap", "relay-fixed-1.mcap", "relay-fixed-2.mcap"]);
     // Each is of its row.
     for (row, gain) in [(0, "0.3"), (2, "0.34")] {
-        let scenario = dir.run(&format!("log scenario out/relay-fixed-{row}.mcap")).exits(0).out;
+        let scenario = dir.run(&format!("log scenario out/relay-fixed-{row}.mcap")).printed();
         assert!(scenario.contains(&format!("k_t = {gain}\n")), "{scenario}");
     }
     dir.run(&format!("{sweep} --log events")).exits(0);
@@ -163,7 +163,7 @@ fn metrics_are_exported_as_a_table_for_people() {
     for (index, mean) in means.iter().enumerate() {
         assert_eq!(of(&format!("envelope_window_means_rad[{index}]"))[1].parse::<f64>().ok(), mean.as_f64());
     }
-    let lines = dir.run("export relay-adaptive.mcap --topic /metrics --format jsonl").exits(0).out;
+    let lines = dir.run("export relay-adaptive.mcap --topic /metrics --format jsonl").printed();
     assert_eq!(lines.lines().count(), rows.len());
     assert!(lines.starts_with("{\"name\":\"switchings\",\"value\":"), "{lines}");
 }

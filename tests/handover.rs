@@ -118,7 +118,7 @@ fn attitude_and_orbit_agree_with_the_nadir_of_the_log() {
     dir.run("export detumble-and-point.mcap -o o.oem").exits(0);
     let (attitude, orbit) = (dir.text("a.aem"), dir.text("o.oem"));
     let (attitude, orbit) = (message(&attitude).1, message(&orbit).1);
-    let log = dir.run("export detumble-and-point.mcap --topic /orbit --format jsonl").exits(0).out;
+    let log = dir.run("export detumble-and-point.mcap --topic /orbit --format jsonl").printed();
     let log: Vec<serde_json::Value> =
         log.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!((attitude.len(), orbit.len()), (151, 151));
@@ -155,7 +155,7 @@ fn rates_are_those_of_the_attitude() {
     ] {
         dir.run(&format!("simulate {name}.toml {set} --log full")).exits(0);
         let text =
-            dir.run(&format!("export {name}.mcap --format aem --epoch 2026-01-01T00:00:00Z")).exits(0).out;
+            dir.run(&format!("export {name}.mcap --format aem --epoch 2026-01-01T00:00:00Z")).printed();
         let rows: Vec<Vec<f64>> = message(&text).1.iter().map(|row| numbers(row)).collect();
         let step: f64 = set.rsplit('=').next().expect("a period").parse().expect("a number");
         let (mut sum, mut count) = (0.0, 0.0);

@@ -101,7 +101,7 @@ fn distance(a: Vector, b: Vector) -> f64 {
 
 /// Returns the frames of a log's scene with their times.
 fn frames(dir: &Dir, log: &str) -> Vec<(f64, Frames)> {
-    let rows = dir.run(&format!("export {log} --topic /tf --format jsonl")).exits(0).out;
+    let rows = dir.run(&format!("export {log} --topic /tf --format jsonl")).printed();
     let row = |line: &str| {
         let row: Json = serde_json::from_str(line).expect("JSON");
         let number = |key: String| row[key].as_f64().expect("a number");
@@ -147,7 +147,7 @@ fn panels_bend_by_the_modes_as_in_the_scene() {
     assert_eq!(weights.len(), modes.len() * times.len());
 
     // The weights are the modal displacements, each over its largest.
-    let rows = dir.run("export relay-adaptive.mcap --topic /modes --format jsonl").exits(0).out;
+    let rows = dir.run("export relay-adaptive.mcap --topic /modes --format jsonl").printed();
     let rows: Vec<Json> = rows.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let mut found = 0;
     for (frame, time) in times.iter().enumerate() {
@@ -246,7 +246,7 @@ fn jets_have_plumes_at_their_points() {
         let exact = in_inertial(frames, "point_tail", place);
         assert!(distance(drawn, exact) < 2e-4, "{drawn:?} {exact:?}");
     }
-    let rows = dir.run("export iss-manoeuvre.mcap --topic /plumes --format jsonl").exits(0).out;
+    let rows = dir.run("export iss-manoeuvre.mcap --topic /plumes --format jsonl").printed();
     let rows: Vec<Json> = rows.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let nodes = glb.document["nodes"].as_array().expect("nodes").iter();
     let plumes: Vec<&str> = nodes.filter_map(|node| node["name"].as_str()?.strip_prefix("plume_")).collect();

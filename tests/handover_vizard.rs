@@ -109,7 +109,7 @@ fn messages(bytes: &[u8]) -> Vec<Message<'_>> {
 }
 
 fn rows(dir: &Dir, log: &str, topic: &str) -> Vec<Json> {
-    let out = dir.run(&format!("export {log} --topic {topic} --format jsonl")).exits(0).out;
+    let out = dir.run(&format!("export {log} --topic {topic} --format jsonl")).printed();
     out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect()
 }
 

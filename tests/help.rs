@@ -30,7 +30,7 @@ fn every_example_of_the_help_works() {
             std::fs::copy(entry.path(), dir.path(&entry.file_name().to_string_lossy())).expect("copied");
         }
     }
-    let overview = dir.run("--help").exits(0).out;
+    let overview = dir.run("--help").printed();
     let verbs = overview.lines().filter_map(|line| line.strip_prefix("  ")?.split_whitespace().next());
     let verbs: Vec<&str> = verbs.filter(|word| !word.starts_with('-')).collect();
     assert_eq!(verbs.len(), 32, "{overview}");

@@ -290,7 +290,7 @@ fn campaigns_have_statistics_of_each_line() {
     let statistics = table(&dir, "mc/statistics.csv");
     let row = statistics.iter().find(|row| row["metric"] == "line_of_sight_peak_rad[2]").expect("a row");
     let peak = |run: u64| {
-        let text = dir.run(&format!("simulate --from mc --row {run} --json --log none")).exits(0).out;
+        let text = dir.run(&format!("simulate --from mc --row {run} --json --log none")).printed();
         let object: serde_json::Value = serde_json::from_str(&text).expect("an object");
         object["metrics"]["line_of_sight_peak_rad"][2].as_f64().expect("a number")
     };

@@ -10,7 +10,7 @@ use crate::util::{Dir, end};
 fn topics_are_exported() {
     let dir = Dir::with(&["relay-fixed"]);
     dir.run("simulate relay-fixed.toml").exits(0);
-    let topics = dir.run("export relay-fixed.mcap").exits(0).out;
+    let topics = dir.run("export relay-fixed.mcap").printed();
     let topics: Vec<_> = topics.lines().collect();
     assert_eq!(topics, ["/command", "/envelope_mean", "/law", "/log", "/metrics", "/params", "/summary"]);
     let ran = dir
@@ -20,7 +20,7 @@ fn topics_are_exported() {
         .says(&topics);
     assert!(ran.out.is_empty());
 
-    let csv = dir.run("export relay-fixed.mcap --topic /command").exits(0).out;
+    let csv = dir.run("export relay-fixed.mcap --topic /command").printed();
     let (header, rows) = csv.split_once('\n').expect("lines");
     assert_eq!(header, "time_s,state,cause,torque_nm,angle_rad,rate_rad_s,gain");
     assert_eq!(rows.lines().count(), 2719);
@@ -31,7 +31,7 @@ fn topics_are_exported() {
     dir.run("export relay-fixed.mcap --topic /command -o command.csv").exits(0);
     assert_eq!(dir.text("command.csv"), csv);
 
-    let lines = dir.run("export relay-fixed.mcap --topic /command --format jsonl").exits(0).out;
+    let lines = dir.run("export relay-fixed.mcap --topic /command --format jsonl").printed();
     let rows: Vec<Json> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!(rows.len(), 2719);
     assert!(rows.iter().all(|row| row["time_s"].is_f64() && row["state"].is_string()));
@@ -47,7 +47,7 @@ fn a_log_makes_itself_again() {
     for name in ["relay-fixed", "relay-adaptive"] {
         let set = "--set duration=3000 --set epoch=2026-03-20T14:46:00Z --seed 5 --log full";
         dir.run(&format!("simulate {name}.toml -o first {set}")).exits(0);
-        let toml = dir.run(&format!("log scenario first/{name}.mcap")).exits(0).out;
+        let toml = dir.run(&format!("log scenario first/{name}.mcap")).printed();
         assert!(toml.contains("\nepoch = 2026-03-20T14:46:00Z\n"), "{toml}");
         dir.write("again.toml", &toml);
         dir.run("simulate again.toml -o second --log full").exits(0);
@@ -109,7 +109,7 @@ fn inspect(dir: &Dir, log: &str, topics: &[&str], epoch_ns: u64) {
     assert_eq!(counts.keys().collect::<Vec<_>>(), topics);
     // What is exported was decoded by the schema that the file carries.
     for (topic, count) in counts {
-        let rows = dir.run(&format!("export {log} --topic {topic} --format jsonl")).exits(0).out;
+        let rows = dir.run(&format!("export {log} --topic {topic} --format jsonl")).printed();
         if topic == "/metrics" {
             // A table for people: a line for each metric.
             assert!(rows.lines().count() > 1 && rows.starts_with("{\"name\":"), "{rows}");
@@ -123,7 +123,7 @@ fn inspect(dir: &Dir, log: &str, topics: &[&str], epoch_ns: u64) {
         String::from_utf8(mcap::read::attachment(&bytes, index).expect("whole").data.into_owned())
             .expect("text")
     };
-    assert_eq!(attachment("scenario.toml"), dir.run(&format!("log scenario {log}")).exits(0).out);
+    assert_eq!(attachment("scenario.toml"), dir.run(&format!("log scenario {log}")).printed());
     serde_json::from_str::<Json>(&attachment("layout.json")).expect("a layout");
     assert_eq!(end(dir, log)["end"], "complete");
 }

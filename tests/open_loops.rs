@@ -4,7 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::margins::{FrequencyResponse, eigenvalues};
+use flexsc_core::analysis::eigenvalues::eigenvalues;
+use flexsc_core::analysis::margins::FrequencyResponse;
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop};
 use nalgebra::{Complex, DMatrix};
 

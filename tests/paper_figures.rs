@@ -106,7 +106,7 @@ fn a_part_of_the_time_is_shown() {
     angle.shows(&["100", "200"]);
     assert!(!angle.texts().iter().any(|text| text == "300"), "{:?}", angle.texts());
     // As many switchings as the log has there.
-    let log = dir.run("export relay-fixed.mcap --topic /command").exits(0).out;
+    let log = dir.run("export relay-fixed.mcap --topic /command").printed();
     let times = log.lines().skip(1).filter_map(|line| line.split(',').next()?.parse::<f64>().ok());
     let inside = times.filter(|time| (100.0..=200.0).contains(time)).count();
     let marks = |colour: &str, kind: &str| angle.shapes(kind, "fill", colour).len();

@@ -159,7 +159,7 @@ fn any_row_is_run_again_with_its_log() {
     dir.run("simulate --from missing --row 3").exits(2).says(&["missing: is not a campaign"]);
     dir.run("simulate u.toml --from out --row 3").exits(2);
     // What the figures of it list.
-    let drawn = dir.run("plot out -o figures").exits(0).out;
+    let drawn = dir.run("plot out -o figures").printed();
     let command = drawn.lines().find_map(|line| line.trim().strip_prefix("flexsc ")).expect("a command");
     dir.run(command).exits(0);
     assert!(

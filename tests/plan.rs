@@ -55,7 +55,7 @@ fn the_numbers_of_a_plan() {
     let reported = dir.run("plan turn.toml --json --set manoeuvre.command={bang_bang={}}").exits(0).json();
     assert!(reported["coefficients_nm"].is_null() && reported["harmonics_nm"].is_null());
     // The same bytes each time.
-    let again = |_| dir.run("plan turn.toml --json --compare").exits(0).out;
+    let again = |_| dir.run("plan turn.toml --json --compare").printed();
     assert_eq!(again(0), again(1));
 }
 

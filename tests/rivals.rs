@@ -246,7 +246,7 @@ fn the_command_compares_too() {
     let lines = dir.run("plan turn.toml --compare --json").exits(0).prints(&["\"command\":\"sine p=2\""]);
     assert_eq!(lines.lines().count(), FIELD.len());
     dir.run("plan turn.toml --compare --coordinate angle --units si").exits(0).says(&["sine w1³", "776.1"]);
-    let lines = dir.run("plan turn.toml --compare --json --peak-torque 521.080754063").exits(0).out;
+    let lines = dir.run("plan turn.toml --compare --json --peak-torque 521.080754063").printed();
     assert_eq!(lines.lines().filter(|line| line.contains("refused")).count(), 0, "{lines}");
     dir.run("plan turn.toml --compare --coordinate tip")
         .exits(2)

@@ -183,9 +183,9 @@ fn a_scene_changes_no_motion() {
         let dir = Dir::with(&[scenario]);
         let export = format!("export {scenario}.mcap --topic {topic}");
         dir.run(&format!("simulate {scenario}.toml {options}")).exits(0);
-        let without = dir.run(&export).exits(0).out;
+        let without = dir.run(&export).printed();
         dir.run(&format!("simulate {scenario}.toml {options} --log scene")).exits(0);
-        assert!(dir.run(&export).exits(0).out == without, "{scenario}");
+        assert!(dir.run(&export).printed() == without, "{scenario}");
     }
 }
 
@@ -302,7 +302,7 @@ fn a_log_tells_what_happened() {
     let reported = |scenario: &str, options: &str| {
         let dir = Dir::with(&[scenario]);
         dir.run(&format!("simulate {scenario}.toml {options}")).exits(0);
-        dir.run(&format!("export {scenario}.mcap --topic /log")).exits(0).out
+        dir.run(&format!("export {scenario}.mcap --topic /log")).printed()
     };
     let relay = reported("relay-adaptive", "");
     assert_eq!(relay.lines().count(), 1 + 2 + 36, "{relay}");

@@ -269,7 +269,7 @@ fn the_command_knows_spatial_bodies() {
         .exits(2)
         .says(&["no figure `angle`", "has pointing, rates"]);
     // The log repeats alone.
-    let scenario = dir.run("log scenario iss-manoeuvre-off.mcap").exits(0).out;
+    let scenario = dir.run("log scenario iss-manoeuvre-off.mcap").printed();
     dir.write("again.toml", scenario);
     dir.run("simulate again.toml -o again --log full").exits(0);
     assert!(dir.read("again/iss-manoeuvre-off.mcap") == dir.read("iss-manoeuvre-off.mcap"));

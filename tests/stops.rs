@@ -121,7 +121,7 @@ fn an_interrupted_campaign_keeps_whole_files_only() {
 
 /// The rows of `/command` without their header.
 fn command_rows(dir: &Dir, log: &str) -> Vec<String> {
-    let text = dir.run(&format!("export {log} --topic /command")).exits(0).out;
+    let text = dir.run(&format!("export {log} --topic /command")).printed();
     text.lines().skip(1).map(str::to_owned).collect()
 }
 

@@ -75,14 +75,14 @@ fn analyses_print_the_units_that_are_asked_for() {
         }
         // The table of a map is in SI units always.
         assert_eq!(plain.out, other.out, "{verb}");
-        let json = |units: &str| dir.run(&format!("{verb} --json --units {units}")).exits(0).out;
+        let json = |units: &str| dir.run(&format!("{verb} --json --units {units}")).printed();
         assert_eq!(json("engineering"), json("si"), "{verb}");
         dir.run(&format!("{verb} --units feet")).exits(2).says(&["feet", "engineering", "si"]);
     }
     is_frozen("analyses", &text);
     let schedule = |units: &str| {
         let tune = format!("tune wheel-scheduled-gain.toml {tune} --schedule --units {units}");
-        dir.run(&tune).exits(0).out
+        dir.run(&tune).printed()
     };
     assert_eq!(schedule("engineering"), schedule("si"));
 }

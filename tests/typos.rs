@@ -184,7 +184,7 @@ fn what_is_probably_a_mistake_is_remarked() {
     );
     dir.write("d.toml", text.replacen("damping = 0.005", "damping = 5", 1));
     dir.run("check d.toml").exits(0).says(&["remark: `appendage[0].modes[0].damping`", "\"5 %\""]);
-    let json = dir.run("check d.toml --json").exits(0).out;
+    let json = dir.run("check d.toml --json").printed();
     assert!(json.contains("\"key\":\"appendage[0].modes[0].damping\""), "{json}");
     let remark = "note: `appendage[0].modes[0].damping`";
     for command in

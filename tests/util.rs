@@ -290,6 +290,14 @@ impl Ran {
         self.out
     }
 
+    /// Checks that the command succeeded and wrote to stdout, and returns that.
+    #[track_caller]
+    pub fn printed(self) -> String {
+        let ran = self.exits(0);
+        assert!(!ran.out.is_empty(), "flexsc {}: nothing on stdout, but\n{}", ran.arguments, ran.err);
+        ran.out
+    }
+
     /// Returns stdout as JSON.
     #[track_caller]
     pub fn json(self) -> Json {

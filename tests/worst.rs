@@ -105,12 +105,12 @@ fn the_verb_prints_judges_and_writes_the_witness() {
     let tight = format!("{all} --set requirement[0].limit=3e-4");
     dir.run(&tight).exits(3).says(&["missed", "1 of 2 requirements not met in the worst case: arrival"]);
     dir.run(&format!("{all} --requirement arrival -o worst.toml")).exits(0);
-    let json = dir.run(&format!("{all} --requirement arrival --json")).exits(0).out;
+    let json = dir.run(&format!("{all} --requirement arrival --json")).printed();
     let json: Json = serde_json::from_str(&json).expect("JSON");
     let case = &json["cases"][0];
     assert_eq!(case["met"], true);
     assert!(case["worst"].as_f64() > case["nominal"].as_f64());
-    let run: Json = serde_json::from_str(&dir.run("simulate worst.toml --json").exits(0).out).expect("JSON");
+    let run: Json = serde_json::from_str(&dir.run("simulate worst.toml --json").printed()).expect("JSON");
     assert_eq!(run["metrics"]["requirement_values"][0], case["worst"], "{run}");
     dir.run(&format!("{all} -o points.csv")).exits(0);
     assert!((10..=41).contains(&dir.text("points.csv").lines().count()));

@@ -4,6 +4,7 @@ pub mod bound;
 pub mod budget;
 pub mod damping;
 pub mod describing_function;
+pub mod eigenvalues;
 pub mod identification;
 pub mod limit_cycle;
 pub mod linear_attitude_filter;

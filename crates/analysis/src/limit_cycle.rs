@@ -11,7 +11,9 @@ use flexsc_dynamics::flow::{SegmentInput, UncoupledSegment};
 use flexsc_dynamics::{self, AxisState};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Command, Record, RecordError, Sample, Trigger};
-use nalgebra::{DMatrix, RowDVector, Schur};
+use nalgebra::{Complex, DMatrix, RowDVector};
+
+use super::eigenvalues::schur_eigenvalues;
 
 /// Largest number of pushes per cycle that the detector considers.
 const LONGEST: usize = 16;
@@ -261,12 +263,9 @@ fn multipliers(segment: &mut UncoupledSegment, one: &[Switching]) -> Vec<(f64, f
         fundamental += segment.velocity(&end) * &duration;
         push = duration;
     }
-    let Some(schur) = Schur::try_new(fundamental, f64::EPSILON, 10_000) else { return Vec::new() };
-    let mut eigenvalues: Vec<(f64, f64)> = schur
-        .complex_eigenvalues()
-        .iter()
-        .map(|z| (flexsc_numerics::phasor::abs(*z), flexsc_numerics::phasor::arg(*z)))
-        .collect();
+    let values = schur_eigenvalues(&fundamental).unwrap_or_default();
+    let polar = |z: Complex<f64>| (flexsc_numerics::phasor::abs(z), flexsc_numerics::phasor::arg(z));
+    let mut eigenvalues: Vec<(f64, f64)> = values.into_iter().map(polar).collect();
     eigenvalues.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
     // The motion off the section dies out within a cycle: one eigenvalue is zero, and has no meaning.
     eigenvalues.pop();

@@ -7,7 +7,8 @@ use std::fmt;
 use flexsc_formats::document::ConfigError;
 use serde::Serialize;
 
-use super::margins::{ROUNDING, StabilityMargins, UnstableLoop, eigenvalues, modulus};
+use super::eigenvalues::eigenvalues;
+use super::margins::{ROUNDING, StabilityMargins, UnstableLoop, modulus};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop};
 use super::settling_time::{SettlingTime, settling_times};
 use flexsc_scenario::Scenario;
@@ -62,14 +63,14 @@ impl ScenarioMargins {
     pub fn from_scenario(scenario: &Scenario, opened: LoopBreak) -> Result<Self, MarginsFault> {
         let cut = OpenLoop::from_scenario(scenario, opened).map_err(MarginsFault::Key)?;
         let stability = StabilityMargins::new(&cut).map_err(MarginsFault::Unstable)?;
-        let common_delay_s = common_delay(scenario, &stability).map_err(MarginsFault::Key)?;
+        let common_delay_s = common_delay(scenario, &stability)?;
         let settling = settling_times(scenario).unwrap_or_default();
         Ok(Self { stability, cut, common_delay_s, settling })
     }
 }
 
 /// Returns the smallest additional delay (s) of all actuators together that makes a loop unstable.
-fn common_delay(scenario: &Scenario, stability: &StabilityMargins) -> Result<Option<f64>, ConfigError> {
+fn common_delay(scenario: &Scenario, stability: &StabilityMargins) -> Result<Option<f64>, MarginsFault> {
     if let ([only], 1) = (&stability.loops[..], stability.samples) {
         return Ok(only.delay_s);
     }
@@ -78,13 +79,15 @@ fn common_delay(scenario: &Scenario, stability: &StabilityMargins) -> Result<Opt
     let crossings = stability.loops.iter().flat_map(|own| &own.crossings.gain);
     let delays = crossings.map(|crossing| lag(crossing.frequency_rad_s, crossing.phase_rad));
     let Some(alone) = delays.filter(|delay| *delay > 0.0).min_by(f64::total_cmp) else { return Ok(None) };
-    let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
-    let is_stable = |delay: f64| -> Result<bool, ConfigError> {
+    let parts = LoopParts::from_scenario(scenario, LoopBreak::Command).map_err(MarginsFault::Key)?;
+    let first = stability.loops.first().map_or("", |own| &own.signal);
+    let is_stable = |delay: f64| -> Result<bool, MarginsFault> {
         let mut late = parts.clone();
         late.actuators.delay += delay;
-        let closed = OpenLoop::from_parts(&late)?.transfer.sensitivity();
-        let poles = closed.and_then(|closed| eigenvalues(&closed.a)).unwrap_or_default();
-        Ok(!poles.is_empty() && poles.iter().all(|pole| modulus(*pole) <= 1.0 + ROUNDING))
+        let opened = OpenLoop::from_parts(&late).map_err(MarginsFault::Key)?;
+        let poles = opened.transfer.sensitivity().and_then(|closed| eigenvalues(&closed.a));
+        let unknown = || MarginsFault::Unstable(UnstableLoop::with_unknown_poles(first));
+        Ok(poles.ok_or_else(unknown)?.iter().all(|pole| modulus(*pole) <= 1.0 + ROUNDING))
     };
     let step = alone / DELAYS as f64;
     let mut low = 0.0;

@@ -11,7 +11,8 @@ use flexsc_numerics::attitude::AXES;
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
-use super::margins::{FrequencyResponse, ResidueResponse, eigenvalues, modulus};
+use super::eigenvalues::eigenvalues;
+use super::margins::{FrequencyResponse, ResidueResponse, modulus};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop, TransferMatrices};
 use flexsc_scenario::Scenario;
 

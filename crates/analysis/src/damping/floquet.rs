@@ -4,11 +4,11 @@
 //! cycles this phase returns. The frozen regressor allows gains that are too large by a factor of hundreds. Derived for
 //! this project.
 
-use nalgebra::linalg::Schur;
-use nalgebra::{Matrix4, RowVector4};
+use nalgebra::{DMatrix, Matrix4, RowVector4};
 use serde::Serialize;
 
 use super::Convergence;
+use crate::eigenvalues::eigenvalues;
 
 /// Largest number of cycles after which the phase is taken to return.
 const LONGEST: u32 = 400;
@@ -16,8 +16,6 @@ const LONGEST: u32 = 400;
 const SAME: f64 = 1e-9;
 /// Least and greatest gain that is tried, and the ratio of consecutive gains.
 const GAINS: [f64; 3] = [1e-4, 10.0, 1.05];
-/// Number of sweeps after which the search for eigenvalues is given up.
-const SWEEPS: usize = 10_000;
 
 /// Gains of the identification with which the observer converges.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -42,11 +40,8 @@ impl Convergence {
             product /= size;
             scale += libm::log(size);
         }
-        if product.iter().any(|m| !m.is_finite()) {
-            return f64::INFINITY;
-        }
-        let Some(schur) = Schur::try_new(product, f64::EPSILON, SWEEPS) else { return f64::INFINITY };
-        let values = schur.complex_eigenvalues();
+        let product = DMatrix::from_fn(4, 4, |row, column| product[(row, column)]);
+        let Some(values) = eigenvalues(&product) else { return f64::INFINITY };
         let largest = values.iter().map(|value| libm::hypot(value.re, value.im)).fold(0.0, f64::max);
         libm::exp((libm::log(largest) + scale) / f64::from(count))
     }

@@ -116,7 +116,7 @@ mod tests {
             };
             let phases = [Complex::new(1.0, 0.0), turn(a), turn(b)];
             let turned = DMatrix::from_fn(3, 3, |row, column| phases[row] * matrix[(row, column)]);
-            let values = super::super::loci::eigenvalues_of(turned).expect("values");
+            let values = crate::eigenvalues::complex_eigenvalues(turned).expect("values");
             largest = values.iter().map(Complex::norm_sqr).fold(largest, f64::max);
         }
         let largest = f64::sqrt(largest);

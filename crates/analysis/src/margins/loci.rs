@@ -3,13 +3,11 @@
 //! A loop of one signal has its own transfer as its locus. One with several samples in a period, which is a matrix, has
 //! as many loci: a factor k on all its samples is at the limit of stability where a locus passes -1/k.
 
-use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix};
 
-use super::frequency_response::{FrequencyResponse, unit_circle};
+use crate::eigenvalues::complex_eigenvalues;
 
-/// Number of sweeps after which the search for eigenvalues is given up.
-const SWEEPS: usize = 10_000;
+use super::frequency_response::{FrequencyResponse, unit_circle};
 
 /// Ratio of the largest locus to another beyond which the other is rounding.
 const WIDEST: f64 = 1e8;
@@ -23,23 +21,11 @@ pub struct LociValues {
     pub values: Vec<Complex<f64>>,
 }
 
-/// Returns the eigenvalues of a square matrix; `None` if the search does not converge.
-pub fn eigenvalues_of(matrix: DMatrix<Complex<f64>>) -> Option<Vec<Complex<f64>>> {
-    if matrix.len() == 1 {
-        return Some(vec![matrix[(0, 0)]]);
-    }
-    if matrix.iter().any(|entry| !(entry.re.is_finite() && entry.im.is_finite())) {
-        return None;
-    }
-    let (_, triangle) = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?.unpack();
-    Some(triangle.diagonal().iter().copied().collect())
-}
-
 /// Returns the loci of these loop transfers over angles, without those at poles.
 pub fn loci(transfers: impl Iterator<Item = (f64, DMatrix<Complex<f64>>)>) -> Vec<LociValues> {
     let mut found: Vec<LociValues> = Vec::new();
     for (angle, transfer) in transfers {
-        let Some(mut here) = eigenvalues_of(transfer) else { continue };
+        let Some(mut here) = complex_eigenvalues(transfer) else { continue };
         let largest = here.iter().map(Complex::norm_sqr).fold(0.0, f64::max);
         for value in here.iter_mut().filter(|value| value.norm_sqr() < largest / (WIDEST * WIDEST)) {
             *value = Complex::ZERO;
@@ -73,7 +59,7 @@ impl LocusSegment<'_> {
         let [(low, first), (high, last)] = self.ends;
         let part = (angle - low) / (high - low);
         let expected = first * (1.0 - part) + last * part;
-        match self.response.at(unit_circle(angle)).and_then(eigenvalues_of) {
+        match self.response.at(unit_circle(angle)).and_then(complex_eigenvalues) {
             Some(mut here) => take_nearest(&mut here, expected),
             None if part < 0.5 => first,
             None => last,

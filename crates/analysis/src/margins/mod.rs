@@ -24,17 +24,17 @@ pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
 pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
 pub use loci::LociValues;
-pub use poles::{UnstableLoop, eigenvalues};
+pub use poles::UnstableLoop;
 pub use root_locus::{GainPoles, root_locus};
 
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use frequency_grid::coarse_frequency_grid;
 pub(super) use frequency_response::{largest_direction, largest_gain, modulus, unit_circle};
-pub(super) use loci::eigenvalues_of;
 pub(super) use poles::ROUNDING;
 pub(super) use residue_response::ResidueResponse;
 pub(super) use sample_components::LoopSamples;
 
+use super::eigenvalues::eigenvalues;
 use crossings::SampledTransfer;
 use independent_gain::independent_gain;
 use loci::loci;
@@ -146,17 +146,12 @@ impl StabilityMargins {
     /// # Errors
     /// The closed loop is not stable.
     pub fn new(opened: &OpenLoop) -> Result<Self, UnstableLoop> {
-        let failed = |signal: &str| UnstableLoop {
-            spectral_radius: f64::INFINITY,
-            frequency_rad_s: 0.0,
-            damping: -1.0,
-            signal: signal.to_owned(),
-        };
+        let failed = UnstableLoop::with_unknown_poles;
         let first = opened.signals.first().map_or("", |signal| &signal.name);
         let sensitivity = opened.transfer.sensitivity().ok_or_else(|| failed(first))?;
         let closed = eigenvalues(&sensitivity.a).ok_or_else(|| failed(first))?;
         let spectral_radius = poles::require_stable(opened, &sensitivity.a, &closed)?;
-        let mut others = eigenvalues(&opened.transfer.a).unwrap_or_default();
+        let mut others = eigenvalues(&opened.transfer.a).ok_or_else(|| failed(first))?;
         let count = opened.signals.len();
         let all: Vec<usize> = (0..opened.transfer.b.ncols()).collect();
         let mut signals = Vec::with_capacity(count);
@@ -164,7 +159,7 @@ impl StabilityMargins {
             let own: Vec<usize> = all.iter().copied().filter(|place| place % count == index).collect();
             let transfer = opened.transfer.with_others_closed(&own).ok_or_else(|| failed(&signal.name))?;
             // The loop with the others closed has resonances of its own.
-            others.extend(eigenvalues(&transfer.a).unwrap_or_default());
+            others.extend(eigenvalues(&transfer.a).ok_or_else(|| failed(&signal.name))?);
             signals.push((own, transfer));
         }
         let samples = LoopSamples { period: opened.period, count: opened.samples };

@@ -3,23 +3,14 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
-use nalgebra::linalg::Schur;
-use nalgebra::linalg::balancing::balance_parlett_reinsch;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use super::frequency_response::modulus;
 use super::sample_components::LoopSamples;
+use crate::eigenvalues::eigenvector;
 use crate::open_loop::OpenLoop;
 
-/// Number of sweeps after which the search for eigenvalues is given up.
-const SWEEPS: usize = 10_000;
-/// Shifts with which the search is tried again, over the norm of the matrix, and whether of its transpose.
-const SHIFTS: [(f64, bool); 6] =
-    [(1.0, false), (0.0, true), (1.0, true), (-1.0, false), (0.618, true), (2.414, false)];
-/// Largest entries below the diagonal that the search takes for 0, relative to those on it: its own rounding of equal loops can
-/// exceed the first.
-const NEGLIGIBLE: [f64; 2] = [f64::EPSILON, 8.0 * f64::EPSILON];
 /// Poles this near to the unit circle are on it, within rounding.
 pub const ROUNDING: f64 = 1e-8;
 
@@ -34,6 +25,18 @@ pub struct UnstableLoop {
     pub damping: f64,
     /// Signal at the break in which the motion of that pole is largest.
     pub signal: String,
+}
+
+impl UnstableLoop {
+    /// Creates the fault of a loop whose poles cannot be computed.
+    pub fn with_unknown_poles(signal: &str) -> Self {
+        Self {
+            spectral_radius: f64::INFINITY,
+            frequency_rad_s: 0.0,
+            damping: -1.0,
+            signal: signal.to_owned(),
+        }
+    }
 }
 
 impl fmt::Display for UnstableLoop {
@@ -58,38 +61,6 @@ impl fmt::Display for UnstableLoop {
 }
 
 impl std::error::Error for UnstableLoop {}
-
-/// Returns the eigenvalues of a matrix; `None` if the search does not converge.
-pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    if matrix.iter().any(|entry| !entry.is_finite()) {
-        return None;
-    }
-    if matrix.is_empty() {
-        return Some(Vec::new());
-    }
-    let mut balanced = matrix.clone();
-    balance_parlett_reinsch(&mut balanced);
-    let values = |matrix: DMatrix<f64>, negligible: f64| -> Option<Vec<Complex<f64>>> {
-        let schur = Schur::try_new(matrix, negligible, SWEEPS)?;
-        Some(schur.complex_eigenvalues().iter().copied().collect())
-    };
-    // The search compares entries below the diagonal with those on it, and never ends for a defective eigenvalue 0, such as
-    // that of delays. A shifted matrix has none: the error is a rounding of the whole matrix, as LAPACK's is. Equal loops
-    // about several axes can keep the search in a cycle, which another shift or the transposed matrix leaves.
-    let (size, order) = (balanced.norm(), balanced.nrows());
-    let searched = |negligible: f64| {
-        values(balanced.clone(), negligible).or_else(|| {
-            SHIFTS.iter().find_map(|(factor, is_transposed)| {
-                let shift = factor * size;
-                let matrix = if *is_transposed { balanced.transpose() } else { balanced.clone() };
-                let shifted =
-                    values(matrix + DMatrix::from_diagonal_element(order, order, shift), negligible)?;
-                Some(shifted.into_iter().map(|value| value - shift).collect())
-            })
-        })
-    };
-    NEGLIGIBLE.into_iter().find_map(searched)
-}
 
 /// Returns the spectral radius of a closed loop with these poles; the pole that makes it unstable as an error.
 pub fn require_stable(
@@ -124,45 +95,4 @@ fn largest_signal(opened: &OpenLoop, motion: &[Complex<f64>]) -> Option<String> 
     let size = |signal: usize| motion.iter().skip(signal).step_by(count).map(Complex::norm_sqr).sum::<f64>();
     let largest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
     Some(opened.signals[largest].name.clone())
-}
-
-/// Computes an eigenvector by inverse iteration, from a shift close to the eigenvalue.
-fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-    let order = matrix.nrows();
-    let perturbed = value * (1.0 + 1e-11);
-    let shifted = matrix.map(|entry| Complex::new(entry, 0.0))
-        - DMatrix::from_diagonal_element(order, order, perturbed);
-    let factors = shifted.lu();
-    let mut vector = DVector::from_fn(order, |row, _| Complex::new(1.0, 0.1 * row as f64));
-    for _ in 0..4 {
-        vector = factors.solve(&vector)?;
-        let size = vector.iter().map(|entry| modulus(*entry)).fold(0.0, f64::max);
-        vector.iter_mut().for_each(|entry| *entry /= size);
-    }
-    Some(vector)
-}
-
-#[cfg(test)]
-mod tests {
-    use nalgebra::dmatrix;
-
-    use super::*;
-
-    /// Three samples of delay, twice, beside an integrator and a slow pole.
-    #[test]
-    fn delays_have_the_eigenvalue_0() {
-        let mut matrix = DMatrix::<f64>::zeros(8, 8);
-        for (row, column) in [(1, 0), (2, 1), (4, 3), (5, 4), (6, 2), (6, 5)] {
-            matrix[(row, column)] = 1.0;
-        }
-        (matrix[(6, 6)], matrix[(7, 7)], matrix[(7, 6)]) = (1.0, 0.5, 0.3);
-        let mut sizes: Vec<f64> = eigenvalues(&matrix).expect("values").into_iter().map(modulus).collect();
-        sizes.sort_by(f64::total_cmp);
-        for (size, expected) in sizes.iter().zip([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5, 1.0]) {
-            // A defective value of order three has an error of the third root of the rounding.
-            assert!((size - expected).abs() < 1e-4, "{sizes:?}");
-        }
-        let turn = dmatrix![0.0, -2.0; 2.0, 0.0];
-        assert!(eigenvalues(&turn).expect("values").iter().all(|value| (value.im.abs() - 2.0).abs() < 1e-15));
-    }
 }

@@ -94,8 +94,8 @@ impl ResidueResponse {
 mod tests {
     use nalgebra::dmatrix;
 
-    use super::super::poles::eigenvalues;
     use super::*;
+    use crate::eigenvalues::eigenvalues;
     use crate::open_loop::TransferMatrices;
 
     fn modal(a: DMatrix<f64>) -> (FrequencyResponse, Option<ResidueResponse>) {

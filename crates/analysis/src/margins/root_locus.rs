@@ -6,7 +6,7 @@ use nalgebra::Complex;
 use rayon::prelude::*;
 
 use super::frequency_response::modulus;
-use super::poles::eigenvalues;
+use crate::eigenvalues::eigenvalues;
 use crate::open_loop::{OpenLoop, TransferMatrices};
 
 /// Magnitude below which a pole is a state of one sample, without a frequency.

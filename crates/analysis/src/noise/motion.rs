@@ -6,7 +6,7 @@ use flexsc_numerics::quadrature::nodes;
 use nalgebra::{DMatrix, RowDVector};
 
 use super::period_rows::Piece;
-use crate::margins::eigenvalues;
+use crate::eigenvalues::eigenvalues;
 use crate::margins::frequency_response::modulus;
 use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::sampling::held;

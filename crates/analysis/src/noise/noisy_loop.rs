@@ -10,9 +10,10 @@ use super::motion::Motion;
 use super::output::outputs;
 use super::period_rows::PeriodRows;
 use super::source::sources;
+use crate::eigenvalues::eigenvalues;
 use crate::linear_model::Signal;
+use crate::margins::UnstableLoop;
 use crate::margins::poles::require_stable;
-use crate::margins::{UnstableLoop, eigenvalues};
 use crate::open_loop::attitude_rows::seconds;
 use crate::open_loop::{LoopBreak, LoopParts, OpenLoop};
 use flexsc_scenario::Scenario;
@@ -257,13 +258,9 @@ impl NoisyLoop {
 /// Returns the spectral radius of the closed loop of a scenario.
 fn stable_radius(scenario: &Scenario) -> Result<f64, NoiseError> {
     let opened = OpenLoop::from_scenario(scenario, LoopBreak::Command)?;
-    let failed = || UnstableLoop {
-        spectral_radius: f64::INFINITY,
-        frequency_rad_s: 0.0,
-        damping: -1.0,
-        signal: opened.signals.first().map_or_else(String::new, |signal| signal.name.clone()),
-    };
-    let closed = opened.transfer.sensitivity().ok_or_else(|| NoiseError::Unstable(failed()))?;
-    let poles = eigenvalues(&closed.a).ok_or_else(|| NoiseError::Unstable(failed()))?;
+    let first = opened.signals.first().map_or("", |signal| &signal.name);
+    let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
+    let closed = opened.transfer.sensitivity().ok_or_else(failed)?;
+    let poles = eigenvalues(&closed.a).ok_or_else(failed)?;
     require_stable(&opened, &closed.a, &poles).map_err(NoiseError::Unstable)
 }

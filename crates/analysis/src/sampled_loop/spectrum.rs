@@ -1,15 +1,10 @@
 //! Spectral radius of a closed loop, and the pair of motions that decays last.
 
-use nalgebra::linalg::Schur;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 use serde::Serialize;
 
 use super::ClosedLoop;
-
-/// Number of sweeps after which the search for eigenvalues is given up.
-const SWEEPS: usize = 10_000;
-/// Number of squarings that replace it: the 2^40th root of the factor that a norm adds is below the last bit of 1.
-const SQUARINGS: u32 = 40;
+use crate::eigenvalues::{eigenvector, schur_eigenvalues};
 
 /// Slowest motion of a loop: a pair of eigenvalues, or a real one.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -27,20 +22,13 @@ pub struct SlowestMode {
 impl ClosedLoop {
     /// Returns the eigenvalues of the linear loop, in no particular order; `None` if the search does not converge.
     pub fn eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
-        let matrix = self.matrix();
-        if matrix.iter().any(|m| !m.is_finite()) {
-            return None;
-        }
-        let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS)?;
-        Some(schur.complex_eigenvalues().iter().copied().collect())
+        schur_eigenvalues(&self.matrix())
     }
 
     /// Returns the spectral radius of the linear loop, which is stable below 1. Infinite where a number is not finite.
     pub fn spectral_radius(&self) -> f64 {
-        match self.eigenvalues() {
-            Some(values) => values.iter().map(|value| modulus(*value)).fold(0.0, f64::max),
-            None => gelfand(self.matrix()),
-        }
+        let values = self.eigenvalues();
+        values.map_or(f64::INFINITY, |values| values.into_iter().map(modulus).fold(0.0, f64::max))
     }
 
     /// Returns the slowest motion, and the time at which it alone has settled within `band` (rad).
@@ -81,38 +69,4 @@ impl ClosedLoop {
 
 fn modulus(value: Complex<f64>) -> f64 {
     libm::hypot(value.re, value.im)
-}
-
-/// Computes an eigenvector by inverse iteration, from a shift close to the eigenvalue.
-fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-    let order = matrix.nrows();
-    let perturbed = value * (1.0 + 1e-11);
-    let shifted =
-        matrix.map(|m| Complex::new(m, 0.0)) - DMatrix::from_diagonal_element(order, order, perturbed);
-    let factors = shifted.lu();
-    let mut vector = DVector::from_fn(order, |i, _| Complex::new(1.0, 0.1 * i as f64));
-    for _ in 0..4 {
-        vector = factors.solve(&vector)?;
-        let size = vector.iter().map(|v| modulus(*v)).fold(0.0, f64::max);
-        vector.iter_mut().for_each(|v| *v /= size);
-    }
-    vector.iter().all(|v| v.re.is_finite() && v.im.is_finite()).then_some(vector)
-}
-
-/// Returns the limit of |M^n|^(1/n), by squaring.
-fn gelfand(mut matrix: DMatrix<f64>) -> f64 {
-    let (mut logarithm, mut weight) = (0.0, 1.0);
-    for _ in 0..SQUARINGS {
-        let size = matrix
-            .iter()
-            .fold(0.0, |most: f64, m| if m.is_finite() { most.max(m.abs()) } else { f64::INFINITY });
-        if size == 0.0 || size == f64::INFINITY {
-            return size;
-        }
-        logarithm += weight * libm::log(size);
-        matrix /= size;
-        matrix = &matrix * &matrix;
-        weight *= 0.5;
-    }
-    libm::exp(logarithm)
 }

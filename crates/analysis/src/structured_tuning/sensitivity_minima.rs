@@ -3,9 +3,10 @@
 use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 
+use crate::eigenvalues::{complex_eigenvalues, eigenvalues};
 use crate::margins::{
-    FrequencyResponse, LoopSamples, ResidueResponse, coarse_frequency_grid, eigenvalues, eigenvalues_of,
-    frequency_grid, largest_direction, largest_gain, modulus, unit_circle,
+    FrequencyResponse, LoopSamples, ResidueResponse, coarse_frequency_grid, frequency_grid,
+    largest_direction, largest_gain, modulus, unit_circle,
 };
 use crate::open_loop::{OpenLoop, TransferMatrices};
 
@@ -73,7 +74,7 @@ impl LoopSensitivity {
             let block = DMatrix::from_fn(own.len(), own.len(), |row, column| value[(own[row], own[column])]);
             let one = DMatrix::<Complex<f64>>::identity(own.len(), own.len());
             let transfer = block.try_inverse().map(|inverse| inverse - one);
-            let values = transfer.and_then(eigenvalues_of).unwrap_or_default();
+            let values = transfer.and_then(complex_eigenvalues).unwrap_or_default();
             values.iter().map(|value| modulus(*value)).fold(0.0, f64::max)
         };
         (0..self.signals).map(gain).fold(f64::INFINITY, f64::min)
