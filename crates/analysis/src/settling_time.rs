@@ -19,7 +19,9 @@ use flexsc_scenario::Scenario;
 /// Half width of the band, relative to the step.
 pub const SETTLING_BAND: f64 = 0.05;
 
-/// Weight of the angles of the step against the steadiness of the other states.
+/// Number of doublings of the samples in which filters follow a step.
+const DOUBLINGS: usize = 60;
+/// Weight of the angles of the step against the steadiness of the body.
 const STEP_WEIGHT: f64 = 1e3;
 /// Singular values below this part of the largest one are rounding.
 const LEAST_SINGULAR: f64 = 1e-12;
@@ -27,6 +29,8 @@ const LEAST_SINGULAR: f64 = 1e-12;
 const STEADY: f64 = 1e-10;
 /// Change of a defective state matrix, relative to its size, that gives it a basis of eigenvectors.
 const SPLITTING: f64 = 1e-13;
+/// Distance within which poles are equal; those of a defective pole are apart by the root of a rounding.
+const EQUAL: f64 = 1e-11;
 /// Decay in a sample of a pole at 0.
 const FASTEST: f64 = 700.0;
 /// Number of halvings of the interval of a settling time.
@@ -76,30 +80,37 @@ struct StepResponse(TransferMatrices);
 impl StepResponse {
     fn new(parts: &LoopParts<'_>, opened: &OpenLoop) -> Option<Self> {
         let axes = parts.body.inputs.len();
-        let order = opened.states.len();
-        let of_law = |name: &str| parts.law.block.states.iter().any(|state| state.name == name);
-        let others: Vec<usize> = (0..order).filter(|place| !of_law(&opened.states[*place].name)).collect();
+        let (a, order) = (&opened.transfer.a, opened.states.len());
+        let name = |place: usize| &opened.states[place].name;
+        let is_of_law =
+            |place: &usize| parts.law.block.states.iter().any(|state| state.name == *name(*place));
+        let in_body = |place: usize| parts.body.states.iter().position(|state| state.name == *name(place));
+        let (body, others): (Vec<usize>, Vec<usize>) =
+            (0..order).filter(|place| !is_of_law(place)).partition(|place| in_body(*place).is_some());
         let angles = DMatrix::from_fn(axes, order, |axis, place| {
-            let own = parts.body.states.iter().position(|state| state.name == opened.states[place].name);
-            own.map_or(0.0, |own| parts.body.c[(2 * axis, own)])
+            in_body(place).map_or(0.0, |own| parts.body.c[(2 * axis, own)])
         });
-        // Without commands the states other than the law's stay as they are, and the angles are those of the step.
-        let still = opened.transfer.a.select_rows(&others).select_columns(&others)
-            - DMatrix::identity(others.len(), others.len());
-        let mut equations = still.resize_vertically(others.len() + axes, 0.0);
-        let weighted = angles.select_columns(&others) * STEP_WEIGHT;
-        equations.rows_mut(others.len(), axes).copy_from(&weighted);
-        let mut right = DMatrix::zeros(others.len() + axes, axes);
-        right.rows_mut(others.len(), axes).fill_diagonal(STEP_WEIGHT);
+        // Without commands the body stays as it is, at the angles of the step.
+        let still = a.select_rows(&body).select_columns(&body) - DMatrix::identity(body.len(), body.len());
+        let mut equations = still.resize_vertically(body.len() + axes, 0.0);
+        let weighted = angles.select_columns(&body) * STEP_WEIGHT;
+        equations.rows_mut(body.len(), axes).copy_from(&weighted);
+        let mut right = DMatrix::zeros(body.len() + axes, axes);
+        right.rows_mut(body.len(), axes).fill_diagonal(STEP_WEIGHT);
         let factors = equations.svd(true, true);
-        let known = factors.solve(&right, LEAST_SINGULAR * factors.singular_values.max()).ok()?;
+        let turned = factors.solve(&right, LEAST_SINGULAR * factors.singular_values.max()).ok()?;
+        let of_others = a.select_rows(&others);
+        let followed =
+            followed(of_others.select_columns(&others), of_others.select_columns(&body) * &turned)?;
         let mut start = DMatrix::zeros(order, axes);
-        for (row, place) in others.iter().enumerate() {
-            start.row_mut(*place).copy_from(&known.row(row));
+        for (places, known) in [(&body, &turned), (&others, &followed)] {
+            for (row, place) in places.iter().enumerate() {
+                start.row_mut(*place).copy_from(&known.row(row));
+            }
         }
         // A differentiator starts with the angle itself, as in a run; the other states of the law are 0.
         for place in (0..order).filter(|place| opened.states[*place].name.ends_with(LAST_ANGLE)) {
-            let angle = opened.transfer.a.row(place) * &start;
+            let angle = a.row(place) * &start;
             start.row_mut(place).copy_from(&angle);
         }
         let a = opened.transfer.sensitivity()?.a;
@@ -122,8 +133,35 @@ impl StepResponse {
 
     fn terms_as_it_is(&self) -> Option<Vec<Term>> {
         let poles = eigenvalues(&self.0.a)?;
-        Some(ResidueResponse::new(&FrequencyResponse::new(&self.0), &poles)?.into_terms())
+        Some(merged(ResidueResponse::new(&FrequencyResponse::new(&self.0), &poles)?.into_terms()))
     }
+}
+
+/// Adds the residues of equal poles, such as those of equal loops about several axes: their vectors, and with them the single
+/// residues, depend on roundings.
+fn merged(terms: Vec<Term>) -> Vec<Term> {
+    let mut apart: Vec<Term> = Vec::with_capacity(terms.len());
+    for (pole, residues) in terms {
+        match apart.iter_mut().find(|(known, _)| modulus(*known - pole) <= EQUAL) {
+            Some((_, sum)) => sum.iter_mut().zip(&residues).for_each(|(sum, residue)| *sum += residue),
+            None => apart.push((pole, residues)),
+        }
+    }
+    apart
+}
+
+/// Returns the states x of filters after many samples x' = a x + b from 0: what they do not learn of the input, such as a bias
+/// without noise, remains 0. `None` if they do not settle.
+fn followed(mut a: DMatrix<f64>, mut b: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    for _ in 0..DOUBLINGS {
+        let change = &a * &b;
+        if change.norm() <= f64::EPSILON * b.norm() {
+            return Some(b);
+        }
+        b += change;
+        a = &a * &a;
+    }
+    None
 }
 
 /// Returns the number of periods after which the sum of the terms of a response stays within the band.
