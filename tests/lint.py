@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parent.parent
 KEPT = 'feature="std"'
 # Options whose values are arguments of their own.
 PAIRED = ("-C", "-L", "--cfg", "--check-cfg", "--crate-name", "--crate-type", "--extern", "--out-dir")
+# Crates whose unit tests run for longer than it takes to optimise them, with the level that takes least time.
+HEAVY = {"flexsc_dynamics": "2", "flexsc_formats": "2", "flexsc_numerics": "1", "flexsc_spacecraft": "1"}
 
 # Each option with its value, if that is an argument of its own.
 Options = list[list[str]]
@@ -43,10 +45,8 @@ def lightened(arguments: list[str]) -> list[str]:
     """The arguments of the compiler for tests: what they call in other crates is optimised."""
     if "--test" not in arguments:
         return arguments
-    # Unit tests of these run for longer than it takes to optimise them.
-    heavy = {"flexsc_dynamics", "flexsc_formats", "flexsc_numerics", "flexsc_spacecraft"} & set(arguments)
-    level = "opt-level=1" if heavy else "opt-level=0"
-    less = {"opt-level=3": level, "opt-level=1": level, "codegen-units=1": "codegen-units=4"}
+    level = "opt-level=" + next((HEAVY[argument] for argument in arguments if argument in HEAVY), "0")
+    less = {f"opt-level={more}": level for more in (1, 2, 3)} | {"codegen-units=1": "codegen-units=4"}
     return [less.get(argument, argument) for argument in arguments]
 
 
