@@ -92,6 +92,16 @@ fn fields_that_do_not_fit_are_refused() {
             "epoch = 1999-07-01T00:00:00Z",
             ["`environment.magnetic_field.model`", "covers 2000 to 2030", "from 1999.50"],
         ),
+        (
+            "epoch = 2026-11-24T00:00:00Z",
+            "epoch = 1969-12-31T23:59:59Z",
+            ["`epoch`", "must be a date and time from 1970 to 2500", "such as 2026-"],
+        ),
+        (
+            "epoch = 2026-11-24T00:00:00Z",
+            "epoch = 2026-11-24",
+            ["`epoch`", "must be a date and time from 1970 to 2500", "such as 2026-"],
+        ),
         ("epoch = 2026-11-24T00:00:00Z", "", ["`estimator.attitude.field_degree`", "must be 1", "got 13"]),
     ] {
         assert!(BOARD_MODEL.contains(from), "{from}");

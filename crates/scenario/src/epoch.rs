@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use flexsc_formats::document::DATE;
+use flexsc_formats::document::{ConfigError, DATE};
 use serde::Deserializer;
 use serde::de::{Error, Visitor};
 use toml::value::Datetime;
@@ -22,6 +22,12 @@ pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Dateti
         }
     }
     deserializer.deserialize_newtype_struct(DATE, Date).map(Some)
+}
+
+/// Returns the error of a scenario's `epoch` that is no date and time from 1970 to 2500.
+pub fn fault(epoch: Option<&Datetime>) -> Option<ConfigError> {
+    let why = "must be a date and time from 1970 to 2500, such as 2026-03-20T14:46:00Z";
+    epoch.filter(|epoch| nanoseconds_since_1970(epoch).is_none()).map(|_| ConfigError::new("epoch", why))
 }
 
 /// Returns the nanoseconds since 1970 of a date and time as a scenario would write it, such as `2026-03-20T14:46:00Z`;

@@ -140,7 +140,9 @@ impl Scenario {
             written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
-        if let Some(fault) = written.read_environment(parent, directory) {
+        let fault =
+            epoch::fault(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
+        if let Some(fault) = fault {
             return Err(document.at_key(&fault));
         }
         let model = written.assemble(document, parent, directory)?;
