@@ -8,6 +8,7 @@
 pub mod actuator;
 pub mod adaptation;
 pub mod custom;
+pub mod drive_profile;
 pub mod estimator;
 pub mod interval;
 pub mod law;

@@ -1,19 +1,18 @@
-//! Appendage drives: their angles at every instant of the run, known before it begins, and checks of parts that need
-//! fixed appendages.
+//! Appendage drives of a scenario: their angles over the run, known before it begins, and checks of parts that need fixed
+//! appendages.
 
 use std::sync::Arc;
 
+use flexsc_control::drive_profile::{DriveProfile, DriveProfiles, SunTracking};
 use flexsc_control::law::TargetFrame;
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::{OFF_HUB, Requirements, Rule};
-use flexsc_dynamics::three_axis::{ArticulatedBody, DriveAngles};
+use flexsc_dynamics::three_axis::ArticulatedBody;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::BodyModel;
 use flexsc_spacecraft::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
-use flexsc_spacecraft::environment::{OrbitEnvironment, SunPath, to_body};
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::Quaternion;
 
 use super::{ResolvedScenario, Scenario, ScenarioSpec};
 
@@ -36,100 +35,6 @@ pub struct AppendageDrives {
     pub driven: Arc<ArticulatedBody>,
     /// Angles of the drives over time.
     pub courses: Arc<DriveProfiles>,
-}
-
-/// Angles of all drives over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DriveProfiles {
-    each: Vec<DriveProfile>,
-    fastest: f64,
-    /// Instants at which the modes are replaced or a rate changes, each with the time (s) in the middle of the interval
-    /// that follows, at whose drive angles the modes are computed.
-    pub changes: Vec<(Instant, f64)>,
-}
-
-/// Angle of one drive over time.
-#[derive(Clone, Debug, PartialEq)]
-enum DriveProfile {
-    /// Pieces with constant acceleration.
-    Pieces(Vec<DrivePiece>),
-    /// Sun tracking.
-    Sun(Box<SunTracking>),
-}
-
-/// Sun tracking of a drive.
-#[derive(Clone, Debug, PartialEq)]
-struct SunTracking {
-    sky: OrbitEnvironment,
-    sun: SunPath,
-    /// Frame of the spacecraft's target, and (`attitude`) the target attitude in it.
-    frame: TargetFrame,
-    attitude: Quaternion<f64>,
-    /// Axes of the appendage with the drive at angle 0; in these axes, the drive's axis and the normal that faces the
-    /// Sun.
-    axes: Matrix3<f64>,
-    about: Vector,
-    facing: Vector,
-}
-
-impl SunTracking {
-    /// Returns the components of the direction to the Sun along the normal at drive angle 0 and at a quarter of a turn,
-    /// each with its rate (1/s).
-    fn seen(&self, t: f64) -> [[f64; 2]; 2] {
-        let pose = self.frame.state_at(&self.sky, t);
-        let rate: Vector = to_body(&self.attitude, &pose.rate);
-        let motion = self.sun.motion(t);
-        let [sun, moves]: [Vector; 2] =
-            [motion.direction, motion.rate].map(|v| to_body(&(pose.attitude * self.attitude), &v));
-        let (own, change) = (self.axes.tr_mul(&sun), self.axes.tr_mul(&(sun.cross(&rate) + moves)));
-        let across = self.about.cross(&self.facing);
-        [[self.facing.dot(&own), across.dot(&own)], [self.facing.dot(&change), across.dot(&change)]]
-    }
-
-    fn at(&self, t: f64) -> [f64; 2] {
-        let [[x, y], [dx, dy]] = self.seen(t);
-        [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
-    }
-
-    /// Returns the sine of the angle between the Sun and the drive's axis.
-    fn across(&self, t: f64) -> f64 {
-        let [[x, y], _] = self.seen(t);
-        libm::hypot(x, y)
-    }
-}
-
-impl DriveProfile {
-    fn at(&self, t: f64) -> [f64; 2] {
-        match self {
-            Self::Sun(following) => following.at(t),
-            Self::Pieces(pieces) => {
-                let past = pieces.partition_point(|[from, ..]| *from <= t);
-                let Some(last) = past.checked_sub(1) else {
-                    return [pieces.first().map_or(0.0, |piece| piece[1]), 0.0];
-                };
-                let [from, angle, rate, acceleration] = pieces[last];
-                let t = t - from;
-                [angle + (rate + 0.5 * acceleration * t) * t, rate + acceleration * t]
-            }
-        }
-    }
-}
-
-impl DriveAngles for DriveProfiles {
-    fn at(&self, drive: usize, t: f64) -> [f64; 2] {
-        self.each[drive].at(t)
-    }
-
-    fn fastest(&self) -> f64 {
-        self.fastest
-    }
-}
-
-impl DriveProfiles {
-    /// Returns the number of drives.
-    pub fn count(&self) -> usize {
-        self.each.len()
-    }
 }
 
 impl ResolvedScenario {

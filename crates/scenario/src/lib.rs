@@ -51,7 +51,7 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
-pub use appendage_drives::{AppendageDrives, DriveProfiles};
+pub use appendage_drives::AppendageDrives;
 pub use assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
 };

@@ -1,5 +1,9 @@
 //! Drive angles as functions of time.
 
+use flexsc_dynamics::three_axis::DriveAngles;
+use flexsc_numerics::attitude::Vector;
+use flexsc_spacecraft::environment::to_body;
+
 use super::*;
 
 /// Returns a spacecraft on an orbit whose panel tracks the Sun from the local axes.

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use flexsc_control::drive_profile::DriveProfiles;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
 use flexsc_dynamics::flow::{ElasticModes, RigidBody, ThreeAxisState};
@@ -18,7 +19,7 @@ use flexsc_spacecraft::body::craft::Translation;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Matrix3, Quaternion};
 
-use flexsc_scenario::{AppendageDrives, DriveProfiles};
+use flexsc_scenario::AppendageDrives;
 
 /// Motion of a three-axis body whose modes act back on its rotation: the integrator, with the data that convert loads
 /// and true state between it and the plant.
