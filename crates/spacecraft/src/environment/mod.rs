@@ -15,6 +15,7 @@ mod ground_site;
 mod igrf_14;
 mod kepler;
 mod magnetic_field;
+mod memo;
 mod moon;
 mod oblateness;
 mod orbit;

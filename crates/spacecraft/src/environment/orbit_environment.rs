@@ -8,6 +8,7 @@ use super::date::greenwich;
 use super::deferred::Deferred;
 use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
+use super::memo::Memo;
 use super::{Environment, OrbitPath, OrbitPosition, ShadowShape, SunPath, moon};
 
 /// Orbit, magnetic field and Sun of a run.
@@ -26,6 +27,10 @@ pub struct OrbitEnvironment {
     date: Option<f64>,
     /// Duration of the run (s).
     duration: f64,
+    /// Positions, fields and parts of the Sun's disc at the last times.
+    positions: Memo<OrbitPosition>,
+    fields: Memo<Option<Vector>>,
+    parts: Memo<f64>,
 }
 
 /// Observable environment at an instant, in inertial axes.
@@ -52,12 +57,15 @@ impl OrbitEnvironment {
             greenwich: epoch_ns.map_or(0.0, greenwich),
             date: epoch_ns.map(moon::since_j2000),
             duration: duration.seconds(),
+            positions: Memo::default(),
+            fields: Memo::default(),
+            parts: Memo::default(),
         }
     }
 
     /// Returns the position at `t` seconds after the start, if the body is on an orbit.
     pub fn position(&self, t: f64) -> Option<OrbitPosition> {
-        self.orbit.as_ref().map(|orbit| orbit.at(t))
+        self.orbit.as_ref().map(|orbit| self.positions.get_or(t, || orbit.at(t)))
     }
 
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
@@ -123,7 +131,9 @@ impl OrbitEnvironment {
     /// Returns the part of the Sun's disc that the planet leaves in view at a time since the start (s), from 0 to 1.
     pub fn part_in_view(&self, t: f64) -> f64 {
         match (self.shadow, &self.orbit, &self.sun) {
-            (ShadowShape::Cone, Some(orbit), Some(sun)) => eclipses::part_in_view(orbit, sun, t),
+            (ShadowShape::Cone, Some(orbit), Some(sun)) => {
+                self.parts.get_or(t, || eclipses::part_in_view(orbit, sun, t))
+            }
             _ if self.eclipses().is_some_and(|eclipses| eclipses.is_within(t)) => 0.0,
             _ => 1.0,
         }
@@ -137,11 +147,6 @@ impl OrbitEnvironment {
     /// Returns true if at least half of the Sun's disc is in view at a time since the start (s).
     pub fn is_lit(&self, t: f64) -> bool {
         self.part_in_view(t) >= 0.5
-    }
-
-    /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
-    pub(super) fn field(&self, place: &OrbitPosition, t: f64) -> Option<Vector> {
-        self.field.as_ref().map(|field| field.at(&place.position, t))
     }
 
     /// Returns an upper bound of the field on the orbit (T).
@@ -173,7 +178,8 @@ impl OrbitEnvironment {
 
     /// Returns the magnetic field at the body in inertial axes (T) at a time since the start (s).
     pub fn field_at(&self, t: f64) -> Option<Vector> {
-        self.field.as_ref().and_then(|field| Some(field.at(&self.position(t)?.position, t)))
+        let field = self.field.as_ref()?;
+        self.fields.get_or(t, || Some(field.at(&self.position(t)?.position, t)))
     }
 
     /// Returns the magnetic field at the body in inertial axes (T) with its first two derivatives at a time since the start
@@ -195,11 +201,10 @@ impl OrbitEnvironment {
     /// Returns the observable environment at a time since the start (s).
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
         let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
-        let place = self.position(t);
         EnvironmentObservation {
-            field: place.as_ref().and_then(|place| self.field(place, t)),
+            field: self.field_at(t),
             sun: sun.map(|sun| sun.direction(t)),
-            nadir: place.map(|place| place.local[2]),
+            nadir: self.position(t).map(|place| place.local[2]),
         }
     }
 }

@@ -167,8 +167,7 @@ impl Surroundings for SurroundingsState {
             self.add_plate_torques(&mut torque, (t, attitude), place.as_ref(), (&self.centre, None));
         }
         let is_held = self.held != Vector::zeros();
-        let magnetic = place.filter(|_| is_held || dipole.is_some());
-        let field = magnetic.and_then(|place| self.sky.field(&place, t));
+        let field = if is_held || dipole.is_some() { self.sky.field_at(t) } else { None };
         if let Some(dipole) = dipole {
             let field = self.axial.map(|own| own.at(t)).or(field).unwrap_or_default();
             torque += dipole.torque(&field, attitude);
