@@ -79,26 +79,27 @@ fn cross_polynomial(v: &Vector3, one: f64, once: f64, twice: f64, scale: f64) ->
 }
 
 impl Matrix6 {
-    /// Propagates the covariance through an interval in which the body rotates by `turn` (rad) at a constant rate: the
-    /// attitude error theta becomes `turned` theta - `drifted` beta, and noise adds its exact covariance.
+    /// Propagates the covariance, which is symmetric, through an interval in which the body rotates by `turn` (rad) at a
+    /// constant rate: the attitude error theta becomes `turned` theta - `drifted` beta, and noise adds its exact covariance.
     pub fn propagate(&mut self, turn: &Vector3, noise: &IntervalNoise) {
         let blocks: IntervalBlocks = IntervalBlocks::new(turn, noise);
         let mut carried: Matrix3 = Matrix3::ZERO;
         let mut moved: Matrix3 = Matrix3::ZERO;
+        // Columns are read along rows, next to each other.
         for row in 0..3 {
             for column in 0..3 {
+                moved.rows[row][column] = (blocks.turned.rows[row][0] * self.rows[0][column]
+                    + blocks.turned.rows[row][1] * self.rows[1][column]
+                    + blocks.turned.rows[row][2] * self.rows[2][column])
+                    - (blocks.drifted.rows[row][0] * self.rows[3][column]
+                        + blocks.drifted.rows[row][1] * self.rows[4][column]
+                        + blocks.drifted.rows[row][2] * self.rows[5][column]);
                 carried.rows[row][column] = (blocks.turned.rows[row][0] * self.rows[0][3 + column]
                     + blocks.turned.rows[row][1] * self.rows[1][3 + column]
                     + blocks.turned.rows[row][2] * self.rows[2][3 + column])
                     - (blocks.drifted.rows[row][0] * self.rows[3][3 + column]
                         + blocks.drifted.rows[row][1] * self.rows[4][3 + column]
                         + blocks.drifted.rows[row][2] * self.rows[5][3 + column]);
-                moved.rows[row][column] = (blocks.turned.rows[row][0] * self.rows[0][column]
-                    + blocks.turned.rows[row][1] * self.rows[1][column]
-                    + blocks.turned.rows[row][2] * self.rows[2][column])
-                    - (blocks.drifted.rows[row][0] * self.rows[column][3]
-                        + blocks.drifted.rows[row][1] * self.rows[column][4]
-                        + blocks.drifted.rows[row][2] * self.rows[column][5]);
             }
         }
         let mut angle: Matrix3 = Matrix3::ZERO;
@@ -114,14 +115,18 @@ impl Matrix6 {
             }
         }
         for row in 0..3 {
+            for column in 0..row {
+                let mean: f64 = (angle.rows[row][column] + angle.rows[column][row]) * 0.5;
+                self.rows[row][column] = mean;
+                self.rows[column][row] = mean;
+            }
+            self.rows[row][row] = angle.rows[row][row];
             for column in 0..3 {
                 let across: f64 = carried.rows[row][column] - blocks.both.rows[row][column];
-                let one: f64 = if row == column { 1.0 } else { 0.0 };
-                self.rows[row][column] = (angle.rows[row][column] + angle.rows[column][row]) * 0.5;
                 self.rows[row][3 + column] = across;
                 self.rows[3 + column][row] = across;
-                self.rows[3 + row][3 + column] += one * (noise.walk * noise.seconds);
             }
+            self.rows[3 + row][3 + row] += noise.walk * noise.seconds;
         }
     }
 }

@@ -126,11 +126,12 @@ impl StepLevels {
     pub fn level(&self, motion: BodyMotion<'_>) -> usize {
         let mut level = 0;
         let mut h = self.base;
+        let hub_rate = motion.amplitudes.map_or(0.0, |amplitudes| self.hub_rate_bound(amplitudes));
         // Non-finite motions need no short steps.
         let drifts = |h: f64| match motion.amplitudes {
             Some(amplitudes) => {
                 let limit = if h > self.resolving { DRIFT } else { RESOLVED_DRIFT };
-                self.exceeds_drift(h, motion, amplitudes, limit)
+                self.exceeds_drift(h, (motion, hub_rate), amplitudes, limit)
             }
             None => h > self.resolving,
         };
@@ -141,11 +142,12 @@ impl StepLevels {
         level
     }
 
-    /// Returns true if the estimated attitude drift in steps of `h` (s) exceeds `limit` (rad/s).
+    /// Returns true if the estimated attitude drift in steps of `h` (s) exceeds `limit` (rad/s); `hub_rate` bounds the
+    /// hub's rate due to oscillating modes (rad/s).
     fn exceeds_drift(
         &self,
         h: f64,
-        motion: BodyMotion<'_>,
+        (motion, hub_rate): (BodyMotion<'_>, f64),
         amplitudes: &[ModeAmplitude],
         limit: f64,
     ) -> bool {
@@ -160,7 +162,7 @@ impl StepLevels {
             rotation * (LOSS * square * square * square).min(1.0)
         };
         // Unresolved modes also rotate each other.
-        let hub_rate = if resolved { 0.0 } else { self.hub_rate_bound(amplitudes) };
+        let hub_rate = if resolved { 0.0 } else { hub_rate };
         let by = motion.elastic_rotation_rate + motion.acceleration * h + hub_rate;
         // The last mode, mostly the fastest, often exceeds the limit alone; the sum of non-negative terms is no
         // smaller.
