@@ -217,6 +217,20 @@ fn an_export_is_written_again_and_does_not_replace_other_files() {
     assert_eq!(dir.read("all.bin"), dir.read("out/vectors.bin"));
 }
 
+/// Files of 4 kB at most stand for a full disk.
+#[cfg(unix)]
+#[test]
+fn an_export_on_a_full_disk_leaves_nothing() {
+    let dir = Dir::with(&["relay-sampled"]);
+    std::fs::create_dir(dir.path("mine")).expect("a directory");
+    for out in ["new/out", "mine"] {
+        let command = format!("export-c relay-sampled.toml -o {out}");
+        dir.start_by("trap '' XFSZ; ulimit -f 8", &command).wait().exits(1).says(&["cannot write"]);
+        assert!(!dir.path("new").exists());
+        assert!(dir.names("mine").is_empty());
+    }
+}
+
 /// Returns the text of a scenario with other lines from one header up to another.
 fn replaced(name: &str, from: &str, to: &str, lines: &str) -> String {
     let dir = Dir::with(&[name]);

@@ -11,9 +11,10 @@ use crate::stop;
 /// Writes a file that the user named, creating its directory. A file with other content is replaced only with `force`.
 pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
     refuse_other(path, bytes, force)?;
-    make_parent(path)?;
-    let _writing = stop::writing();
-    atomic_file::write(path, bytes).map_err(CliError::write(path))
+    in_new_directories(&[path], || {
+        let _writing = stop::writing();
+        atomic_file::write(path, bytes).map_err(CliError::write(path))
+    })
 }
 
 /// Returns an error if the file exists with other content, unless `force`: the same command may write it again.
@@ -44,12 +45,32 @@ fn exists(path: &Path, why: &str) -> CliError {
 /// Writes files whose names the command chose into a directory, which is created. Links and pipes of such names are
 /// refused.
 pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), CliError> {
-    for (path, _) in files {
-        make_parent(path)?;
-        atomic_file::unlinked(path).map_err(CliError::write(path))?;
+    let paths: Vec<&Path> = files.iter().map(|(path, _)| &**path).collect();
+    in_new_directories(&paths, || {
+        for path in &paths {
+            atomic_file::unlinked(path).map_err(CliError::write(path))?;
+        }
+        let _writing = stop::writing();
+        atomic_file::write_all(files).map_err(|(path, error)| CliError::write(&path)(error))
+    })
+}
+
+/// Writes files after creating their directories, of which those that are new are removed if the writing fails.
+fn in_new_directories(files: &[&Path], write: impl FnOnce() -> Result<(), CliError>) -> Result<(), CliError> {
+    let named = |directory: &&Path| !directory.as_os_str().is_empty();
+    let parents = files.iter().flat_map(|path| path.ancestors().skip(1).filter(named));
+    let mut new: Vec<&Path> = parents.filter(|directory| !directory.exists()).collect();
+    // Directories after those that contain them.
+    new.sort_unstable();
+    new.dedup();
+    let written = files.iter().try_for_each(|path| make_parent(path)).and_then(|()| write());
+    if written.is_err() {
+        for directory in new.iter().rev() {
+            // One that holds a file of another process stays.
+            let _ = fs::remove_dir(directory);
+        }
     }
-    let _writing = stop::writing();
-    atomic_file::write_all(files).map_err(|(path, error)| CliError::write(&path)(error))
+    written
 }
 
 /// Creates a directory if it does not exist.
