@@ -86,7 +86,7 @@ pub fn thin(points: &[Point], window: &Window, pixels: u32) -> Vec<Point> {
 pub fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) -> Vec<Point> {
     let far = |a: &Point, b: &Point| {
         let (dx, dy) = ((a.0 - b.0) / width, (a.1 - b.1) / height);
-        dx.hypot(dy) * f64::from(pixels) >= 1.0
+        (dx * dx + dy * dy) * f64::from(pixels) * f64::from(pixels) >= 1.0
     };
     let mut kept: Vec<Point> = Vec::new();
     for (index, point) in points.iter().enumerate() {
@@ -108,7 +108,7 @@ pub fn straighten(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
                 *end = true;
             }
         }
-        let off = |index: usize| distance(points[index], points[from], points[to]);
+        let off = |index: usize| squared_distance(points[index], points[from], points[to]);
         let farthest = (from + 1..to).map(|index| (off(index), index)).max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((_, index)) = farthest.filter(|(off, _)| *off > 1.0) {
             spans.extend([(from, index), (index, to)]);
@@ -117,13 +117,14 @@ pub fn straighten(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     points.iter().zip(kept).filter_map(|(point, kept)| kept.then_some(*point)).collect()
 }
 
-/// Returns the distance of a point from a segment.
-fn distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
+/// Returns the square of the distance of a point from a segment.
+fn squared_distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
     let apart = |a: (i32, i32), b: (i32, i32)| (f64::from(a.0 - b.0), f64::from(a.1 - b.1));
     let ((x, y), (dx, dy)) = (apart(point, from), apart(to, from));
     let square = dx * dx + dy * dy;
     let part = if square > 0.0 { ((x * dx + y * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (x - part * dx).hypot(y - part * dy)
+    let (x, y) = (x - part * dx, y - part * dy);
+    x * x + y * y
 }
 
 /// Returns the line of a value that holds until the next one: it is `values[i]` from `times[i]` on, up to `end`.
@@ -190,7 +191,7 @@ mod tests {
         let kept = straighten(&circle);
         assert!((60..250).contains(&kept.len()), "{}", kept.len());
         for point in &circle {
-            assert!(kept.windows(2).any(|pair| distance(*point, pair[0], pair[1]) <= 1.0));
+            assert!(kept.windows(2).any(|pair| squared_distance(*point, pair[0], pair[1]) <= 1.0));
         }
         assert_eq!(straighten(&[(1, 2)]), [(1, 2)]);
         assert!(straighten(&[]).is_empty());
