@@ -70,6 +70,9 @@ fn doc_lines_name_their_subject() {
             {
                 wrong.push(format!("{name}:{}: {doc}", number + 1));
             }
+            if line.trim_start().starts_with("/// ||") {
+                wrong.push(format!("{name}:{}: {line}", number + 1));
+            }
             within = doc.is_some();
         }
     }

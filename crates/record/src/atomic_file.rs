@@ -12,7 +12,8 @@ const ATTEMPTS: u32 = 100;
 const BUSY_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// File that is being written, under the name of its final path with the suffix `.partial`.
-/// || The temporary file is always created new, so that no existing link, pipe or file is written to, and it is locked
+///
+/// The temporary file is always created new, so that no existing link, pipe or file is written to, and it is locked
 /// while the process lives. The file of a killed process is not locked, and the next process removes it. If the file is
 /// dropped before it is [`finish`](Self::finish)ed, it is removed.
 #[derive(Debug)]

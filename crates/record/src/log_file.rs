@@ -140,7 +140,8 @@ impl Log {
     }
 
     /// Reads a log that is in memory, and that messages call `path`.
-    /// || The index in the summary at the end of a file is not used, because its offsets may be wrong.
+    ///
+    /// The index in the summary at the end of a file is not used, because its offsets may be wrong.
     pub fn read(path: &Path, bytes: Vec<u8>) -> Result<Self, LogError> {
         let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
         if !bytes.starts_with(mcap::MAGIC) {

@@ -28,7 +28,8 @@ fn frequencies(body: &AxisModel) -> Vec<f64> {
 }
 
 /// Returns the natural frequencies for the other state of the hub: held for `sign` 1, free for `sign` -1.
-/// || With a held hub, m = -sum x_i''; with a free one, the torque J (m - sum x_i'') vanishes. In z_i =
+///
+/// With a held hub, m = -sum x_i''; with a free one, the torque J (m - sum x_i'') vanishes. In z_i =
 /// x_i/sqrt(k_i) the modes are then those of (1 + sign s s') z'' + W² z = 0 with s_i = sqrt(k_i), whose inverse
 /// squares are the eigenvalues of W⁻¹ (1 + sign s s') W⁻¹.
 fn other_frequencies(body: &AxisModel, sign: f64) -> Option<Vec<f64>> {

@@ -5,7 +5,8 @@ use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
 use super::task::RestToRestTask;
 
 /// Plans the bang-bang command: A before the switching, -A after it.
-/// || With P the impulse and E the excess travel over that of the mean command, A² T² - 4 E A - P² = 0 and the
+///
+/// With P the impulse and E the excess travel over that of the mean command, A² T² - 4 E A - P² = 0 and the
 /// switching is at T/2 + P/(2 A); of the two roots the larger has its switching within the time.
 pub fn plan(task: &RestToRestTask) -> Waveform {
     let (t, p, e) = (task.time, task.impulse, task.excess_travel());

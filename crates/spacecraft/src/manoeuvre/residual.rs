@@ -64,7 +64,8 @@ pub fn residual_amplitudes(
 
 /// Computes the residual in each coordinate. Gains and weights are constant, and all frequencies vary by the same
 /// factor.
-/// || As a function of that factor, an amplitude varies as fast as the fastest mode turns within the manoeuvre's time:
+///
+/// As a function of that factor, an amplitude varies as fast as the fastest mode turns within the manoeuvre's time:
 /// the largest one is found from samples that resolve every peak, and refined to rounding.
 pub fn residuals(plan: &Plan, body: &AxisModel, band: f64) -> Vec<FinalResidual> {
     let coordinates = coordinates(body);

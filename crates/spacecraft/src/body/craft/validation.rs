@@ -175,7 +175,8 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), ConfigEr
 
 /// Checks that the modes leave the appendage a positive semidefinite mass matrix: that of the six rigid motions minus
 /// the part carried by the modes.
-/// || The matrix is taken about the centre of mass and in principal axes, each divided by the appendage's own value, so
+///
+/// The matrix is taken about the centre of mass and in principal axes, each divided by the appendage's own value, so
 /// that the rounding tolerance does not depend on units or on the distance of the root.
 fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
     let (mass, centre) = (appendage.mass.get(), vector(&appendage.centre));
