@@ -5,13 +5,14 @@ use std::sync::Mutex;
 /// Number of values that are kept.
 const SLOTS: usize = 8;
 
-/// Values of a function at the last times at which it was evaluated.
+/// Values of a function at the last times at which it was evaluated, each in the slot of its time; no slots before the
+/// first.
 #[derive(Debug)]
-pub(super) struct Memo<T>(Mutex<[Option<(u64, T)>; SLOTS]>);
+pub(super) struct Memo<T>(Mutex<Vec<Option<(u64, T)>>>);
 
 impl<T> Default for Memo<T> {
     fn default() -> Self {
-        Self(Mutex::new([const { None }; SLOTS]))
+        Self(Mutex::default())
     }
 }
 
@@ -34,6 +35,9 @@ impl<T: Copy> Memo<T> {
     #[inline]
     pub fn get_or(&self, t: f64, compute: impl FnOnce() -> T) -> T {
         let Ok(mut kept) = self.0.try_lock() else { return compute() };
+        if kept.is_empty() {
+            kept.resize(SLOTS, None);
+        }
         let key = t.to_bits();
         let slot = &mut kept[(key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61) as usize];
         match slot {
