@@ -51,8 +51,8 @@ pub struct SunTracking {
 
 impl SunTracking {
     /// Returns the components of the direction to the Sun along the normal at drive angle 0 and at a quarter of a turn,
-    /// each with its rate (1/s).
-    fn seen(&self, t: f64) -> [[f64; 2]; 2] {
+    /// each with its rate (1/s), at a time `t` since the start (s).
+    fn sun_components(&self, t: f64) -> [[f64; 2]; 2] {
         let pose = self.frame.state_at(&self.sky, t);
         let rate: Vector = to_body(&self.attitude, &pose.rate);
         let motion = self.sun.motion(t);
@@ -65,13 +65,13 @@ impl SunTracking {
 
     /// Returns the angle of the drive (rad) and its rate (rad/s) at a time `t` since the start (s).
     pub fn at(&self, t: f64) -> [f64; 2] {
-        let [[x, y], [dx, dy]] = self.seen(t);
+        let [[x, y], [dx, dy]] = self.sun_components(t);
         [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
     }
 
     /// Returns the sine of the angle between the Sun and the drive's axis at a time `t` since the start (s).
     pub fn across(&self, t: f64) -> f64 {
-        let [[x, y], _] = self.seen(t);
+        let [[x, y], _] = self.sun_components(t);
         libm::hypot(x, y)
     }
 }
@@ -80,7 +80,7 @@ impl DriveProfile {
     /// Returns the angle of the drive (rad) and its rate (rad/s) at a time `t` since the start (s).
     pub fn at(&self, t: f64) -> [f64; 2] {
         match self {
-            Self::Sun(following) => following.at(t),
+            Self::Sun(tracking) => tracking.at(t),
             Self::Pieces(pieces) => {
                 let past = pieces.partition_point(|[from, ..]| *from <= t);
                 let Some(last) = past.checked_sub(1) else {

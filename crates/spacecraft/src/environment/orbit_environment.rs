@@ -27,9 +27,11 @@ pub struct OrbitEnvironment {
     date: Option<f64>,
     /// Duration of the run (s).
     duration: f64,
-    /// Positions, fields and parts of the Sun's disc at the last times.
+    /// Positions on the orbit at the last times.
     positions: Memo<OrbitPosition>,
+    /// Magnetic fields in inertial axes (T) at the last times.
     fields: Memo<Option<Vector>>,
+    /// Parts of the Sun's disc in view at the last times.
     parts: Memo<f64>,
 }
 
