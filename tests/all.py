@@ -7,6 +7,7 @@ build, the benchmarks and the documentation beside the compiler.
 
 import argparse
 import contextlib
+import json
 import os
 import re
 import shutil
@@ -17,11 +18,12 @@ import threading
 import time
 import venv
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+from commands import OUT, ROOT, SUMMARIES, run, side_by_side, succeeds
+
 TARGET = ROOT / "target"
 ENVIRONMENT = TARGET / "venv"
 # pyNastran wants an older numpy than the newest Pythons have: it has an environment of its own.
@@ -29,30 +31,28 @@ NASTRAN = TARGET / "venv-nastran"
 # The environment of `site/build.py`.
 SITE = TARGET / "venv-site"
 # The benchmarks are checked, and not built.
-EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 BENCHMARKS = ("--bench", "bars", "--bench", "engine")
+BUILD = ("cargo", "build", "--release", "--quiet", "--workspace", "--bins", "--tests", *BENCHMARKS)
+EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
 # Python tests that take long, and run beside the others: executors, and type checkers.
 EXECUTORS = "tests/python/test_executor.py"
 TYPES = "tests/python/test_types.py"
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
-# So many inputs, the same on every machine: about 8 s each.
+# So many inputs, the same on every machine: about 6 s each.
 FUZZED = {
-    "scenarios": "1700",
-    "structures": "10000",
-    "logs": "700",
-    "arguments": "750",
-    "live": "2400",
+    "scenarios": "1000",
+    "structures": "2200",
+    "logs": "440",
+    "arguments": "640",
+    "live": "1400",
     "parts": "600",
 }
 # What codespell reads; its exceptions are in pyproject.toml.
 WORDS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs", "scenarios", "site")
 # Time limit of a step (s), so that one that waits for ever is named.
 LONGEST_STEP = 1800
-# What the runners of tests say at their ends.
-SUMMARY = re.compile(r"^(test result: .*|(?:=+ )?\d+ (?:passed|failed).* in [\d.]+ ?s.*)$", re.MULTILINE)
-SUMMARIES: list[str] = []
 
 
 @dataclass
@@ -62,46 +62,6 @@ class Step:
     name: str
     seconds: int
     work: Callable[[], str | None]
-
-
-class Out(threading.local):
-    """Where a thread shows what its commands print: at once, or of work side by side when it is done."""
-
-    kept: bytearray | None = None
-
-    def show(self, piece: bytes) -> None:
-        if self.kept is None:
-            sys.stdout.buffer.write(piece)
-            sys.stdout.flush()
-        else:
-            self.kept += piece
-
-
-OUT = Out()
-
-
-def run(*command: str | Path) -> str:
-    """Runs a command, which must succeed, and returns what it printed, which is also shown."""
-    words = [str(word) for word in command]
-    OUT.show(f"+ {' '.join(words)}\n".encode())
-    printed = bytearray()
-    errors = None if OUT.kept is None else subprocess.STDOUT
-    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=errors) as process:
-        assert process.stdout is not None
-        while piece := os.read(process.stdout.fileno(), 4096):
-            OUT.show(piece)
-            printed += piece
-    if process.returncode != 0:
-        sys.exit(f"{command[0]} failed with {process.returncode}")
-    text = printed.decode(errors="replace")
-    SUMMARIES.extend(match.group(0) for match in SUMMARY.finditer(text))
-    return text
-
-
-def succeeds(*command: str | Path) -> bool:
-    """Runs a command, whose output is not shown."""
-    null = subprocess.DEVNULL
-    return subprocess.run(command, cwd=ROOT, check=False, stdout=null, stderr=null).returncode == 0
 
 
 def tally(printed: str) -> str:
@@ -114,11 +74,28 @@ def tally(printed: str) -> str:
 
 
 def environment(path: Path) -> Path:
-    """The Python of an environment, which is made if it is not there."""
+    """The Python of an environment, which is made if it is not there. `install` alone needs no pip in it."""
     within = path / ("Scripts" if os.name == "nt" else "bin")
     if not within.exists():
-        venv.create(path, with_pip=True)
+        venv.create(path, with_pip=path != NASTRAN)
     return within / "python"
+
+
+def install(path: Path, *packages: str | Path) -> bool:
+    """Installs packages into an environment, with uv or with pip; returns whether they are there.
+
+    uv needs a tenth of the time, but has no part in the settings of pip, such as its index.
+    """
+    python, target = environment(ENVIRONMENT), ("--python", environment(path))
+    uv = (python, "-m", "uv", "pip", "install", *target, *packages)
+    return succeeds(*uv) or succeeds(python, "-m", "pip", *target, *PIP[2:], "install", *packages)
+
+
+def install_wheel(path: Path, extra: str, *packages: str) -> bool:
+    """Installs the wheel in place of an earlier one into an environment, with an extra and packages."""
+    return install(path, "--force-reinstall", "--no-deps", built()) and install(
+        path, f"{built()}[{extra}]", *packages
+    )
 
 
 def form() -> None:
@@ -143,7 +120,7 @@ def compile_all() -> None:
         os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
     else:
         run("cargo", "check", "--release", "--quiet")
-    run("cargo", "build", "--release", "--quiet", "--workspace", "--bins", "--tests", *BENCHMARKS)
+    run(*BUILD)
 
 
 def packages() -> None:
@@ -155,16 +132,9 @@ def packages() -> None:
         assert found, name
         return re.findall(r'"([^"]+)"', found[1])
 
-    for path, options, names in (
-        (ENVIRONMENT, [], of_extra("test")),
-        (SITE, [], ["-r", "site/requirements.txt"]),
-        # Python warns of pyNastran when it compiles it, and a warning fails a test.
-        (NASTRAN, ["--compile-bytecode"], [*of_extra("nastran"), "pytest"]),
-    ):
-        python = environment(path)
-        # uv needs a tenth of the time, but has no part in the settings of pip, such as its index.
-        uv = [environment(ENVIRONMENT), "-m", "uv", "pip", "install", "--python", python, *options, *names]
-        succeeds(*uv) or succeeds(python, *PIP, "install", *names)
+    install(ENVIRONMENT, *of_extra("test"))
+    install(SITE, "-r", "site/requirements.txt")
+    install(NASTRAN, *of_extra("nastran"), "pytest")
 
 
 def build() -> None:
@@ -180,27 +150,47 @@ def wait_for_installation() -> None:
             os.waitpid(int(process), 0)
 
 
+def executables() -> list[tuple[str, Path, Path]]:
+    """The executables of the tests: their targets, their paths, and the directories in which they run.
+
+    `cargo test --lib` would build tests of the libraries that have none, and the Python module twice.
+    """
+    told = subprocess.run(
+        (*BUILD, "--message-format", "json"), cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True
+    ).stdout
+    made = [each for each in map(json.loads, told.splitlines()) if each.get("executable")]
+    return [
+        (each["target"]["name"], Path(each["executable"]), Path(each["manifest_path"]).parent)
+        for each in made
+        if each["profile"]["test"] and each["target"]["kind"] != ["bench"]
+    ]
+
+
 def rust() -> str:
     """The integration tests, and beside them the others, few of which keep more than one core busy."""
     wait_for_installation()
-    others = [word for file in sorted(ROOT.glob("crates/*/tests/*.rs")) for word in ("--test", file.stem)]
-    others += [
-        word
-        for file in sorted(ROOT.glob("crates/*/tests/*/main.rs"))
-        for word in ("--test", file.parent.name)
-    ]
-    printed: list[str] = []
+    printed, failed = [], []
 
-    def tested(*which: str) -> Callable[[], None]:
-        command = ("cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING, *which)
-        return lambda: printed.append(run(*command))
+    def tested(threads: int, *command: str | Path, within: Path = ROOT) -> None:
+        try:
+            printed.append(run(*command, "--test-threads", str(threads), within=within))
+        except SystemExit as failure:
+            failed.append(str(failure))
 
-    one = ("--", "--test-threads", "1")
+    tests = executables()
+    (integration,) = (each for each in tests if each[0] == "tests")
+
+    def others() -> None:
+        for _, path, within in tests:
+            if path != integration[1]:
+                tested(1, path, "--quiet", within=within)
+        tested(1, "cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING, "--doc", "--")
+
     # Some of them wait for a while: three on two cores.
-    threads = ("--", "--test-threads", str((os.cpu_count() or 1) + 1))
-    side_by_side(
-        tested("--test", "tests", *threads), tested("--lib", "--bins", *others, *one), tested("--doc", *one)
-    )
+    threads = (os.cpu_count() or 1) + 1
+    side_by_side(lambda: tested(threads, integration[1], "--quiet", within=integration[2]), others)
+    if failed:
+        sys.exit("; ".join(failed))
     return tally("".join(printed))
 
 
@@ -223,7 +213,7 @@ def fuzz() -> None:
         return
 
     def fuzzed(surface: str, inputs: str) -> tuple[int, str]:
-        command = [TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs]
+        command = (TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
         done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
         return done.returncode, done.stdout
 
@@ -248,8 +238,8 @@ def built() -> Path:
 def python() -> str:
     python = environment(ENVIRONMENT)
     try:
-        run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
-        run(python, *PIP, "install", f"{built()}[test]")
+        if not install_wheel(ENVIRONMENT, "test"):
+            sys.exit(f"{built()} cannot be installed with what its tests need")
     finally:
         INSTALLED.set()
     others = (f"--ignore={file}" for file in (EXECUTORS, TYPES))
@@ -276,38 +266,13 @@ def site() -> None:
 
 def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
-    python = environment(NASTRAN)
-    for options in (["--force-reinstall", "--no-deps", built()], [f"{built()}[nastran]", "pytest"]):
-        if not succeeds(python, *PIP, "install", *options):
-            return (
-                "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
-            )
+    if not install_wheel(NASTRAN, "nastran", "pytest"):
+        return "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
     files = sorted(map(str, (ROOT / "tests/python").glob("test_nastran*.py")))
-    return f"with pyNastran {tally(run(python, '-m', 'pytest', *files, '-q'))}"
-
-
-def side_by_side(*works: Callable[[], str | None]) -> str:
-    """Work that keeps one core busy, two at a time: each shows what it printed when it is done."""
-
-    def kept(work: Callable[[], str | None]) -> tuple[bytes, str | SystemExit | None]:
-        OUT.kept = bytearray()
-        try:
-            told: str | SystemExit | None = work()
-        except SystemExit as failure:
-            told = failure
-        printed, OUT.kept = bytes(OUT.kept), None
-        return printed, told
-
-    results = []
-    with ThreadPoolExecutor(2) as pool:
-        for done in as_completed([pool.submit(kept, work) for work in works]):
-            printed, told = done.result()
-            OUT.show(printed)
-            results.append(told)
-    for told in results:
-        if isinstance(told, SystemExit):
-            raise told
-    return ", ".join(str(told) for told in results if told)
+    # Python warns of pyNastran when it compiles it.
+    warned = (f"-Wignore:invalid escape:{kind}" for kind in ("DeprecationWarning", "SyntaxWarning"))
+    printed = run(environment(NASTRAN), "-m", "pytest", *files, "-q", *warned)
+    return f"with pyNastran {tally(printed)}"
 
 
 def fuzz_and_wheel() -> str:

@@ -255,9 +255,10 @@ fn panels_visibly_bend() {
             continue;
         }
         let dir = Dir::with(&[&name]);
-        let shorter =
-            if name.starts_with("relay") { "--set duration=2000 --set log.scene.period=1" } else { "" };
-        let log = log(&dir, &name, &format!("{shorter} --set log.period=0.5"));
+        let is_long = name.starts_with("relay");
+        let shorter = if is_long { "--set duration=2000 --set log.scene.period=1" } else { "" };
+        let period = if name == "magnetic-unloading" { 5.0 } else { 0.5 };
+        let log = log(&dir, &name, &format!("{shorter} --set log.period={period}"));
         let frames = Frames::from_log(&log);
         let chain = if frames.names.iter().any(|frame| frame == "wing_1/1") { "wing_1/" } else { "panel_1/" };
         let bend = |message: usize| -> f64 {

@@ -223,9 +223,7 @@ impl Campaign {
             let written = self.scenario_with(&keys[..self.design.keys().len()])?;
             keys.push(("manoeuvre.model", Self::planned_model(&written)?));
         }
-        // The body of a plan is more than numbers.
-        let is_numeric = self.design.is_numeric() && !self.plans_first();
-        let scenario = if is_numeric { self.drawn_with(&keys)? } else { self.scenario_with(&keys)? };
+        let scenario = self.scenario_with(&keys)?;
         Ok(CampaignRun { number, scenario, drawn })
     }
 
@@ -348,11 +346,6 @@ impl Campaign {
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
         Scenario::from_document_reusing(&self.document_with(keys)?, &self.scenario)
-    }
-
-    /// Returns the scenario with drawn values of keys that hold numbers already.
-    fn drawn_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
-        Scenario::from_numbers_reusing(&self.document_with(keys)?, &self.scenario)
     }
 
     fn document_with(&self, keys: &[(&str, Value)]) -> Result<Document, ScenarioError> {

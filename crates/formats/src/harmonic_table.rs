@@ -5,11 +5,13 @@ mod coefficient_file;
 mod tests;
 
 use std::borrow::Cow;
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::Error as _;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::structure::open_text_up_to;
@@ -197,19 +199,25 @@ impl Serialize for HarmonicTable {
 
 impl<'de> Deserialize<'de> for HarmonicTable {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged, expecting = "expected `years` and `rows`, or the path of a file of coefficients")]
-        enum RowsOrFile {
-            File(String),
-            Rows(HarmonicRows),
-        }
-        match RowsOrFile::deserialize(deserializer)? {
-            RowsOrFile::File(file) => Ok(Self { file: Some(file), contents: Arc::default() }),
-            RowsOrFile::Rows(mut rows) => {
-                rows.sort(&|row| format!("row {}", row + 1)).map_err(D::Error::custom)?;
-                Ok(Self { file: None, contents: Arc::new(rows) })
+        struct RowsOrFile;
+        impl<'de> Visitor<'de> for RowsOrFile {
+            type Value = HarmonicTable;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("`years` and `rows`, or the path of a file of coefficients")
+            }
+
+            fn visit_str<E: Error>(self, file: &str) -> Result<HarmonicTable, E> {
+                Ok(HarmonicTable { file: Some(file.to_owned()), contents: Arc::default() })
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<HarmonicTable, A::Error> {
+                let mut rows = HarmonicRows::deserialize(MapAccessDeserializer::new(map))?;
+                rows.sort(&|row| format!("row {}", row + 1)).map_err(A::Error::custom)?;
+                Ok(HarmonicTable { file: None, contents: Arc::new(rows) })
             }
         }
+        deserializer.deserialize_any(RowsOrFile)
     }
 }
 

@@ -52,7 +52,7 @@ impl Scenario {
     /// # Errors
     /// Fails if the document is invalid or inconsistent with the parts.
     pub fn from_document_with(document: &Document, own: &CustomParts) -> Result<Self, ScenarioError> {
-        Self::solved(document, None, own, true)
+        Self::solved(document, None, own)
     }
 
     /// Returns the scenario with the parts of `own` in place of those of the same role or index, and with its other
@@ -81,7 +81,7 @@ impl Scenario {
             self.write_placeholder(&mut table, ("actuator", self.actuator.len()), *place, ACTUATOR)?;
         }
         let document = Document::from_table(&self.name, table);
-        Self::solved(&document, Some(self), &all, true)
+        Self::solved(&document, Some(self), &all)
     }
 }
 

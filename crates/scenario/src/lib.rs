@@ -103,32 +103,18 @@ impl Scenario {
 
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
-        Self::solved(document, None, &CustomParts::default(), true)
+        Self::solved(document, None, &CustomParts::default())
     }
 
     /// Reads a scenario from a document that differs from `parent` in some keys. If the body is not among them, its
     /// modes are reused.
     pub fn from_document_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), &parent.custom_parts(), true)
+        Self::solved(document, Some(parent), &parent.custom_parts())
     }
 
-    /// Reads a scenario from a document that differs from `parent` only in numeric values, without a check for unknown
-    /// keys.
-    pub fn from_numbers_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), &parent.custom_parts(), false)
-    }
-
-    fn solved(
-        document: &Document,
-        parent: Option<&Self>,
-        own: &CustomParts,
-        new_keys: bool,
-    ) -> Result<Self, ScenarioError> {
+    fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
         let mut written: ScenarioSpec = document.read()?;
-        if let Some(error) = new_keys.then(|| document.unread(&written.to_table())).flatten() {
-            return Err(error);
-        }
         written.inherit_custom_parts(own, document);
         if !written.mode.is_empty() && document.has("law") {
             let why = "must be left out with `[[mode]]`: each mode has a law of its own";

@@ -52,6 +52,11 @@ impl Mismatch {
         Self::because(format!("exactly one kind is accepted here, and more than one is given: {accepted}"))
     }
 
+    /// Returns the mismatch of an array with more values than are read.
+    pub fn too_many_values(found: usize, expected: usize) -> Self {
+        Self::because(format!("has {found} values, expected {expected}"))
+    }
+
     /// Returns the mismatch of a name whose kind needs a table.
     pub fn only_a_name() -> Self {
         Self::because("found only the name of a kind that needs values of its own: a table")

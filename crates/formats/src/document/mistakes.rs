@@ -102,7 +102,7 @@ fn fitting(why: &str) -> Option<Value> {
         "a table" => Value::Table(Table::new()),
         _ if expected.starts_with("must be") => Value::Float(FITS),
         _ => {
-            let length = expected.strip_prefix("an array of length ")?;
+            let length = expected.strip_prefix("an array of length ").unwrap_or(expected);
             Value::Array(vec![Value::Float(FITS); length.parse().ok().filter(|length| *length <= LONGEST)?])
         }
     };

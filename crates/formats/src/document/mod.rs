@@ -235,13 +235,6 @@ impl Document {
         diagnostic(&self.origin, wrong, message)
     }
 
-    /// Returns an error at the first value that was not read completely; `understood` is the part that was read.
-    pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
-        let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
-        let fault = pairs.find_map(|(key, written, read)| unread(&bare_or_quoted(key), written, read))?;
-        Some(self.at_key(&fault))
-    }
-
     /// Returns the error of a fault, with the place of its value if the text has it.
     pub fn at_key(&self, fault: &ConfigError) -> ScenarioError {
         let key = &fault.key;
@@ -277,24 +270,4 @@ fn too_long(length: u64) -> String {
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
     let table = text.parse().map_err(|error| parse_error("text", text, &error).single_error())?;
     read_value(&Value::Table(table)).map_err(|wrong| mismatch("text", text, &wrong).single_error())
-}
-
-/// Returns a fault at the first part of a value that is not in `read`.
-fn unread(key: &str, written: &Value, read: &Value) -> Option<ConfigError> {
-    match (written, read) {
-        (Value::Table(written), Value::Table(read)) => written.iter().find_map(|(name, value)| {
-            unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
-        }),
-        (Value::Array(written), Value::Array(read)) if written.len() > read.len() => {
-            let why = format!("has {} values, expected {}", written.len(), read.len());
-            Some(ConfigError::new(key, why))
-        }
-        (Value::Array(written), Value::Array(read)) => written
-            .iter()
-            .zip(read)
-            .enumerate()
-            .find_map(|(index, (written, read))| unread(&format!("{key}[{index}]"), written, read)),
-        (Value::Array(_), Value::Table(_)) => Some(ConfigError::new(key, "is an array, expected a table")),
-        _ => None,
-    }
 }

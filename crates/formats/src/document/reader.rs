@@ -66,7 +66,16 @@ impl<'de> Reader<'de> {
 
     fn values<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         match self.0 {
-            Value::Array(values) => visitor.visit_seq(ArrayReader { values: values.iter(), index: 0 }),
+            Value::Array(values) => {
+                let mut elements = ArrayReader { values: values.iter(), index: 0 };
+                let made = visitor.visit_seq(&mut elements)?;
+                // A part of a fixed length reads no further than that.
+                if elements.values.len() == 0 {
+                    Ok(made)
+                } else {
+                    Err(Mismatch::too_many_values(values.len(), elements.index))
+                }
+            }
             _ => self.refused(&visitor),
         }
     }
@@ -336,6 +345,10 @@ mod tests {
         assert_eq!(
             reported("kind = 'simple'\nlist = [[1, 2], [1]]"),
             error_at("list[1]", None, "found an array of length 1, expected an array of length 2")
+        );
+        assert_eq!(
+            reported("kind = 'simple'\nlist = [[1, 2], [1, 2, 3]]"),
+            error_at("list[1]", None, "has 3 values, expected 2")
         );
         assert_eq!(
             reported("knd = 1"),
