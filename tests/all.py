@@ -290,12 +290,12 @@ STEPS = [
     Step(
         "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 285, build
     ),
-    Step("Rust tests", 240, rust),
+    Step("Rust tests", 200, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
-    Step("fuzzing, and the wheel", 45, fuzz_and_wheel),
+    Step("fuzzing, and the wheel", 30, fuzz_and_wheel),
     Step(
         "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        125,
+        110,
         python_and_around,
     ),
 ]

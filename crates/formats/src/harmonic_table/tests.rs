@@ -82,6 +82,13 @@ fn rows_of_a_scenario_are_those_of_the_file() {
         assert!(error.contains(words), "{error}");
     };
     refused("table = 5", "the path of a file of coefficients");
+    refused(
+        "table = [[2020], [[1, 0, 5]]]",
+        "`table`: found an array, expected `years` and `rows`, or the path",
+    );
+    refused("table = { years = [2020] }", "`table`: missing key `rows`");
+    refused("table = { years = [2020], row = [] }", "unknown key `row`");
+    refused("table = { years = [2020], rows = [[1, 0, 'x']] }", "`table.rows[0][2]`: found string \"x\"");
     refused("table = { years = [2020], rows = [[1, 0, 5], [1, 1, 5]] }", "degree 1 and order -1");
     refused("table = { years = [], rows = [[1, 0]] }", "from 1 to 1000 years, got 0");
     refused("table = { years = [2020], rows = [] }", "coefficients of degree 1, got none");
