@@ -88,7 +88,7 @@ def install(path: Path, *packages: str | Path) -> bool:
     """
     python, target = environment(ENVIRONMENT), ("--python", environment(path))
     uv = (python, "-m", "uv", "pip", "install", *target, *packages)
-    return succeeds(*uv) or succeeds(python, "-m", "pip", *target, *PIP[2:], "install", *packages)
+    return succeeds(*uv) or succeeds(python, *PIP, *target, "install", *packages)
 
 
 def install_wheel(path: Path, extra: str, *packages: str) -> bool:

@@ -102,6 +102,7 @@ fn fitting(why: &str) -> Option<Value> {
         "a table" => Value::Table(Table::new()),
         _ if expected.starts_with("must be") => Value::Float(FITS),
         _ => {
+            // Of an array that is too long, the message has only the number of values.
             let length = expected.strip_prefix("an array of length ").unwrap_or(expected);
             Value::Array(vec![Value::Float(FITS); length.parse().ok().filter(|length| *length <= LONGEST)?])
         }
@@ -179,7 +180,8 @@ mod tests {
             found.iter().map(|wrong| format!("{}: {wrong}", wrong.path())).collect::<Vec<_>>()
         };
         let rest = "list = 1\npart = 3\nweak = -1";
-        for inertia in ["[1, 2]", "[[1, 2, 3], [1, 2, 3]]", "[[1, 2], [1], 3]", "7"] {
+        let too_long = "[[1, 2, 3], [1, 2, 3], [1, 2, 3], [1, 2, 3]]";
+        for inertia in ["[1, 2]", "[[1, 2, 3], [1, 2, 3]]", too_long, "[[1, 2], [1], 3]", "7"] {
             let mistakes = found(&format!("inertia = {inertia}\n{rest}"));
             let places: Vec<_> = mistakes.iter().filter_map(|text| text.split(['[', ':']).next()).collect();
             assert_eq!(places, ["inertia", "list", "part", "weak"], "{inertia}: {mistakes:#?}");
