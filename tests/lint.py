@@ -12,7 +12,8 @@ compiler for a crate. A warning of the compiler or of a check fails the build. T
   compares their features.
 
 Tests are compiled with less or no optimisation, which cargo can set for a crate, but not for its tests alone.
-No result depends on it. Benchmarks are checked, and not built.
+The Python module is not optimised: that takes 20 s, and the Python tests take as long without it. No result
+depends on either. Benchmarks are checked, and not built.
 """
 
 import contextlib
@@ -42,8 +43,8 @@ def options(arguments: list[str]) -> Options:
 
 
 def lightened(arguments: list[str]) -> list[str]:
-    """The arguments of the compiler for tests: what they call in other crates is optimised."""
-    if "--test" not in arguments:
+    """The arguments of the compiler for tests and the Python module: what they call is optimised."""
+    if "--test" not in arguments and "_native" not in arguments:
         return arguments
     level = "opt-level=" + next((HEAVY[argument] for argument in arguments if argument in HEAVY), "0")
     less = {f"opt-level={more}": level for more in (1, 2, 3)} | {"codegen-units=1": "codegen-units=4"}

@@ -1,5 +1,5 @@
 //! Structure of the sources: no circle of imports between the rooms of a crate, no file above 400 lines, each with a
-//! module comment first.
+//! module comment first, examples in the documentation that are run, and optimised code in the steps of simulations.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -170,6 +170,34 @@ fn files_are_short_and_say_their_job() {
         let lines = text.lines().count();
         assert!(lines <= LONGEST, "{name} has {lines} lines");
     }
+}
+
+/// Returns how many examples in Rust the documentation comments of a text have.
+fn documented_examples(text: &str) -> usize {
+    let comments = text.lines().filter_map(|line| {
+        let line = line.trim_start();
+        line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))
+    });
+    // Every second fence ends a block.
+    let fences = comments.filter_map(|comment| comment.trim_start().strip_prefix("```"));
+    fences.step_by(2).filter(|language| language.is_empty() || language.starts_with("rust")).count()
+}
+
+/// The documentation of a crate without examples is not compiled as tests, and that of a crate with examples is.
+#[test]
+fn examples_in_the_documentation_are_run() {
+    let (mut run, mut files) = (0, Vec::new());
+    sources(&Path::new(ROOT).join("crates"), &mut files);
+    for entry in fs::read_dir(Path::new(ROOT).join("crates")).expect("the crates").flatten() {
+        let name = entry.file_name().into_string().expect("text");
+        let manifest = fs::read_to_string(entry.path().join("Cargo.toml")).expect("a manifest");
+        let within = format!("crates/{name}/src/");
+        let own = files.iter().filter(|(path, _)| path.starts_with(&within));
+        let examples: usize = own.map(|(_, text)| documented_examples(text)).sum();
+        assert_eq!(examples == 0, manifest.contains("\ndoctest = false\n"), "{name}: {examples}");
+        run += examples;
+    }
+    assert!(run >= 4, "{run}");
 }
 
 /// The crates whose code runs in the steps of a simulation.

@@ -49,6 +49,22 @@ fn an_unstable_loop_is_reported() {
     assert!(object["warnings"].is_null());
 }
 
+/// The last tenth of 0.75 s has no cycle of 0.5 s.
+#[test]
+fn without_a_late_cycle_there_is_no_late_share() {
+    let text = body(0.1, "").replace("duration = 400.0", "duration = 0.75");
+    let (meaning, _) = metrics(&text)
+        .0
+        .into_iter()
+        .find(|(meaning, _)| meaning.name == "actuator_limit_late_share")
+        .expect("the metric");
+    assert!(meaning.doc.contains("null without"), "{}", meaning.doc);
+    let dir = Dir::holding("a.toml", text);
+    let object = dir.run("simulate a.toml --log none --json").exits(0).json();
+    assert!(object["metrics"]["actuator_limit_late_share"].is_null() && object["warnings"].is_null());
+    assert_eq!(object["metrics"]["actuator_end"], "free");
+}
+
 #[test]
 fn steady_saturation_is_reported() {
     let more = "[[disturbance]]\nabout = \"yaw\"\ntorque = 0.08\n";
