@@ -288,14 +288,14 @@ STEPS = [
     Step("licences, sources, duplicates and features of all crates", 5, crates),
     Step("form of the code: rustfmt, ruff, spelling", 10, form),
     Step(
-        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 285, build
+        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 350, build
     ),
-    Step("Rust tests", 200, rust),
+    Step("Rust tests", 300, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
-    Step("fuzzing, and the wheel", 30, fuzz_and_wheel),
+    Step("fuzzing, and the wheel", 45, fuzz_and_wheel),
     Step(
         "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        110,
+        165,
         python_and_around,
     ),
 ]

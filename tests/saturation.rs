@@ -58,7 +58,7 @@ fn without_a_late_cycle_there_is_no_late_share() {
         .into_iter()
         .find(|(meaning, _)| meaning.name == "actuator_limit_late_share")
         .expect("the metric");
-    assert!(meaning.doc.contains("null without"), "{}", meaning.doc);
+    assert!(meaning.doc.contains("null if no cycle"), "{}", meaning.doc);
     let dir = Dir::holding("a.toml", text);
     let object = dir.run("simulate a.toml --log none --json").exits(0).json();
     assert!(object["metrics"]["actuator_limit_late_share"].is_null() && object["warnings"].is_null());

@@ -108,7 +108,7 @@ metrics! {
     ACTUATOR_END = "actuator_end", "",
         "Wheels and magnetorquers in the last tenth of the run: cycling if a wheel alternates between its torque limits at least four times, is at each in over 2.5 % of the cycles, and in the second half over half as often as in the first; saturated if one is at the same limit in over half of the cycles; else free";
     LATE_SHARE = "actuator_limit_late_share", "",
-        "Fraction of the control cycles in the last tenth of the run with any wheel or magnetorquer at a limit; null without one";
+        "Fraction of the control cycles in the last tenth of the run with any wheel or magnetorquer at a limit; null if no cycle begins there";
     GIMBAL_RATE = "gimbal_rate_peak_rad_s", "rad/s", "Largest rate of a gimbal of the control moment gyros";
     SINGULARITY = "singularity_min", "",
         "Smallest singularity measure of the control moment gyros at their commands: 0 where they give no torque in some direction";
