@@ -237,9 +237,7 @@ impl ThreeAxisMotion {
             {
                 self.grid.copy_from(&next_step.to);
             } else {
-                let mut grid = std::mem::take(&mut self.grid);
-                self.advance_grid(level, &mut grid, surroundings);
-                self.grid = grid;
+                self.advance_grid(level, surroundings);
             }
             self.grid_time += h;
             self.invalidate_step();
@@ -254,13 +252,8 @@ impl ThreeAxisMotion {
         self.next_level = None;
     }
 
-    /// Advances a state on the grid by one step of the given level; returns the step length (s).
-    pub(super) fn advance_grid(
-        &mut self,
-        level: usize,
-        state: &mut IntegratorState,
-        surroundings: TimedSurroundings,
-    ) -> Option<f64> {
+    /// Advances the state on the grid, but not its time, by one step of the given level; returns the step length (s).
+    pub(super) fn advance_grid(&mut self, level: usize, surroundings: TimedSurroundings) -> Option<f64> {
         let Some(Some(StepResponses { h, responses })) = self.grid_responses.get(level) else { return None };
         let bearings_now = (&responses[..], &self.bearings[..], &self.slips[..]);
         let step = self.loads.step(
@@ -271,7 +264,7 @@ impl ThreeAxisMotion {
             surroundings,
             self.appendages.as_deref(),
         );
-        self.counts.iterations += u64::from(step.run(state, &mut self.memory));
+        self.counts.iterations += u64::from(step.run(&mut self.grid, &mut self.memory));
         self.counts.steps += 1;
         Some(*h)
     }

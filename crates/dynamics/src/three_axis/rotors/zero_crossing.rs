@@ -40,7 +40,10 @@ impl ThreeAxisMotion {
         let from = self.grid_time;
         let mut to = self.next_step.take().map_or_else(|| self.grid.clone(), |next_step| next_step.to);
         to.copy_from(&self.grid);
-        let Some(h) = self.advance_grid(level, &mut to, surroundings) else { return };
+        std::mem::swap(&mut self.grid, &mut to);
+        let advanced = self.advance_grid(level, surroundings);
+        std::mem::swap(&mut self.grid, &mut to);
+        let Some(h) = advanced else { return };
         self.current.copy_from(&self.grid);
         self.time = from;
         self.update_view();

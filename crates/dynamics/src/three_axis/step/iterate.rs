@@ -77,11 +77,7 @@ impl SimdTask for NodeIteration<'_> {
         let (mut previous, mut iterations) = (0.0, 0);
         while iterations < MAX_ITERATIONS {
             iterations += 1;
-            let deformations = if step.force_arms.is_empty() {
-                deformations::<R, false>(kind, step, varying, modes)
-            } else {
-                deformations::<R, true>(kind, step, varying, modes)
-            };
+            let deformations = deformations(kind, step, varying, modes);
             let (forcing, mut change) = evaluate(kind, step, (state, &*attitudes), &deformations, nodes);
             change.modal_force = update_modal_forcing(kind, step, (&forcing, varying), modes);
             change.inertia_change = largest_norm_squared(&deformations.inertia_change);
@@ -116,10 +112,9 @@ fn largest_norm_squared<R: LaneFloat>(of: &[R; 6]) -> f64 {
     largest_of_nodes(xx * xx + yy * yy + zz * zz + (yz * yz + zx * zx + xy * xy) * 2.0)
 }
 
-/// Computes q and P of all modes at the nodes and returns their sums; with `WITH_ARMS`, also the torque by moving
-/// points of application.
+/// Computes q and P of all modes at the nodes and returns their sums.
 #[inline(always)]
-fn deformations<R: LaneFloat, const WITH_ARMS: bool>(
+fn deformations<R: LaneFloat>(
     kind: R,
     step: &IntegrationStep<'_>,
     varying: bool,
@@ -147,16 +142,21 @@ fn deformations<R: LaneFloat, const WITH_ARMS: bool>(
         }
         let rate = p * of.frequency;
         rate.store(&mut memory.rate);
+        q.store(&mut memory.q);
         elastic_rotation = elastic_rotation.add_scaled(&of.rotation, q);
         canonical_elastic_rate = canonical_elastic_rate.add_scaled(&of.rotation, rate);
-        if changes_inertia {
+    }
+    // Sums of their own loops: all at once need more registers than there are.
+    if changes_inertia {
+        for index in 0..count {
+            let q = kind.load(&modes[index].q);
             for entry in 0..6 {
-                inertia_change[entry] = inertia_change[entry] + q * of.moments[entry];
+                inertia_change[entry] = inertia_change[entry] + q * constants[index].moments[entry];
             }
         }
-        if WITH_ARMS && index < step.force_arms.len() {
-            arm_torque = arm_torque.add_scaled(&step.force_arms[index], q);
-        }
+    }
+    for (arm, memory) in step.force_arms.iter().zip(&*modes) {
+        arm_torque = arm_torque.add_scaled(arm, kind.load(&memory.q));
     }
     NodeDeformations { elastic_rotation, canonical_elastic_rate, inertia_change, arm_torque }
 }

@@ -88,6 +88,8 @@ pub struct ModeMemory {
     /// Rate g = phi' Gt and varying force s at the nodes; the fourth entries are unused.
     pub g: [f64; 4],
     pub s: [f64; 4],
+    /// Coordinates q at the nodes and the end (m sqrt(kg)).
+    pub q: [f64; 4],
     /// Canonical rates P at the nodes (m sqrt(kg)/s); the update of the modal forces adds g where forces depend on q'.
     pub rate: [f64; 4],
 }
