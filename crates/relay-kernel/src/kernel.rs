@@ -10,8 +10,10 @@
 
 mod chatter;
 mod mode;
+mod outlined;
 mod readout;
 mod refill;
+mod uncertain;
 
 use flexsc_dynamics::damping::DampingRule;
 use flexsc_dynamics::predicted_crossing::{
@@ -23,6 +25,8 @@ use super::envelope_lanes::{self, EnvelopePhasor, PhasorState};
 use super::host::{CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState};
 use super::lane_time::{LaneTime, nearest_ticks};
 use mode::LaneMode;
+use outlined::{EnvelopeSpan, Prediction};
+use uncertain::UncertainCrossings;
 
 /// Largest number of lanes.
 pub const MOST: usize = 16;
@@ -207,7 +211,6 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         moment: R,
         levels: &[PredictedLevel<R>; LEVELS],
     ) -> ((LaneTime<R>, R), R::Mask) {
-        let (zero, one) = (moment.splat(0.0), moment.splat(1.0));
         let (fastest, longest) = (self.fastest, self.longest);
         let from = SegmentStart { angle: self.angle, rate: self.rate, moment, fastest, longest };
         let found: PredictedCrossing<R> = match &mut self.modes[..] {
@@ -223,58 +226,18 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
                 for index in 0..modes.len() {
                     self.predicted_modes[index] = modes[index].about_equilibrium(moment);
                 }
-                let found = predict(&from, levels, &mut self.predicted_modes);
+                let modes_now = &mut self.predicted_modes[..];
+                let found = moment.run_outlined(Prediction { from: &from, levels, modes: modes_now });
                 for index in 0..modes.len() {
                     modes[index].store_end(&self.predicted_modes[index]);
                 }
                 found
             }
         };
-        let certain = found.certain;
-        if certain.all() {
+        if found.certain.all() {
             return ((LaneTime::from_ticks(found.ticks), found.after), found.first);
         }
-        // Lanes without a certain crossing do not move yet.
-        for mode in &mut self.modes {
-            for part in 0..2 {
-                mode.end[part] = R::select(certain, mode.end[part], mode.start[part]);
-            }
-        }
-        let mut span = LaneTime::from_ticks(R::select(certain, found.ticks, zero));
-        let mut after = R::select(certain, found.after, zero);
-        let mut first = R::select(found.first | !certain, one, -one);
-        let known = R::select(certain, one, zero);
-        self.write_snapshot();
-        for lane in 0..R::LANES {
-            if !self.active[lane] || known.lane(lane) > 0.0 {
-                continue;
-            }
-            self.lane_state(lane);
-            let side = self.lane_state.side;
-            let found = &mut self.found;
-            if !host.find_crossing(lane, phase, &self.lane_state, found) {
-                // No crossing within the run: the end of the run comes first.
-                span = span.with_lane(lane, (NEVER as u64, 0));
-                continue;
-            }
-            let (parts, seconds) = found.after;
-            if !(seconds > 0.0 && seconds < SHORT) {
-                host.reject(lane);
-                self.active[lane] = false;
-                continue;
-            }
-            span = span.with_lane(lane, parts);
-            after = after.with_lane(lane, seconds);
-            if phase == CyclePhase::Coast {
-                first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
-            }
-            for index in 0..found.modes.len() {
-                let (mode, [x, y]) = (&mut self.modes[index], found.modes[index]);
-                mode.end[0] = mode.end[0].with_lane(lane, 0.0 + side * x);
-                mode.end[1] = mode.end[1].with_lane(lane, side * y);
-            }
-        }
-        ((span, after), zero.lt(first))
+        moment.run_outlined(UncertainCrossings { kernel: self, host, phase, found })
     }
 
     /// Ends the motion after `span`: closes windows on the way, and ends runs that are due. The resulting state is
@@ -350,7 +313,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
                 self.integral =
                     envelope_lanes::advance_group(self.simd, &mut self.tracks, time, span, self.integral);
             } else {
-                self.follow_each(continuing, time, span);
+                time.run_outlined(EnvelopeSpan { kernel: self, continuing, time, span });
             }
             self.integrated_to = LaneTime::select(continuing, reached, self.integrated_to);
             if !due.any() {

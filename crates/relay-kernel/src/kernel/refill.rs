@@ -8,6 +8,7 @@ use flexsc_dynamics::predicted_crossing::{FARTHEST_TURN, PredictedMode};
 use flexsc_numerics::lanes::{LaneFloat, SimdWidth4};
 
 use super::mode::LaneMode;
+use super::outlined::RunStart;
 use super::{MOST, NEVER, ROWS, RelayKernel};
 use crate::chatter::CYCLES;
 use crate::envelope_lanes::{EnvelopePhasor, PhasorState};
@@ -91,7 +92,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             if !self.active[lane]
                 && let Some(setup) = host.next_run(lane)
             {
-                self.begin(lane, setup);
+                self.angle.run_outlined(RunStart { kernel: self, lane, setup });
             }
             any |= self.active[lane];
         }
@@ -102,7 +103,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
 
     /// Initialises a lane with a run.
     #[inline(always)]
-    fn begin(&mut self, lane: usize, setup: &RunSetup) {
+    pub(super) fn begin(&mut self, lane: usize, setup: &RunSetup) {
         let set = |lanes: &mut R, value: f64| *lanes = lanes.with_lane(lane, value);
         self.active[lane] = true;
         self.marks[lane] = self.cycles;

@@ -90,7 +90,6 @@ struct Reader {
     members_read: usize,
 }
 
-#[derive(Clone)]
 enum Member {
     Element(usize),
     Set(String),
@@ -283,21 +282,21 @@ impl Reader {
     fn finish(mut self) -> Result<Deck, String> {
         let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
         for (set, mass, line) in &self.set_masses {
-            let mut open = vec![set.clone()];
-            let mut names: BTreeSet<String> = BTreeSet::new();
+            let mut open = vec![set.as_str()];
+            let mut names = BTreeSet::new();
             while let Some(name) = open.pop() {
-                if !names.insert(name.clone()) {
+                if !names.insert(name) {
                     continue;
                 }
                 let members = self
                     .members
-                    .get(&name)
+                    .get(name)
                     .ok_or_else(|| format!("line {line}: must have a set {name} of elements of type MASS"))?;
                 look_up(&mut self.members_read, members.len(), *line)?;
                 for member in members {
                     match member {
                         Member::Element(element) => drop(weighed.insert(*element, *mass)),
-                        Member::Set(name) => open.push(name.clone()),
+                        Member::Set(name) => open.push(name),
                     }
                 }
             }
