@@ -18,11 +18,11 @@ import threading
 import time
 import venv
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from commands import OUT, ROOT, SUMMARIES, run, side_by_side, succeeds
+from commands import ROOT, SUMMARIES, run, side_by_side, succeeds
 
 TARGET = ROOT / "target"
 ENVIRONMENT = TARGET / "venv"
@@ -35,9 +35,12 @@ BENCHMARKS = ("--bench", "bars", "--bench", "engine")
 BUILD = ("cargo", "build", "--release", "--quiet", "--workspace", "--bins", "--tests", *BENCHMARKS)
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
-# Python tests that take long, and run beside the others: executors, and type checkers.
+# Python tests that take long, and run beside the others: what pages say, executors, and type checkers.
+PAGES = "tests/python/test_docs.py"
 EXECUTORS = "tests/python/test_executor.py"
 TYPES = "tests/python/test_types.py"
+# The site runs all tutorials.
+WITHOUT = ("-k", "not matplotlib_alone")
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 6 s each.
@@ -208,20 +211,10 @@ def papers() -> None:
 
 
 def fuzz() -> None:
-    """Two surfaces at a time: one keeps one core busy."""
     if os.name != "posix":
         return
-
-    def fuzzed(surface: str, inputs: str) -> tuple[int, str]:
-        command = (TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
-        done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
-        return done.returncode, done.stdout
-
-    with ThreadPoolExecutor(2) as pool:
-        for code, printed in pool.map(fuzzed, *zip(*FUZZED.items(), strict=True)):
-            OUT.show(printed.encode())
-            if code != 0:
-                sys.exit(f"fuzzing failed with {code}")
+    for surface, inputs in FUZZED.items():
+        run(TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
 
 
 def wheel() -> None:
@@ -236,36 +229,40 @@ def built() -> Path:
 
 
 def python() -> str:
+    """Builds and installs the wheel, for which the tests beside wait, and runs the other tests."""
     python = environment(ENVIRONMENT)
     try:
+        wheel()
         if not install_wheel(ENVIRONMENT, "test"):
             sys.exit(f"{built()} cannot be installed with what its tests need")
     finally:
         INSTALLED.set()
-    others = (f"--ignore={file}" for file in (EXECUTORS, TYPES))
-    # The site runs all tutorials.
-    return tally(run(python, "-m", "pytest", "tests/python", "-q", *others, "-k", "not matplotlib_alone"))
+    others = (f"--ignore={file}" for file in (PAGES, EXECUTORS, TYPES))
+    return tally(run(python, "-m", "pytest", "tests/python", "-q", *others, *WITHOUT))
 
 
 def beside(file: str) -> str:
     """Runs the tests of a file beside the others, as soon as the wheel is installed."""
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", file, "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", file, "-q", *WITHOUT))
 
 
 def extras() -> None:
     """The wheel alone, and with one extra: `tests/extras.py` without names tries them all, in two minutes."""
+    INSTALLED.wait()
     run(sys.executable, "tests/extras.py", built(), "", "plot")
 
 
 def site() -> None:
     """The documentation: every tutorial runs, every link leads somewhere, and the search finds every key."""
+    INSTALLED.wait()
     run(sys.executable, "site/build.py")
     run(sys.executable, "tests/site_search.py")
 
 
 def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
+    INSTALLED.wait()
     if not install_wheel(NASTRAN, "nastran", "pytest"):
         return "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
     files = sorted(map(str, (ROOT / "tests/python").glob("test_nastran*.py")))
@@ -275,13 +272,10 @@ def nastran() -> str:
     return f"with pyNastran {tally(printed)}"
 
 
-def fuzz_and_wheel() -> str:
-    return side_by_side(fuzz, wheel)
-
-
 def python_and_around() -> str:
-    """The longest first; who is done takes the next."""
-    return side_by_side(python, extras, site, lambda: beside(EXECUTORS), lambda: beside(TYPES), nastran)
+    """The longest first, and the fuzzer while the wheel is built; who is done takes the next."""
+    files = (partial(beside, file) for file in (PAGES, EXECUTORS, TYPES))
+    return side_by_side(python, fuzz, site, *files, extras, nastran)
 
 
 STEPS = [
@@ -292,10 +286,9 @@ STEPS = [
     ),
     Step("Rust tests", 300, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
-    Step("fuzzing, and the wheel", 45, fuzz_and_wheel),
     Step(
-        "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        165,
+        "the wheel, Python tests, also with an extra and with pyNastran, the documentation site, and fuzzing",
+        180,
         python_and_around,
     ),
 ]
