@@ -40,8 +40,8 @@ impl EndState {
         }
     }
 
-    /// The warning about a state of this name, in which an actuator is at a limit for a share of the last seconds of a run; none
-    /// of one that is free.
+    /// Returns the warning about a state of this name, in which an actuator is at a limit for a share of the last seconds of a
+    /// run; `None` if it is free.
     pub fn warning(word: &str, share: f64, seconds: f64) -> Option<String> {
         let share_text = format!("{:.0} % of the last {seconds} s", 100.0 * share);
         match word {
@@ -57,7 +57,7 @@ impl EndState {
     }
 }
 
-/// Gathers the control cycles of a run.
+/// Counts of the control cycles of a run in which actuators are at their limits.
 #[derive(Clone, Debug)]
 pub struct Saturation {
     /// Largest torque (N m), momentum (N m s) and speed (rad/s) of a wheel, and moment (A m²) of each magnetorquer.
@@ -65,11 +65,11 @@ pub struct Saturation {
     momentum: f64,
     speed: f64,
     moments: [f64; 3],
-    /// When the end of the run begins, and the middle of it (s).
+    /// Start and middle of the last tenth of the run (s).
     late: f64,
     middle: f64,
     duration: f64,
-    /// How many cycles there were, and how many at the limits of torque, momentum and moment.
+    /// Numbers of cycles: all, and those at the limits of torque, momentum and moment.
     cycles: u64,
     limited: [u64; 3],
     /// Largest speed (rad/s) and momentum (N m s) of a wheel.
@@ -79,14 +79,14 @@ pub struct Saturation {
     ending: [u64; 3],
 }
 
-/// A wheel at the end of a run.
+/// Counts of a wheel in the last tenth of a run.
 #[derive(Copy, Clone, Debug, Default)]
 struct LateWheel {
     /// Cycles at the positive and the negative torque limit, and at the largest momentum or speed.
     ahead: u64,
     back: u64,
     full: u64,
-    /// Sign of the torque limit that it was at last, and how often that changed.
+    /// Sign of the torque limit that was reached last, and number of its changes.
     last: f64,
     reversals: u64,
     /// Cycles at a torque limit in each half of the end.
@@ -94,7 +94,7 @@ struct LateWheel {
 }
 
 impl Saturation {
-    /// An empty gathering for runs of a duration (s) with these actuators.
+    /// Creates counts without cycles for runs of a duration (s) with these actuators.
     pub fn new(actuators: &OneOrMany<AssignedActuator>, duration: f64) -> Self {
         let limit = |bound: Option<Positive>| bound.map_or(f64::INFINITY, Positive::get);
         let wheels = actuators.wheels().map(|(wheels, _)| wheels);
@@ -151,18 +151,18 @@ impl Saturation {
         }
     }
 
-    /// Whether there are wheels.
+    /// Returns true if there are wheels.
     pub fn has_wheels(&self) -> bool {
         !self.wheels.is_empty()
     }
 
-    /// The largest speed (rad/s) and the largest momentum (N m s) of a wheel.
+    /// Returns the largest speed (rad/s) and the largest momentum (N m s) of a wheel so far.
     pub fn peaks(&self) -> [f64; 2] {
         self.peaks
     }
 
-    /// The fractions of the cycles with an actuator at its limit of torque, of momentum or speed, and of magnetic moment; none
-    /// where there is no such limit.
+    /// Returns the fractions of the cycles with an actuator at its limit of torque, of momentum or speed, and of magnetic
+    /// moment; `None` where there is no such limit.
     pub fn shares(&self) -> [Option<f64>; 3] {
         let limits = [self.torque, self.momentum.min(self.speed), self.moments[0]];
         let share = |(limit, count): (f64, u64)| limit.is_finite().then(|| count as f64 / self.cycles as f64);
@@ -170,12 +170,12 @@ impl Saturation {
         [torque, momentum, moment]
     }
 
-    /// The fraction of the end's cycles with an actuator at a limit.
+    /// Returns the fraction of the cycles in the last tenth of the run with an actuator at a limit; NaN without such cycles.
     pub fn late_share(&self) -> f64 {
         self.ending[1] as f64 / self.ending[0] as f64
     }
 
-    /// The state at the end; none without any limit.
+    /// Returns the state in the last tenth of the run; `None` without any limit.
     pub fn end_state(&self) -> Option<EndState> {
         self.shares().iter().any(Option::is_some).then(|| {
             let [all, _, moment] = self.ending.map(|count| count as f64);
@@ -203,7 +203,7 @@ impl Saturation {
         EndState::warning(self.end_state()?.word(), self.late_share(), Self::late_seconds(self.duration))
     }
 
-    /// How long the end of a run of this duration is (s), to three digits.
+    /// Returns the length of the last tenth of a run of this duration (s), to three digits.
     pub fn late_seconds(duration: f64) -> f64 {
         let exact = LATE * duration;
         let unit = libm::pow(10.0, libm::floor(libm::log10(exact)) - 2.0);
