@@ -282,13 +282,13 @@ STEPS = [
     Step("licences, sources, duplicates and features of all crates", 5, crates),
     Step("form of the code: rustfmt, ruff, spelling", 10, form),
     Step(
-        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 350, build
+        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 330, build
     ),
-    Step("Rust tests", 300, rust),
+    Step("Rust tests", 285, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
     Step(
         "the wheel, Python tests, also with an extra and with pyNastran, the documentation site, and fuzzing",
-        180,
+        205,
         python_and_around,
     ),
 ]

@@ -146,10 +146,14 @@ impl<R: LaneFloat> DriftingEquations<R> {
     pub fn expand(&self, ratios: &[RatioSeries<R>], moment: R, series: &mut [R]) {
         let count = self.gain.len();
         let series = &mut series[..SERIES * count];
+        // Slices of one length, so that no index within is checked.
+        let (gain, stiffness) = (&self.gain[..count], &self.stiffness[..count]);
+        let (drag, damped) = (&self.drag[..count], &self.damped[..count]);
         for n in 0..SERIES - 2 {
             let term = (n + 1) as f64;
             let (known, new) = series.split_at_mut((n + 2) * count);
-            let rates = &known[(n + 1) * count..];
+            let (coordinates, rates) = (&known[n * count..][..count], &known[(n + 1) * count..][..count]);
+            let new = &mut new[..count];
             let mut sensed = rates[0];
             for index in 1..self.felt {
                 sensed = sensed + rates[index];
@@ -157,23 +161,21 @@ impl<R: LaneFloat> DriftingEquations<R> {
             let outer = if n == 0 { moment } else { moment.splat(0.0) };
             let push = outer - self.back_emf * term * sensed;
             let divisor = moment.splat(term * (term + 1.0));
-            for index in 0..count {
-                let mut acceleration = self.gain[index] * push;
-                if index > 0 {
-                    let ratio = &ratios[(index - 1).min(ratios.len() - 1)];
-                    let mut spring = known[n * count + index] * ratio.square[0];
-                    for j in 1..ratio.terms.1.min(n + 1) {
-                        spring = spring + known[(n - j) * count + index] * ratio.square[j];
+            new[0] = gain[0] * push / divisor;
+            for index in 1..count {
+                let ratio = &ratios[(index - 1).min(ratios.len() - 1)];
+                let mut spring = coordinates[index] * ratio.square[0];
+                for j in 1..ratio.terms.1.min(n + 1) {
+                    spring = spring + known[(n - j) * count + index] * ratio.square[j];
+                }
+                let mut acceleration = gain[index] * push - stiffness[index] * spring;
+                if damped[index] {
+                    let mut slowing = rates[index] * term * ratio.itself[0];
+                    for j in 1..ratio.terms.0.min(n + 1) {
+                        let rate = known[(n - j + 1) * count + index] * (n - j + 1) as f64;
+                        slowing = slowing + rate * ratio.itself[j];
                     }
-                    acceleration = acceleration - self.stiffness[index] * spring;
-                    if self.damped[index] {
-                        let mut slowing = rates[index] * term * ratio.itself[0];
-                        for j in 1..ratio.terms.0.min(n + 1) {
-                            let rate = known[(n - j + 1) * count + index] * (n - j + 1) as f64;
-                            slowing = slowing + rate * ratio.itself[j];
-                        }
-                        acceleration = acceleration - self.drag[index] * slowing;
-                    }
+                    acceleration = acceleration - drag[index] * slowing;
                 }
                 new[index] = acceleration / divisor;
             }
