@@ -3,8 +3,7 @@
 //!
 //! The kernel is independent of scenarios and logs: the host of the runs, a [`LaneHost`], supplies them as plain numbers
 //! and is notified of events. The results of a lane equal, to the bit, those of the run loop of `flexsc-core`. The
-//! kernels are a separate crate because they take as long to compile as the rest of the engine, and compile in
-//! parallel with it.
+//! kernels are a separate crate because they take long to compile, and compile in parallel with the engine.
 
 mod chatter;
 mod envelope_lanes;
