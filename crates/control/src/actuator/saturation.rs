@@ -156,7 +156,7 @@ impl Saturation {
         !self.wheels.is_empty()
     }
 
-    /// Returns the largest speed (rad/s) and the largest momentum (N m s) of a wheel so far.
+    /// Returns the largest speed (rad/s) and the largest momentum (N m s) of a wheel.
     pub fn peaks(&self) -> [f64; 2] {
         self.peaks
     }
