@@ -41,7 +41,7 @@ EXECUTORS = "tests/python/test_executor.py"
 TYPES = "tests/python/test_types.py"
 # The site runs all tutorials.
 WITHOUT = ("-k", "not matplotlib_alone")
-# Whether the wheel is in the environment.
+# Whether the wheel is in the environment, or could not be built or installed.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 6 s each.
 FUZZED = {
@@ -224,8 +224,16 @@ def wheel() -> None:
 
 
 def built() -> Path:
-    (path,) = (TARGET / "wheels").glob("*.whl")
-    return path
+    wheels = list((TARGET / "wheels").glob("*.whl"))
+    if len(wheels) != 1:
+        sys.exit("the wheel was not built: what needs it was not run")
+    return wheels[0]
+
+
+def wait_for_wheel() -> None:
+    """Waits until `python` has built and installed the wheel, or has failed."""
+    INSTALLED.wait()
+    built()
 
 
 def python() -> str:
@@ -243,26 +251,26 @@ def python() -> str:
 
 def beside(file: str) -> str:
     """Runs the tests of a file beside the others, as soon as the wheel is installed."""
-    INSTALLED.wait()
+    wait_for_wheel()
     return tally(run(environment(ENVIRONMENT), "-m", "pytest", file, "-q", *WITHOUT))
 
 
 def extras() -> None:
     """The wheel alone, and with one extra: `tests/extras.py` without names tries them all, in two minutes."""
-    INSTALLED.wait()
+    wait_for_wheel()
     run(sys.executable, "tests/extras.py", built(), "", "plot")
 
 
 def site() -> None:
     """The documentation: every tutorial runs, every link leads somewhere, and the search finds every key."""
-    INSTALLED.wait()
+    wait_for_wheel()
     run(sys.executable, "site/build.py")
     run(sys.executable, "tests/site_search.py")
 
 
 def nastran() -> str:
     """The tests that need pyNastran, where it can be installed."""
-    INSTALLED.wait()
+    wait_for_wheel()
     if not install_wheel(NASTRAN, "nastran", "pytest"):
         return "pyNastran cannot be installed here: the tests of tests/python/test_nastran*.py are left out"
     files = sorted(map(str, (ROOT / "tests/python").glob("test_nastran*.py")))
