@@ -4,11 +4,13 @@
 //! laws, in one and in pieces, and keeps the invariants of `tests/invariants.rs`; what is refused names a key
 //! and a reason. The tables in docs/combinations.md are made here.
 
-use std::collections::BTreeMap;
+use std::cell::RefCell;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::LazyLock;
 
 use flexsc_core::numerics::attitude::{Vector, vector};
-use flexsc_core::{Scenario, ScenarioError};
+use flexsc_core::{Document, Scenario, ScenarioError};
+use toml::Table;
 
 use crate::combination_tables::{Accepted, section, total};
 use crate::invariants::{
@@ -62,13 +64,25 @@ pub fn scenario(
         _ => format!("estimator = {{ {} }}\n", estimator.2),
     };
     let around = if body == ONE_ANGLE { "" } else { AROUND };
-    let text = format!(
-        "duration = 4.0\nseed = 3\nlog.period = 0.1\n{}\n{}\nactuator = {}\n{estimator}{body}{around}",
-        written(law.2),
-        sensor.2,
-        actuator.2
-    );
-    Scenario::parse("combination.toml", &text)
+    let mut table = keys("duration = 4.0\nseed = 3\nlog.period = 0.1");
+    let own = [&written(law.2), sensor.2, &format!("actuator = {}", actuator.2), &estimator];
+    for text in own.into_iter().chain([&*format!("{body}{around}")]) {
+        for (key, value) in keys(text) {
+            assert!(table.insert(key, value).is_none(), "a key is given twice");
+        }
+    }
+    Scenario::from_document(&Document::from_table("combination.toml", table))
+}
+
+/// Returns the keys of a part of a scenario's text, of which each is parsed once: that takes longer than to copy them.
+fn keys(text: &str) -> Table {
+    thread_local! {
+        static KNOWN: RefCell<HashMap<String, Table>> = RefCell::default();
+    }
+    KNOWN.with_borrow_mut(|known| match known.get(text) {
+        Some(table) => table.clone(),
+        None => known.entry(text.to_owned()).or_insert(text.parse().expect("keys")).clone(),
+    })
 }
 
 /// Body of combinations.
