@@ -1,35 +1,46 @@
-//! Results with lines repeated, removed or swapped, or with other fields: refused with their line, or read, and never indexed
-//! beyond what they hold.
+//! Results of finite-element programs with lines repeated, removed or swapped, or with other bytes: refused with their line, or
+//! read, and never indexed beyond what they hold.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::*;
+use flexsc_core::formats::structure::fe::{FileResults, ResultFormat, StructurePoint};
 
-fn golden(name: &str) -> PathBuf {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe")).join(name)
+use crate::util::Dir;
+
+fn bytes(name: &str) -> Vec<u8> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe"));
+    std::fs::read(folder.join(name)).expect("there")
 }
 
 fn lines(name: &str) -> Vec<String> {
-    std::fs::read_to_string(golden(name)).expect("there").lines().map(str::to_owned).collect()
+    String::from_utf8(bytes(name)).expect("text").lines().map(str::to_owned).collect()
 }
 
-fn parse(format: ResultFormat, text: &[String], deck: &[String]) -> Result<FileResults, String> {
-    let text = text.join("\n") + "\n";
-    let text = text.as_bytes();
+fn format_of(name: &str) -> ResultFormat {
+    ResultFormat::from_path(Path::new(name)).expect("a format")
+}
+
+/// Reads the lowest modes of a file with these lines, and of CalculiX's deck.
+fn read_lines(
+    dir: &Dir,
+    format: ResultFormat,
+    text: &[String],
+    deck: &[String],
+) -> Result<FileResults, String> {
     // Few modes and a point, so that all that reads them is reached.
-    let keep = Some(2);
-    match format {
-        ResultFormat::F06 => f06::read(text, keep),
-        ResultFormat::CalculiX => calculix::read(text, keep),
-        ResultFormat::Flex => flex::read(text, keep),
-        ResultFormat::Frd => {
-            let deck = deck.join("\n") + "\n";
-            let deck = deck::read(deck.as_bytes()).map_err(|why| format!("the deck: {why}"))?;
-            let point = StructurePoint { name: "tip".to_owned(), at: [1.0, 0.1, 0.0] };
-            integrals::modes(frd::read(text)?, &deck, keep, &[point])
-        }
+    let points = [StructurePoint { name: "tip".to_owned(), at: [1.0, 0.1, 0.0] }];
+    if format.has_shapes() {
+        dir.write("results.inp", deck.join("\n") + "\n");
     }
+    dir.write("results", text.join("\n") + "\n");
+    format.read(&dir.path("results"), Some(2), if format.has_shapes() { &points } else { &[] })
+}
+
+/// Reads all modes of a file with these bytes.
+fn read_bytes(dir: &Dir, format: ResultFormat, bytes: &[u8]) -> Result<FileResults, String> {
+    dir.write("results", bytes);
+    format.read(&dir.path("results"), None, &[])
 }
 
 /// Every text with one line of it changed.
@@ -71,19 +82,20 @@ fn is_sound(results: &FileResults) -> bool {
 
 #[test]
 fn a_changed_line_is_refused_or_read() {
+    let dir = Dir::new();
     let results = ["bars.F06", "feet.F06", "bars-msc.f06", "panel.dat", "boom.dat", "bars.flex"];
     let with_decks = ["elements/s3.frd", "elements/b31r.frd", "elements/c3d4.frd"];
     for name in results.iter().chain(&with_decks) {
-        let format = ResultFormat::from_path(Path::new(name)).expect("a format");
+        let format = format_of(name);
         let whole = lines(name);
         let deck = name.strip_suffix(".frd").map_or_else(Vec::new, |stem| lines(&format!("{stem}.inp")));
         for text in damaged(&whole) {
-            if let Ok(results) = parse(format, &text, &deck) {
+            if let Ok(results) = read_lines(&dir, format, &text, &deck) {
                 assert!(is_sound(&results), "{name}");
             }
         }
         for deck in damaged(&deck) {
-            if let Ok(results) = parse(format, &whole, &deck) {
+            if let Ok(results) = read_lines(&dir, format, &whole, &deck) {
                 assert!(is_sound(&results), "{name}");
             }
         }
@@ -92,9 +104,10 @@ fn a_changed_line_is_refused_or_read() {
 
 #[test]
 fn what_is_given_twice_is_refused_with_its_line() {
+    let dir = Dir::new();
     let [frd, deck] = ["elements/s3.frd", "elements/s3.inp"].map(lines);
     let reported = |format: ResultFormat, text: &[String], deck: &[String]| {
-        parse(format, text, deck).expect_err("wrong")
+        read_lines(&dir, format, text, deck).expect_err("wrong")
     };
     let again = |lines: &[String], beginning: &str| {
         let place = lines.iter().position(|line| line.starts_with(beginning)).expect("a line");
@@ -134,7 +147,8 @@ fn what_is_given_twice_is_refused_with_its_line() {
     let (twice, line) = again(&deck, "3, 2, 5, 6");
     let error = reported(ResultFormat::Frd, &frd, &twice);
     assert!(
-        error.contains(&format!("the deck: line {line}: must have each element once, got element 3 again")),
+        error.contains(&format!("line {line}: must have each element once, got element 3 again"))
+            && error.contains("the deck "),
         "{error}"
     );
     // An element of a matrix twice, in the place of another.
@@ -150,14 +164,64 @@ fn what_is_given_twice_is_refused_with_its_line() {
 
 #[test]
 fn sets_within_sets_are_read_once() {
+    let dir = Dir::new();
+    let [results, mut deck] = ["elements/s3.frd", "elements/s3.inp"].map(lines);
+    let mass = |deck: &[String]| read_lines(&dir, ResultFormat::Frd, &results, deck).map(|read| read.mass);
+    let without = mass(&deck).expect("a deck").expect("a mass");
     let links = 20_000;
-    let mut deck = "*ELEMENT, TYPE=MASS, ELSET=S0\n1, 1\n".to_owned();
+    let mut sets = "*ELEMENT, TYPE=MASS, ELSET=S0\n99, 9\n".to_owned();
     for link in 1..=links {
-        writeln!(deck, "*ELSET, ELSET=S{link}\nS{}", link - 1).expect("memory");
+        write!(sets, "*ELSET, ELSET=S{link}\nS{}\n", link - 1).expect("memory");
     }
-    let one = format!("{deck}*MASS, ELSET=S{links}\n2.0\n");
-    assert_eq!(deck::read(one.as_bytes()).expect("a deck").masses[0].mass, 2.0);
-    let many = deck + &format!("*MASS, ELSET=S{links}\n2.0\n").repeat(600);
-    let error = deck::read(many.as_bytes()).expect_err("long");
+    let place = deck.iter().position(|line| line.starts_with("*MATERIAL")).expect("a material");
+    // So little that the shapes are still those of the deck.
+    let one = format!("*MASS, ELSET=S{links}\n2e-9");
+    deck.insert(place, sets + &one);
+    let with = mass(&deck).expect("a deck").expect("a mass");
+    assert!(((with - without) / 2e-9 - 1.0).abs() < 1e-5, "{with} {without}");
+    deck.insert(place + 1, vec![one; 600].join("\n"));
+    let error = mass(&deck).expect_err("long");
     assert!(error.contains("must have at most 10000000 members of sets of point masses"), "{error}");
+}
+
+/// Generator of pseudo-random numbers.
+struct Draws(u64);
+
+impl Draws {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % most
+    }
+}
+
+#[test]
+fn damaged_files_are_refused_or_read_and_never_crash() {
+    let dir = Dir::new();
+    // Only CalculiX's results have a deck.
+    dir.write("results.inp", bytes("boom.inp"));
+    let mut draws = Draws(7);
+    for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex", "boom.frd"]
+    {
+        let format = format_of(name);
+        let whole = bytes(name);
+        let sound = read_bytes(&dir, format, &whole).ok();
+        for _ in 0..200 {
+            // Results of a cut file must equal those of the complete one.
+            if let Ok(results) = read_bytes(&dir, format, &whole[..draws.below(whole.len())]) {
+                assert_eq!(Some(&results.modes), sound.as_ref().map(|sound| &sound.modes), "{name}");
+            }
+            let mut swapped = whole.clone();
+            for _ in 0..=draws.below(4) {
+                let (a, b) = (draws.below(whole.len()), draws.below(whole.len()));
+                swapped.swap(a, b);
+                let place = draws.below(whole.len());
+                swapped[place] ^= if draws.below(3) == 0 { draws.below(256) as u8 } else { 0 };
+            }
+            if let Ok(results) = read_bytes(&dir, format, &swapped) {
+                assert!(results.modes.iter().all(|mode| mode.frequency.is_finite()), "{name}");
+            }
+        }
+    }
+    let long = vec![b'1'; 10_000];
+    assert!(read_bytes(&dir, ResultFormat::F06, &long).expect_err("long").contains("is this a text file"));
 }

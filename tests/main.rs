@@ -53,6 +53,7 @@ mod bearings;
 mod blinding;
 mod convergence;
 mod cycles;
+mod damaged_fe_results;
 mod damping;
 mod damping_relay;
 mod earth_observer;

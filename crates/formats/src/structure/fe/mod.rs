@@ -3,8 +3,6 @@
 //! Modes are about the reference point of the file's participations, in its axes, and mass-normalised.
 
 mod calculix;
-#[cfg(test)]
-mod damaged_tests;
 mod deck;
 mod element;
 mod f06;
