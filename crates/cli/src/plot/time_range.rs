@@ -17,9 +17,10 @@ pub fn resolve(from: Option<f64>, to: Option<f64>, end: f64) -> Result<Option<Ra
     if from.is_none() && to.is_none() {
         return Ok(None);
     }
-    let (start, last) = (from.unwrap_or(0.0), to.unwrap_or(end).min(end));
-    if start >= 0.0 && start < last {
-        return Ok(Some(start..last));
+    let (start, last) = (from.unwrap_or(0.0), to.unwrap_or(end));
+    // Not so if either is NaN.
+    if start >= 0.0 && start < last && start < end {
+        return Ok(Some(start..last.min(end)));
     }
     let limit_text = |time: Option<f64>| time.map_or("-".to_owned(), |time| time.to_string());
     let why =
