@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::ValueHint;
 
-use crate::util::{Dir, FLEXSC, SCENARIOS, has_extension};
+use crate::util::{Dir, FLEXSC};
 
 /// Numbers, and grids of numbers.
 const VALUES: &[&str] = &["0", "-1", "nan", "1e-300", "1e9", "1e20", "1e300", "18446744073709551615"];
@@ -138,26 +138,15 @@ fn values_without_end_are_answered_or_refused() {
     dir.run_bounded(&format!("{friction}.viscous=1e9")).exits(2).says(&["at most 1.0e12 are allowed"]);
 }
 
-#[test]
+/// Runs the first example of each verb with each of its options at each value, in a directory in which all examples have run.
 #[cfg(unix)]
-#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
-fn every_option_ends_in_seconds_whatever_its_value() {
-    let dir = Dir::new();
-    for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
-        if has_extension(&entry.file_name().to_string_lossy(), "toml") {
-            std::fs::copy(entry.path(), dir.path(&entry.file_name().to_string_lossy())).expect("copied");
-        }
-    }
+pub fn every_option_ends_in_seconds(dir: &Dir) {
     let mut cases: Vec<Vec<String>> = Vec::new();
     for verb in flexsc_cli::command().get_subcommands() {
         if WITHOUT.contains(&verb.get_name()) {
             continue;
         }
-        let examples = examples(&dir, verb.get_name());
-        // Later examples read what earlier ones write.
-        for line in &examples {
-            dir.run(&line.join(" "));
-        }
+        let examples = examples(dir, verb.get_name());
         let Some(base) = examples.first() else { continue };
         for option in verb.get_arguments().filter(|option| option.get_action().takes_values()) {
             let Some(name) = option.get_long().filter(|name| !SKIPPED.contains(name)) else { continue };
@@ -175,7 +164,7 @@ fn every_option_ends_in_seconds_whatever_its_value() {
         for _ in 0..4 {
             scope.spawn(|| {
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if let Some(told) = ends(&dir, case) {
+                    if let Some(told) = ends(dir, case) {
                         wrong.lock().expect("whole").push(told);
                     }
                 }

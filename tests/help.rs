@@ -1,6 +1,9 @@
-//! Promises of `--help`: verbs in groups, and examples that work as they stand, one after another in one directory.
+//! Promises of `--help`: verbs in groups, examples that work as they stand, one after another in one directory, and options
+//! that take any value there.
 
 use crate::control_client::ControlClient;
+#[cfg(unix)]
+use crate::extremes::every_option_ends_in_seconds;
 use crate::util::{Dir, SCENARIOS, has_extension};
 
 /// Returns the examples at the end of a verb's help, without redirections.
@@ -23,7 +26,7 @@ fn answered(dir: &Dir, line: &str) {
 
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
-fn every_example_of_the_help_works() {
+fn every_example_works_and_every_option_ends_in_seconds_whatever_its_value() {
     let dir = Dir::new();
     for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
         if has_extension(&entry.file_name().to_string_lossy(), "toml") {
@@ -46,4 +49,6 @@ fn every_example_of_the_help_works() {
             }
         }
     }
+    #[cfg(unix)]
+    every_option_ends_in_seconds(&dir);
 }
