@@ -37,7 +37,6 @@ impl SegmentLoads {
     }
 
     /// Creates the step of `h` (s) that begins `t` (s) after the start of the segment.
-    #[inline(always)]
     pub(super) fn step<'a>(
         &'a self,
         model: &'a BodyConstants,
