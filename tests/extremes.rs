@@ -8,6 +8,8 @@ use std::time::{Duration, Instant};
 
 use clap::ValueHint;
 
+#[cfg(unix)]
+use crate::help::examples;
 use crate::util::{Dir, FLEXSC};
 
 /// Numbers, and grids of numbers.
@@ -20,19 +22,6 @@ const SKIPPED: &[&str] = &["live", "scheduler", "yes", "set", "vary", "help", "l
 /// Time of the processor for each (s), and of the clock where it waits.
 const CPU: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// Returns the examples of a verb's help that end without another program.
-fn examples(dir: &Dir, verb: &str) -> Vec<Vec<String>> {
-    let ran = dir.run(&format!("{verb} --help")).exits(0);
-    let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));
-    let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("flexsc "));
-    let words = |line: &str| {
-        let line = line.split(" > ").next().unwrap_or(line);
-        line.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect()
-    };
-    let waits = |words: &Vec<String>| words[0] == "serve" && !words.contains(&"--describe".to_owned());
-    lines.map(words).filter(|words| !waits(words)).collect()
-}
 
 /// Arguments with a value of an option, in place of the one that they have.
 fn with(arguments: &[String], option: &str, value: &str) -> Vec<String> {
@@ -147,7 +136,9 @@ pub fn every_option_ends_in_seconds(dir: &Dir) {
             continue;
         }
         let examples = examples(dir, verb.get_name());
-        let Some(base) = examples.first() else { continue };
+        let waits = |line: &str| line.starts_with("serve ") && !line.contains("--describe");
+        let Some(line) = examples.iter().find(|line| !waits(line)) else { continue };
+        let base: Vec<_> = line.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect();
         for option in verb.get_arguments().filter(|option| option.get_action().takes_values()) {
             let Some(name) = option.get_long().filter(|name| !SKIPPED.contains(name)) else { continue };
             let of = option.get_value_names().unwrap_or_default();
@@ -155,7 +146,7 @@ pub fn every_option_ends_in_seconds(dir: &Dir) {
             // A path has no size: numbers are names there.
             let is_path = option.get_value_hint() == ValueHint::AnyPath;
             let values = if is_grid { GRIDS } else { &VALUES[..if is_path { 2 } else { VALUES.len() }] };
-            cases.extend(values.iter().map(|value| with(base, name, value)));
+            cases.extend(values.iter().map(|value| with(&base, name, value)));
         }
     }
     assert!(cases.len() > 200, "{}", cases.len());

@@ -1,5 +1,5 @@
-//! Promises of `--help`: verbs in groups, examples that work as they stand, one after another in one directory, and options
-//! that take any value there.
+//! Promises of `--help`: verbs in groups, and examples that work as they stand, one after another in one directory, with
+//! options of any value too.
 
 use crate::control_client::ControlClient;
 #[cfg(unix)]
@@ -7,7 +7,7 @@ use crate::extremes::every_option_ends_in_seconds;
 use crate::util::{Dir, SCENARIOS, has_extension};
 
 /// Returns the examples at the end of a verb's help, without redirections.
-fn examples(dir: &Dir, verb: &str) -> Vec<String> {
+pub fn examples(dir: &Dir, verb: &str) -> Vec<String> {
     let ran = dir.run(&format!("{verb} --help")).exits(0);
     let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));
     let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("flexsc "));

@@ -143,8 +143,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as out:
         check = checked(given, Path(out))
         stable = [argument for argument in check if not argument.startswith("--emit=")]
-        # The documentation is of libraries.
-        beside = [] if "bin" in command else [[rustdoc, *stable]]
+        beside = [[rustdoc, *stable]]
         if "bin" in command or not has_unit_tests(manifest):
             beside.append([clippy, compiler, *check])
         return run([*command, "-Dwarnings"], *beside)

@@ -12,13 +12,13 @@ const MARGIN: f64 = 0.06;
 /// Returns the shown interval of a run that ends at `end` (s).
 ///
 /// # Errors
-/// An interval that is outside the run.
+/// An interval that is outside the run, or has a bound that is not a number.
 pub fn resolve(from: Option<f64>, to: Option<f64>, end: f64) -> Result<Option<Range<f64>>, CliError> {
     if from.is_none() && to.is_none() {
         return Ok(None);
     }
     let (start, last) = (from.unwrap_or(0.0), to.unwrap_or(end));
-    // Not so if either is NaN.
+    // False if a bound is NaN.
     if start >= 0.0 && start < last && start < end {
         return Ok(Some(start..last.min(end)));
     }
