@@ -52,6 +52,8 @@ FUZZED = {
     "live": "1400",
     "parts": "600",
 }
+# Tests wait now and then: so many at a time, three on two cores.
+THREADS = (os.cpu_count() or 1) + 1
 # What codespell reads; its exceptions are in pyproject.toml.
 WORDS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs", "scenarios", "site")
 # Time limit of a step (s), so that one that waits for ever is named.
@@ -115,6 +117,10 @@ def crates() -> None:
     if shutil.which("cargo-deny") is not None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
     run(sys.executable, "tests/features.py")
+
+
+def form_and_crates() -> None:
+    side_by_side(form, crates)
 
 
 def compile_all() -> None:
@@ -189,9 +195,7 @@ def rust() -> str:
                 tested(1, path, "--quiet", within=within)
         tested(1, "cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING, "--doc", "--")
 
-    # Some of them wait for a while: three on two cores.
-    threads = (os.cpu_count() or 1) + 1
-    side_by_side(lambda: tested(threads, integration[1], "--quiet", within=integration[2]), others)
+    side_by_side(lambda: tested(THREADS, integration[1], "--quiet", within=integration[2]), others)
     if failed:
         sys.exit("; ".join(failed))
     return tally("".join(printed))
@@ -200,14 +204,6 @@ def rust() -> str:
 def rust_light() -> str:
     """All but the one test that takes a quarter of their time."""
     return tally(run("cargo", "test", "--release", "--quiet", "--", "--skip", "parts_combine"))
-
-
-def papers() -> None:
-    out = TARGET / "reproduce"
-    run(TARGET / "release" / "flexsc", "reproduce", "-o", out, "--docs", out)
-    made, kept = (path / "papers.md" for path in (out, ROOT / "docs"))
-    if made.read_bytes() != kept.read_bytes():
-        sys.exit(f"{kept} is not what `flexsc reproduce` makes: see {made}")
 
 
 def fuzz() -> None:
@@ -283,17 +279,19 @@ def nastran() -> str:
 def python_and_around() -> str:
     """The longest first, and the fuzzer while the wheel is built; who is done takes the next."""
     files = (partial(beside, file) for file in (PAGES, EXECUTORS, TYPES))
-    return side_by_side(python, fuzz, site, *files, extras, nastran)
+    return side_by_side(python, fuzz, site, *files, extras, nastran, count=THREADS)
 
 
 STEPS = [
-    Step("licences, sources, duplicates and features of all crates", 5, crates),
-    Step("form of the code: rustfmt, ruff, spelling", 10, form),
+    Step(
+        "form of the code: rustfmt, ruff, spelling; licences, sources, duplicates and features of all crates",
+        7,
+        form_and_crates,
+    ),
     Step(
         "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 330, build
     ),
     Step("Rust tests", 285, rust),
-    Step("docs/papers.md is what the program computes", 15, papers),
     Step(
         "the wheel, Python tests, also with an extra and with pyNastran, the documentation site, and fuzzing",
         205,
@@ -301,12 +299,11 @@ STEPS = [
     ),
 ]
 QUICK = [
-    Step("form of the code: rustfmt, ruff, spelling", 10, form),
-    Step("licences, sources and duplicates of all crates", 5, crates),
+    STEPS[0],
     Step("Rust tests of the light build", 190, rust_light),
 ]
 LEFT_OUT = """left out: clippy, rustdoc, the features `matrices`, `papers`, `parquet` and `png` with their
-tests, the combinations of parts, docs/papers.md, the fuzzer, the wheel, the Python tests and the site"""
+tests, the combinations of parts, the fuzzer, the wheel, the Python tests and the site"""
 
 
 def give_up(step: Step) -> None:

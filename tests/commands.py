@@ -55,8 +55,8 @@ def succeeds(*command: str | Path) -> bool:
     return subprocess.run(command, cwd=ROOT, check=False, stdout=null, stderr=null).returncode == 0
 
 
-def side_by_side(*works: Callable[[], str | None]) -> str:
-    """Work that keeps one core busy, two at a time: each shows what it printed when it is done."""
+def side_by_side(*works: Callable[[], str | None], count: int = 2) -> str:
+    """Work that keeps one core busy, `count` at a time: each shows what it printed when it is done."""
 
     def kept(work: Callable[[], str | None]) -> tuple[bytes, str | SystemExit | None]:
         OUT.kept = bytearray()
@@ -68,7 +68,7 @@ def side_by_side(*works: Callable[[], str | None]) -> str:
         return printed, told
 
     results = []
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(count) as pool:
         for done in as_completed([pool.submit(kept, work) for work in works]):
             printed, told = done.result()
             OUT.show(printed)

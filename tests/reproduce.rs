@@ -2,54 +2,46 @@
 
 use crate::util::Dir;
 
-const PAPERS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/papers.md");
-
-/// A section of the documentation, by the number of its heading.
-fn section(text: &str, number: u32) -> String {
-    let heading = format!("## {number}. ");
-    let lines = text.lines().skip_while(|line| !line.starts_with(&heading));
-    let other = |line: &&str| line.starts_with("## ") && !line.starts_with(&heading);
-    let own: Vec<&str> = lines.take_while(|line| !other(line)).collect();
-    own.join("\n").trim_end().to_owned()
-}
-
-/// Reproduces a paper, and compares the documentation with what comes out. The others take long: `tests/all.py` does
-/// it.
-fn reproduced(paper: &str, number: u32) -> String {
-    let dir = Dir::new();
-    dir.run(&format!("reproduce {paper} -o page --docs docs")).exits(0).says(&["papers.html", "verdicts in"]);
-    let committed = std::fs::read_to_string(PAPERS).expect("documentation");
-    let (ours, committed) = (section(&dir.text("docs/papers.md"), number), section(&committed, number));
-    assert!(!committed.is_empty(), "no section {number}");
-    for (line, (ours, committed)) in ours.lines().zip(committed.lines()).enumerate() {
-        assert_eq!(ours, committed, "line {} of section {number} of docs/papers.md", line + 1);
-    }
-    assert_eq!(ours, committed);
-    for figure in committed.split("(images/").skip(1).filter_map(|rest| rest.split(')').next()) {
-        assert!(dir.has(&format!("docs/images/{figure}")), "{figure}");
-    }
-    dir.run(&format!("reproduce {paper} -o page --docs docs"))
-        .exits(2)
-        .says(&["has a section of each paper"]);
-    dir.text("page/papers.html")
-}
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
-fn rotations_are_as_the_documentation_says() {
-    let page = reproduced("rotation", 2);
+fn the_papers_are_as_the_documentation_says() {
+    let dir = Dir::new();
+    dir.run("reproduce -o page --docs docs").exits(0).says(&["papers.html", "verdicts in"]);
+    let committed = std::fs::read_to_string(format!("{ROOT}/docs/papers.md")).expect("documentation");
+    let ours = dir.text("docs/papers.md");
+    for (line, (ours, committed)) in ours.lines().zip(committed.lines()).enumerate() {
+        assert_eq!(ours, committed, "line {} of docs/papers.md", line + 1);
+    }
+    assert!(ours == committed, "docs/papers.md has another end");
+    let figures: Vec<&str> =
+        committed.split("(images/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    assert!(!figures.is_empty());
+    for figure in figures {
+        let image = format!("docs/images/{figure}");
+        let is_drawn = std::fs::read(format!("{ROOT}/{image}")).is_ok_and(|known| known == dir.read(&image));
+        assert!(is_drawn, "{image} is not what `flexsc reproduce --docs docs` draws");
+    }
+    let page = dir.text("page/papers.html");
+    stands_alone(&page);
     assert!(page.contains("<b class=\"no\">no</b>: it rounds to 7.398"), "the misprint is a verdict");
     // A figure has its command below it, its drawing within the page.
     assert_eq!(page.matches("<figure>").count(), page.matches("</svg>").count());
     assert!(page.contains(
         "flexsc plan scenarios/rotation-sine.toml --set manoeuvre.command.sine.suppress=4 --figures DIR"
     ));
+    dir.run("reproduce station -o page --docs docs").exits(2).says(&["has a section of each paper"]);
 }
 
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
-fn the_station_is_as_the_documentation_says() {
-    stands_alone(&reproduced("station", 4));
+fn one_paper_has_a_page_of_its_own() {
+    let dir = Dir::new();
+    dir.run("reproduce station -o page").exits(0).says(&["papers.html", "verdicts in"]);
+    let page = dir.text("page/papers.html");
+    stands_alone(&page);
+    assert!(!page.contains("<h2>2. "), "the section of another paper");
 }
 
 /// Checks that a page contains everything it needs: no address but XML names, no external script, style or image.
