@@ -96,13 +96,17 @@ fn check(log: &Log, layout: &str) {
     let mut found = BTreeSet::new();
     paths(&layout["configById"], &mut found);
     assert!(found.len() > 8, "{found:?}");
-    for path in found {
-        if path.parse::<f64>().is_ok() {
-            continue;
-        }
-        let (topic, field) = path.split_once('.').unwrap_or((&path, ""));
-        let columns = log.columns(topic).unwrap_or_else(|error| panic!("{path}: {error}"));
-        assert!(field.is_empty() || has(&columns, field), "{path}: no such field");
+    let paths = found.iter().filter(|path| path.parse::<f64>().is_err());
+    let found: Vec<(&str, &str)> = paths.map(|path| path.split_once('.').unwrap_or((path, ""))).collect();
+    // The log is read once, for all topics.
+    let others = ["/tf", "/summary", "/metrics"];
+    let topics: BTreeSet<&str> = found.iter().map(|(topic, _)| *topic).chain(others).collect();
+    let topics: Vec<&str> = topics.into_iter().collect();
+    let read = log.tables(&topics).unwrap_or_else(|error| panic!("{error}"));
+    let all: BTreeMap<&str, Option<Columns>> = topics.into_iter().zip(read).collect();
+    let columns = |topic: &str| all[topic].as_ref().unwrap_or_else(|| panic!("{topic}: not in the log"));
+    for (topic, field) in &found {
+        assert!(field.is_empty() || has(columns(topic), field), "{topic}.{field}: no such field");
     }
     let panels = layout["configById"].as_object().expect("panels");
     let mut tables = 0;
@@ -126,21 +130,20 @@ fn check(log: &Log, layout: &str) {
             for path in paths.iter().filter(|_| id.starts_with("StateTransitions!")) {
                 let path = path["value"].as_str().expect("a path");
                 let (topic, field) = path.split_once('.').expect("a field");
-                let columns = log.columns(topic).expect("the topic");
-                let named = matches!(at(&columns, field), Some(Column::Labels(..) | Column::Texts(..)));
+                let named = matches!(at(columns(topic), field), Some(Column::Labels(..) | Column::Texts(..)));
                 assert!(named, "{path}: states without names");
             }
         }
         if id.starts_with("3D!") {
             let transforms = &config["scene"]["transforms"];
             let most = transforms["maxPreloadMessages"].as_u64().expect("a number");
-            let count = log.columns("/tf").expect("frames").len() as u64;
+            let count = columns("/tf").len() as u64;
             assert!(transforms["enablePreloading"] == true && count <= most, "{id}: {transforms} of {count}");
         }
         if id.starts_with("Table!") {
             let path = config["topicPath"].as_str().expect("a path");
-            let columns = log.columns("/summary").expect("metrics");
-            let rows = at(&columns, path.strip_prefix("/summary.").expect("a page")).map_or(0, Column::len);
+            let rows = at(columns("/summary"), path.strip_prefix("/summary.").expect("a page"))
+                .map_or(0, Column::len);
             assert!(rows > 0, "{path}");
             tables += 1;
         }
@@ -153,20 +156,16 @@ fn check(log: &Log, layout: &str) {
         }
     }
     // Every page of ten rows has its table, and every metric its row.
-    let columns = log.columns("/summary").expect("metrics");
-    let Some(Column::Rows(pages, inner)) = columns.get("pages") else { panic!("no pages") };
+    let Some(Column::Rows(pages, inner)) = columns("/summary").get("pages") else { panic!("no pages") };
     let Some(Column::Rows(rows, lines)) = inner.get("metrics") else { panic!("no metrics") };
     assert_eq!((pages[0], pages[0] as usize), (tables, rows.len()));
     assert!(rows.iter().all(|rows| (1..=10).contains(rows)), "{rows:?}");
-    let names = |columns: &Columns| match columns.get("name") {
+    let names = |table: &Columns| match table.get("name") {
         Some(Column::Texts(names)) => names.iter().cloned().collect::<BTreeSet<_>>(),
         _ => panic!("no names"),
     };
-    let Some(Column::Rows(_, metrics)) = log.columns("/metrics").expect("metrics").get("metrics").cloned()
-    else {
-        panic!("no metrics")
-    };
-    assert!(names(lines).is_superset(&names(&metrics)));
+    let Some(Column::Rows(_, metrics)) = columns("/metrics").get("metrics") else { panic!("no metrics") };
+    assert!(names(lines).is_superset(&names(metrics)));
     places.sort();
     let mut ids: Vec<&String> = panels.keys().collect();
     ids.sort();

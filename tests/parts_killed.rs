@@ -35,7 +35,7 @@ fn a_campaign_killed_ten_times_has_the_same_rows() {
 #[test]
 fn ctrl_c_keeps_whole_parts_and_one_process_is_at_work() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    let command = "simulate u.toml --runs 1000000 --yes -o out";
+    let command = "simulate u.toml --runs 100000 -o out";
     let run = dir.start(command);
     let began = Instant::now();
     while !dir.names("out/runs").iter().any(|name| name.ends_with(".parquet")) {
@@ -47,12 +47,12 @@ fn ctrl_c_keeps_whole_parts_and_one_process_is_at_work() {
     }
     run.signal("INT")
         .exits(130)
-        .says(&["interrupted at run ", "of 1000000 runs, and the same command continues"]);
+        .says(&["interrupted at run ", "of 100000 runs, and the same command continues"]);
     assert!(
         dir.names("out/runs").iter().all(|name| name.ends_with(".parquet")),
         "{:?}",
         dir.names("out/runs")
     );
-    dir.run("top out").exits(0).prints(&["of 1000000 runs, 0 failed"]);
+    dir.run("top out").exits(0).prints(&["of 100000 runs, 0 failed"]);
     dir.run("plot out -o figures --what distribution --metric duty").exits(0);
 }

@@ -1,5 +1,7 @@
 //! Numbers with units in scenarios: they are those in SI, whatever key they stand at.
 
+use std::collections::BTreeSet;
+
 use flexsc_core::{Document, Scenario};
 use toml::Value;
 
@@ -85,11 +87,11 @@ fn the_units_of_keys_are_known() {
 }
 
 /// Every number of the shipped scenarios, with one of these units, is what it was or is refused for its unit. Elements of
-/// a list have one unit: the first one stands for all.
+/// a list have one unit: the first one stands for all, and so does a key of one scenario for the same key of others.
 #[test]
 fn every_key_with_a_unit_takes_it() {
     let schema: &'static _ = Box::leak(Box::new(Scenario::schema()));
-    let (mut taken, mut without) = (0, Vec::new());
+    let (mut seen, mut taken, mut without) = (BTreeSet::new(), 0, Vec::new());
     for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
         let path = entry.path();
         if path.extension().is_none_or(|extension| extension != "toml") {
@@ -100,6 +102,9 @@ fn every_key_with_a_unit_takes_it() {
         numbers(&Value::Table(plain.clone()), String::new(), &mut keys);
         let later_element = |key: &str| key.split('[').skip(1).any(|index| !index.starts_with("0]"));
         for (key, number) in keys.into_iter().filter(|(key, _)| !later_element(key)) {
+            if !seen.insert(key.clone()) {
+                continue;
+            }
             let mut fits = 0;
             for unit in ["s", "rad", "rad/s", "m", "kg", "N", "N m", "kg m^2", "rad/s^2", "N m s", "1/s", "T"]
             {
@@ -119,7 +124,7 @@ fn every_key_with_a_unit_takes_it() {
             }
         }
     }
-    assert!(taken > 800, "{taken} with a unit, {} without: {without:#?}", without.len());
+    assert!(taken > 240, "{taken} with a unit, {} without: {without:#?}", without.len());
 }
 
 #[test]

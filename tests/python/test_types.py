@@ -23,18 +23,13 @@ def test_the_stub_is_that_of_the_engine() -> None:
     run("mypy.stubtest", "flexsc._native")
 
 
-def test_the_package_and_its_usage_are_typed() -> None:
+def test_the_package_is_typed() -> None:
     run("mypy", "--strict", "--package", "flexsc")
-    run("mypy", "--strict", USAGE)
 
 
-def test_the_tests_are_typed() -> None:
+def test_its_usage_the_tests_the_tutorials_and_the_examples_are_typed() -> None:
     makers = sorted((ROOT / "crates" / "py").glob("*.py"))
-    run("mypy", "--strict", *sorted(USAGE.parent.glob("*.py")), *makers)
-
-
-def test_the_tutorials_and_examples_are_typed() -> None:
-    run("mypy", "--strict", *TUTORIALS, *EXAMPLES)
+    run("mypy", "--strict", *sorted(USAGE.parent.glob("*.py")), *makers, *TUTORIALS, *EXAMPLES)
 
 
 def test_pyright_agrees() -> None:

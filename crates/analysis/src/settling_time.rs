@@ -187,6 +187,9 @@ fn settling(terms: &[Term], response: usize) -> f64 {
     let mut low = 0.0;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
         if bound(middle) > SETTLING_BAND {
             low = middle;
         } else {

@@ -13,7 +13,6 @@ const FEW_PARTS: u64 = 16;
 
 /// Returns the number of runs of a part: a power of two, and for short runs a multiple of 256. Parts begin at its
 /// multiples, whichever other runs are wanted.
-/// beside them.
 pub fn part_size(runs: u64, run_s: f64) -> u64 {
     let preferred = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
     // Rounded down to a power of two; full lanes matter more than equal durations.
