@@ -159,7 +159,7 @@ def test_a_broken_pool_is_an_error_and_the_same_call_goes_on(
                 os.kill(pid, signal.SIGKILL)
 
         with pytest.raises(BrokenProcessPool):
-            flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.02, progress=kill)
+            flexsc.campaign(study, 600, out=out, executor=pool, task_s=0.05, progress=kill)
     assert 0 < len(flexsc.read_campaign(out)) < 600
     with processes(2) as pool:
         same(whole, flexsc.campaign(study, 600, out=out, executor=pool))
@@ -235,7 +235,7 @@ def test_dask_survives_the_deaths_of_workers(
 
     killed: list[int] = []
     out = tmp_path / "out"
-    same(whole, campaign(cluster, study, 600, out=out, task_s=0.02, progress=kill))
+    same(whole, campaign(cluster, study, 600, out=out, task_s=0.05, progress=kill))
     assert killed
 
 
