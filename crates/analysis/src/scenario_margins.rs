@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::eigenvalues::eigenvalues;
 use super::margins::{ROUNDING, StabilityMargins, UnstableLoop, modulus};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop};
-use super::settling_time::{SettlingTime, settling_times};
+use super::settling_time::SettlingTime;
 use flexsc_scenario::Scenario;
 
 /// Number of delays that are tried up to the one at which a crossing has lost its phase.
@@ -61,16 +61,18 @@ impl ScenarioMargins {
     /// # Errors
     /// A scenario without a linear loop, and a loop that is not stable.
     pub fn from_scenario(scenario: &Scenario, opened: LoopBreak) -> Result<Self, MarginsFault> {
-        let cut = OpenLoop::from_scenario(scenario, opened).map_err(MarginsFault::Key)?;
+        let parts = LoopParts::from_scenario(scenario, opened).map_err(MarginsFault::Key)?;
+        let cut = OpenLoop::from_parts(&parts).map_err(MarginsFault::Key)?;
         let stability = StabilityMargins::new(&cut).map_err(MarginsFault::Unstable)?;
-        let common_delay_s = common_delay(scenario, &stability)?;
-        let settling = settling_times(scenario).unwrap_or_default();
+        let parts = parts.opened_at(LoopBreak::Command);
+        let common_delay_s = common_delay(&parts, &stability)?;
+        let settling = parts.settling_times().unwrap_or_default();
         Ok(Self { stability, cut, common_delay_s, settling })
     }
 }
 
 /// Returns the smallest additional delay (s) of all actuators together that makes a loop unstable.
-fn common_delay(scenario: &Scenario, stability: &StabilityMargins) -> Result<Option<f64>, MarginsFault> {
+fn common_delay(parts: &LoopParts<'_>, stability: &StabilityMargins) -> Result<Option<f64>, MarginsFault> {
     if let ([only], 1) = (&stability.loops[..], stability.samples) {
         return Ok(only.delay_s);
     }
@@ -79,7 +81,6 @@ fn common_delay(scenario: &Scenario, stability: &StabilityMargins) -> Result<Opt
     let crossings = stability.loops.iter().flat_map(|own| &own.crossings.gain);
     let delays = crossings.map(|crossing| lag(crossing.frequency_rad_s, crossing.phase_rad));
     let Some(alone) = delays.filter(|delay| *delay > 0.0).min_by(f64::total_cmp) else { return Ok(None) };
-    let parts = LoopParts::from_scenario(scenario, LoopBreak::Command).map_err(MarginsFault::Key)?;
     let first = stability.loops.first().map_or("", |own| &own.signal);
     let is_stable = |delay: f64| -> Result<bool, MarginsFault> {
         let mut late = parts.clone();

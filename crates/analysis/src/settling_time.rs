@@ -52,23 +52,33 @@ pub struct SettlingTime {
 /// # Errors
 /// A scenario without a linear loop, and a loop whose poles have no basis of eigenvectors.
 pub fn settling_times(scenario: &Scenario) -> Result<Vec<SettlingTime>, ConfigError> {
-    let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
-    let opened = OpenLoop::from_parts(&parts)?;
-    let response = StepResponse::new(&parts, &opened);
-    let terms = response.and_then(StepResponse::terms);
-    let Some(terms) = terms else {
-        return Err(ConfigError::new("law", "has a loop whose settling time cannot be computed"));
-    };
-    let count = parts.body.inputs.len();
-    let name = |axis: usize| if count == 1 { "angle" } else { AXES[axis] };
-    let pairs = (0..count * count).map(|pair| (pair / count, pair % count));
-    Ok(pairs
-        .map(|(step, angle)| SettlingTime {
-            step: name(step),
-            angle: name(angle),
-            time_s: opened.period * settling(&terms, step * count + angle),
-        })
-        .collect())
+    LoopParts::from_scenario(scenario, LoopBreak::Command)?.settling_times()
+}
+
+impl LoopParts<'_> {
+    /// Returns the settling times of the loop, which is cut open at the command: of each angle after a step about each
+    /// axis.
+    ///
+    /// # Errors
+    /// Parts that a linear loop does not have together, and a loop whose poles have no basis of eigenvectors.
+    pub(crate) fn settling_times(&self) -> Result<Vec<SettlingTime>, ConfigError> {
+        let opened = OpenLoop::from_parts(self)?;
+        let response = StepResponse::new(self, &opened);
+        let terms = response.and_then(StepResponse::terms);
+        let Some(terms) = terms else {
+            return Err(ConfigError::new("law", "has a loop whose settling time cannot be computed"));
+        };
+        let count = self.body.inputs.len();
+        let name = |axis: usize| if count == 1 { "angle" } else { AXES[axis] };
+        let pairs = (0..count * count).map(|pair| (pair / count, pair % count));
+        Ok(pairs
+            .map(|(step, angle)| SettlingTime {
+                step: name(step),
+                angle: name(angle),
+                time_s: opened.period * settling(&terms, step * count + angle),
+            })
+            .collect())
+    }
 }
 
 /// Pole, and its residues: of each angle after each step.

@@ -96,11 +96,18 @@ impl NoisyLoop {
     /// # Errors
     /// A part that has no linear model, a loop that is not stable, and noise whose variance grows without limit.
     pub fn from_scenario(scenario: &Scenario) -> Result<Self, NoiseError> {
-        let spectral_radius = stable_radius(scenario)?;
-        let parts = LoopParts::from_scenario(scenario, LoopBreak::Command)?;
-        let sources = sources(&parts)?;
-        let PeriodRows { a, g, pieces, period, step, drawn_by, .. } = PeriodRows::new(&parts, &sources)?;
-        let (outputs, rows) = outputs(&parts);
+        Self::from_parts(&LoopParts::from_scenario(scenario, LoopBreak::Command)?)
+    }
+
+    /// Returns the closed loop of these parts, which are cut open at the command, under its noise.
+    ///
+    /// # Errors
+    /// See [`Self::from_scenario`].
+    pub(crate) fn from_parts(parts: &LoopParts<'_>) -> Result<Self, NoiseError> {
+        let spectral_radius = stable_radius(parts)?;
+        let sources = sources(parts)?;
+        let PeriodRows { a, g, pieces, period, step, drawn_by, .. } = PeriodRows::new(parts, &sources)?;
+        let (outputs, rows) = outputs(parts);
         let motion = Motion::new((&parts.body.a, &parts.body.b), pieces, rows);
         let series = DoublingSeries::new(&a);
         let covariance = |index: usize| {
@@ -255,9 +262,9 @@ impl NoisyLoop {
     }
 }
 
-/// Returns the spectral radius of the closed loop of a scenario.
-fn stable_radius(scenario: &Scenario) -> Result<f64, NoiseError> {
-    let opened = OpenLoop::from_scenario(scenario, LoopBreak::Command)?;
+/// Returns the spectral radius of the closed loop.
+fn stable_radius(parts: &LoopParts<'_>) -> Result<f64, NoiseError> {
+    let opened = OpenLoop::from_parts(parts)?;
     let first = opened.signals.first().map_or("", |signal| &signal.name);
     let failed = || NoiseError::Unstable(UnstableLoop::with_unknown_poles(first));
     let closed = opened.transfer.sensitivity().ok_or_else(failed)?;

@@ -146,6 +146,11 @@ impl<'a> LoopParts<'a> {
         let law = AxisLaws::new(scenario, &body)?;
         Ok(Self { scenario, body, actuators, parts, law, opened })
     }
+
+    /// Returns the parts of the same loop, cut open at a point.
+    pub(crate) fn opened_at(self, opened: LoopBreak) -> Self {
+        Self { opened, ..self }
+    }
 }
 
 impl BodyMatrices {

@@ -5,7 +5,7 @@ use toml::{Table, Value};
 
 use super::loop_set::TunedPlant;
 use super::scenario_measure::ScenarioMeasure;
-use crate::open_loop::{LoopBreak, OpenLoop};
+use crate::open_loop::{LoopBreak, LoopParts, OpenLoop};
 use flexsc_scenario::Scenario;
 use flexsc_scenario::uncertain::{UncertainBox, UncertainKey};
 
@@ -104,7 +104,7 @@ impl ScenarioLoops {
     /// # Errors
     /// A value that the scenario does not accept, and a scenario without a linear loop.
     pub fn loop_at(&self, values: &[f64], plant: usize) -> Result<OpenLoop, String> {
-        self.opened(&self.scenario(values, plant)?)
+        Ok(self.plant_at(values, plant, &[])?.opened)
     }
 
     /// Returns the loop of a plant with values of the keys, and its measures.
@@ -118,13 +118,11 @@ impl ScenarioLoops {
         measures: &[ScenarioMeasure],
     ) -> Result<TunedPlant, String> {
         let scenario = self.scenario(values, plant)?;
-        let measures = measures.iter().map(|measure| measure.values(&scenario)).collect::<Result<_, _>>()?;
-        Ok(TunedPlant { opened: self.opened(&scenario)?, measures })
-    }
-
-    fn opened(&self, scenario: &Scenario) -> Result<OpenLoop, String> {
-        OpenLoop::from_scenario(scenario, self.opened)
-            .map_err(|fault| format!("{}: `{}` {}", self.origin, fault.key, fault.why))
+        let fault = |fault: ConfigError| format!("{}: `{}` {}", self.origin, fault.key, fault.why);
+        let parts = LoopParts::from_scenario(&scenario, LoopBreak::Command).map_err(fault)?;
+        let measures = measures.iter().map(|measure| measure.values(&parts)).collect::<Result<_, _>>()?;
+        let opened = OpenLoop::from_parts(&parts.opened_at(self.opened)).map_err(fault)?;
+        Ok(TunedPlant { opened, measures })
     }
 }
 

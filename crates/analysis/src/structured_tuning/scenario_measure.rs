@@ -5,7 +5,7 @@ use flexsc_formats::document::ConfigError;
 use super::goal::TunedMeasure;
 use crate::budget::{LEVELS, linear_noise, sigmas};
 use crate::noise::{NoiseError, NoisyLoop};
-use crate::settling_time::settling_times;
+use crate::open_loop::LoopParts;
 use flexsc_scenario::{RequirementSource, Scenario};
 
 /// Measure of a scenario's loop.
@@ -54,15 +54,16 @@ impl ScenarioMeasure {
         }
     }
 
-    /// Returns the components of the measure, of which the largest counts.
+    /// Returns the components of the measure of a loop that is cut open at the command; the largest counts.
     ///
     /// # Errors
     /// A loop that does not have the measure.
-    pub(super) fn values(&self, scenario: &Scenario) -> Result<Vec<f64>, String> {
-        let name = &scenario.name;
+    pub(super) fn values(&self, parts: &LoopParts<'_>) -> Result<Vec<f64>, String> {
+        let (scenario, name) = (parts.scenario, &parts.scenario.name);
         match self {
             Self::Settling => {
-                let times = settling_times(scenario)
+                let times = parts
+                    .settling_times()
                     .map_err(|fault| format!("{name}: `{}` {}", fault.key, fault.why))?;
                 Ok(times.into_iter().map(|settling| settling.time_s).collect())
             }
@@ -70,7 +71,7 @@ impl ScenarioMeasure {
                 let RequirementSource::Error(error) = &scenario.study.requirements[*index].source else {
                     return Err(format!("{name}: requirement[{index}] limits no pointing index"));
                 };
-                let noisy = match NoisyLoop::from_scenario(scenario) {
+                let noisy = match NoisyLoop::from_parts(parts) {
                     Ok(noisy) => noisy,
                     Err(NoiseError::Unstable(_) | NoiseError::Unsettled(_)) => {
                         return Ok(vec![f64::INFINITY]);
