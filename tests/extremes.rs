@@ -20,7 +20,7 @@ const WITHOUT: &[&str] = &["reproduce", "report", "completions", "help"];
 /// Options that wait for others, that ask for long work, or whose values are keys of scenarios.
 const SKIPPED: &[&str] = &["live", "scheduler", "yes", "set", "vary", "help", "log"];
 /// Arguments with which the example of a verb takes less time.
-const SHORTER: &[(&str, &str)] = &[("plot", " --what torque")];
+const SHORTER: &[(&str, &str)] = &[("plot", "--what torque")];
 /// Time of the processor for each (s), and of the clock where it waits.
 const CPU: u32 = 5;
 const PATIENCE: Duration = Duration::from_secs(120);

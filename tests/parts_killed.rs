@@ -35,7 +35,7 @@ fn a_campaign_killed_ten_times_has_the_same_rows() {
 #[test]
 fn ctrl_c_keeps_whole_parts_and_one_process_is_at_work() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
-    let command = "simulate u.toml --runs 100000 -o out";
+    let command = "simulate u.toml --runs 100000 --jobs 2 -o out";
     let run = dir.start(command);
     let began = Instant::now();
     while !dir.names("out/runs").iter().any(|name| name.ends_with(".parquet")) {

@@ -87,7 +87,8 @@ fn the_units_of_keys_are_known() {
 }
 
 /// Every number of the shipped scenarios, with one of these units, is what it was or is refused for its unit. Elements of
-/// a list have one unit: the first one stands for all, and so does a key of one scenario for the same key of others.
+/// a list have one unit: the first one stands for all, and so does a key of one scenario for the same key with the same
+/// unit in others.
 #[test]
 fn every_key_with_a_unit_takes_it() {
     let schema: &'static _ = Box::leak(Box::new(Scenario::schema()));
@@ -97,12 +98,13 @@ fn every_key_with_a_unit_takes_it() {
         if path.extension().is_none_or(|extension| extension != "toml") {
             continue;
         }
-        let plain = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}")).to_table();
+        let scenario = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        let plain = scenario.to_table();
         let mut keys = Vec::new();
         numbers(&Value::Table(plain.clone()), String::new(), &mut keys);
         let later_element = |key: &str| key.split('[').skip(1).any(|index| !index.starts_with("0]"));
         for (key, number) in keys.into_iter().filter(|(key, _)| !later_element(key)) {
-            if !seen.insert(key.clone()) {
+            if !seen.insert((key.clone(), scenario.unit_of(&key))) {
                 continue;
             }
             let mut fits = 0;

@@ -27,7 +27,7 @@ def test_the_package_is_typed() -> None:
     run("mypy", "--strict", "--package", "flexsc")
 
 
-def test_its_usage_the_tests_the_tutorials_and_the_examples_are_typed() -> None:
+def test_usage_tests_tutorials_and_examples_are_typed() -> None:
     makers = sorted((ROOT / "crates" / "py").glob("*.py"))
     run("mypy", "--strict", *sorted(USAGE.parent.glob("*.py")), *makers, *TUTORIALS, *EXAMPLES)
 
