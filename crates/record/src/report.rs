@@ -137,15 +137,15 @@ impl Report {
         self.add_reported(row, Some(revision));
     }
 
-    /// Adds a row for the log, as `write` writes it over an earlier row of its type, whose memory is used again, or over
-    /// the row that `empty` returns.
-    pub fn write_row<R: LogRow>(&mut self, empty: impl FnOnce() -> R, write: impl FnOnce(&mut R)) {
-        if let Some(place) = self.free_row(None) {
-            return write(place);
-        }
-        let mut row = empty();
-        write(&mut row);
-        self.insert_row(row, None);
+    /// Returns what `take` takes out of an earlier row or value of a type, so that its memory is used again; without one,
+    /// the default.
+    pub fn reuse<T: Any, M: Default>(&mut self, take: impl FnOnce(&mut T) -> M) -> M {
+        let kind = TypeId::of::<T>();
+        let row = self.rows.iter_mut().find(|slot| slot.kind == kind && !slot.is_set);
+        let row = row.map(|slot| &mut *slot.row as &mut dyn Any);
+        let value = self.values.iter_mut().find(|slot| slot.kind == kind && !slot.is_set);
+        let earlier = row.or_else(|| value.map(|slot| &mut *slot.value as &mut dyn Any));
+        earlier.and_then(|earlier| earlier.downcast_mut()).map(take).unwrap_or_default()
     }
 
     fn add_reported<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
@@ -247,5 +247,36 @@ pub struct LoggedRevisions(Vec<u64>);
 impl Default for LoggedRevisions {
     fn default() -> Self {
         Self(vec![0; TOPICS.len()])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::mem;
+
+    use super::*;
+    use crate::{Wheel, Wheels};
+
+    #[test]
+    fn memory_of_cleared_rows_and_values_is_used_again() {
+        let wheel = Wheel { speed_rad_s: 1.0, momentum_nm_s: 2.0, torque_nm: 3.0 };
+        let take = |row: &mut Wheels| mem::take(&mut row.wheels);
+        let add_row = |report: &mut Report, row: Wheels| report.add(row);
+        let add_value = |report: &mut Report, row: Wheels| report.add_value(row);
+        for add in [add_row as fn(&mut Report, Wheels), add_value] {
+            let mut report = Report::new();
+            assert_eq!(report.reuse(take), []);
+            let wheels = vec![wheel.clone()];
+            let place = wheels.as_ptr();
+            add(&mut report, Wheels { wheels });
+            // What the report contains stays in it.
+            assert_eq!(report.reuse(take), []);
+            assert_eq!(report.get::<Wheels>().map(|row| row.wheels.len()), Some(1));
+            report.clear();
+            let wheels = report.reuse(take);
+            assert_eq!((wheels.as_ptr(), wheels.len()), (place, 1));
+            add(&mut report, Wheels { wheels });
+            assert_eq!(report.get::<Wheels>().map(|row| &row.wheels[..]), Some(&[wheel.clone()][..]));
+        }
     }
 }

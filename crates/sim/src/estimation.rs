@@ -77,14 +77,15 @@ impl Estimation {
 
     /// Moves the origin of the angles to the target at `now`, and shifts the estimates accordingly.
     #[inline]
-    pub fn update_angle_origin(&mut self, now: Instant, guidance: &Guidance) {
+    pub fn update_angle_origin(&mut self, now: Instant, guidance: &mut Guidance) {
         if self.next_origin_change.is_some_and(|begins| now >= begins) {
             self.move_origin(now, guidance);
         }
     }
 
     /// Moves the origin of the angles to the target at `now`, even if it was not known before when it would change.
-    pub fn move_origin(&mut self, now: Instant, guidance: &Guidance) {
+    pub fn move_origin(&mut self, now: Instant, guidance: &mut Guidance) {
+        guidance.compute_reference(now);
         let origin = guidance.origin(now);
         let by = self.origin.error_from(&origin);
         self.estimator.shift_origin(by);

@@ -9,6 +9,7 @@ use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use nalgebra::Quaternion;
 
 use flexsc_scenario::Scenario;
@@ -22,6 +23,8 @@ pub struct Guidance {
     planned: Option<PlannedManoeuvre>,
     /// Sequence of targets of a three-axis body.
     profile: Option<AttitudeProfile>,
+    /// Reference motion at the instant for which it was computed last.
+    computed: Option<(Instant, AttitudeMotion)>,
     /// Target of each mode of operation that has one.
     mode_targets: Vec<Option<ModeReference>>,
 }
@@ -80,6 +83,7 @@ impl Guidance {
             setpoint: scenario.goal(),
             planned: PlannedManoeuvre::new(scenario),
             profile: scenario.model.three_axis().map(|_| scenario.study.profile.clone()),
+            computed: None,
             mode_targets: scenario
                 .mode
                 .iter()
@@ -98,6 +102,7 @@ impl Guidance {
             profile.hold(attitude, now);
         }
         profile.enter(&reference.target, now);
+        self.computed = None;
         true
     }
 
@@ -127,10 +132,22 @@ impl Guidance {
         self.setpoint
     }
 
+    /// Computes the reference motion of three axes at `now`, and keeps it for all that read it at this instant.
+    pub fn compute_reference(&mut self, now: Instant) {
+        self.computed = self.profile.as_ref().map(|way| (now, way.at(now)));
+    }
+
+    /// Returns the reference motion of three axes; `None` for one axis.
+    fn reference(&self, now: Instant) -> Option<AttitudeMotion> {
+        match self.computed {
+            Some((at, motion)) if at == now => Some(motion),
+            _ => self.profile.as_ref().map(|way| way.at(now)),
+        }
+    }
+
     /// Returns the origin of the angles: the current reference attitude of three axes, or angle 0.
     pub fn origin(&self, now: Instant) -> Orientation {
-        let attitude = self.profile.as_ref().map(|way| way.at(now).attitude);
-        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
+        self.reference(now).map_or(Orientation::ZERO_ANGLE, |motion| Orientation::Attitude(motion.attitude))
     }
 
     /// Returns true if the target of three axes moves from one attitude to another.
@@ -158,11 +175,11 @@ impl Guidance {
     /// Returns the setpoints of the three axes while the reference moves, at the estimated angles; `None` while it
     /// rests.
     pub fn reference_motion(&self, now: Instant, state_estimates: &[StateEstimate]) -> Option<[Setpoint; 3]> {
-        let way = self.profile.as_ref().filter(|way| way.is_moving(now))?;
+        self.profile.as_ref().filter(|way| way.is_moving(now))?;
         let beyond = Vector::from_fn(|axis, _| {
             state_estimates.get(axis).map_or(0.0, |state_estimate| state_estimate.angle)
         });
-        let [rate, acceleration] = way.at(now).in_body_axes(&beyond);
+        let [rate, acceleration] = self.reference(now)?.in_body_axes(&beyond);
         let goal = |axis: usize| Setpoint {
             from: now,
             angle: 0.0,
@@ -174,8 +191,7 @@ impl Guidance {
 
     /// Returns the rate of the reference attitude (rad/s) in the axes of a body that is `error` (rad) away from it.
     pub fn reference_rate(&self, now: Instant, error: &Vector) -> Vector {
-        let rate = self.profile.as_ref().map(|way| way.at(now).in_body_axes(error)[0]);
-        rate.unwrap_or_default()
+        self.reference(now).map_or_else(Vector::zeros, |motion| motion.in_body_axes(error)[0])
     }
 
     /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the

@@ -168,7 +168,7 @@ impl Simulation {
         let is_sampled = self.sensors.sample_is_due(now);
         let event = self.laws.event(now, is_sampled);
         if is_sampled || self.clock.cycle_is_due() || self.must_decide(event) {
-            self.estimation.update_angle_origin(now, &self.guidance);
+            self.estimation.update_angle_origin(now, &mut self.guidance);
         }
         // 2. and 3. The sensors measure, and the estimator takes the sample.
         if is_sampled {

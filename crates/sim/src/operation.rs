@@ -110,7 +110,7 @@ impl Simulation {
         let angles = std::array::from_fn(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.angle));
         let estimated = self.estimation.origin().rotated_by(angles);
         if self.guidance.enter_mode(now, [before, mode], &estimated) {
-            self.estimation.move_origin(now, &self.guidance);
+            self.estimation.move_origin(now, &mut self.guidance);
             let errors = self.plant.truth().orientation.error_from(&self.guidance.target(now));
             let distance = f64::sqrt(errors.iter().map(|error| error * error).sum());
             start = Some(ModeTargetStart { mode, distance });

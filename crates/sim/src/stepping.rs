@@ -236,7 +236,7 @@ impl Simulation {
         }
         if is_external {
             // No law has decided here, for which the target would have been set.
-            self.estimation.update_angle_origin(self.clock.now(), &self.guidance);
+            self.estimation.update_angle_origin(self.clock.now(), &mut self.guidance);
         }
         self.respond(event, record)?;
         let after = self.laws.phases(self.axis_count());

@@ -204,7 +204,7 @@ impl Simulation {
         let now = self.clock.now();
         self.plant.evaluate(now)?;
         // An external command at this instant does the same, before the actuator takes it.
-        self.estimation.update_angle_origin(now, &self.guidance);
+        self.estimation.update_angle_origin(now, &mut self.guidance);
         let run = self.read_view();
         let sensors = layout.sensors.iter().map(|sensor| run.sensor_telemetry(sensor)).collect();
         let accelerations = &self.recorder;

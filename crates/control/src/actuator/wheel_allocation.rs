@@ -23,7 +23,7 @@ pub enum AllocationCriterion {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
     axes: Vec<Vector>,
-    /// Share of each wheel, with a torque of 0.
+    /// Share of each wheel, with the torque of the last allocation, at first 0.
     wheels: Vec<AllocatedWheel>,
     /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
     null: Option<[f64; 4]>,
@@ -59,23 +59,29 @@ impl Allocation {
         self.null.as_ref()
     }
 
-    /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
+    /// Returns the torques of all wheels that give the torque `demanded` about the three axes (N m).
     pub fn torques(&self, demanded: &Vector) -> Vec<f64> {
-        self.limited_torques(demanded, f64::INFINITY)
+        let mut allocated = self.clone();
+        allocated.allocate(demanded, f64::INFINITY);
+        allocated.wheels.iter().map(|wheel| wheel.torque).collect()
     }
 
-    /// Returns the torques of all wheels that give the torque `demanded` about the three axes (N m), or less about the same
-    /// axis if one of them would exceed `limit` (N m).
-    pub fn limited_torques(&self, demanded: &Vector, limit: f64) -> Vec<f64> {
-        let mut wheels = self.wheels.clone();
-        allocate(&mut wheels, &to_vector3(demanded), self.is_least_largest());
-        limit_torques(&mut wheels, limit);
-        wheels.iter().map(|wheel| wheel.torque).collect()
+    /// Gives the wheels the torques that give the torque `demanded` about the three axes (N m), or less about the same axis
+    /// if one of them would exceed `limit` (N m).
+    pub fn allocate(&mut self, demanded: &Vector, limit: f64) {
+        let is_least_largest = self.is_least_largest();
+        allocate(&mut self.wheels, &to_vector3(demanded), is_least_largest);
+        limit_torques(&mut self.wheels, limit);
     }
 
-    /// Returns the wheels as flight code has them.
+    /// Returns the wheels as flight code has them, with the torques of the last allocation, at first 0.
     pub fn flight_wheels(&self) -> &[AllocatedWheel] {
         &self.wheels
+    }
+
+    /// Returns the wheels as [`Self::flight_wheels`] does, so that their torques can be changed.
+    pub fn flight_wheels_mut(&mut self) -> &mut [AllocatedWheel] {
+        &mut self.wheels
     }
 
     /// Returns true if the largest torque is minimised, which needs four wheels.

@@ -118,7 +118,8 @@ impl WheelsState {
     #[must_use]
     pub fn with_tachometer(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
         let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
-        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
+        let speeds = (0..self.wheels.len()).map(|index| self.known_speed(index, &rate)).collect();
+        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(speeds, seed));
         self
     }
 
@@ -135,32 +136,36 @@ impl WheelsState {
         self.since = now;
     }
 
-    /// Returns the speeds relative to a body with this rate (rad/s), as available to the drives.
-    fn speeds(&self, rate: &Vector) -> Vec<f64> {
-        if let Some(tachometer) = &self.tachometer {
-            return tachometer.speeds().to_vec();
+    /// Returns the speed of a wheel relative to a body with this rate (rad/s), as available to its drive.
+    fn known_speed(&self, index: usize, rate: &Vector) -> f64 {
+        match &self.tachometer {
+            Some(tachometer) => tachometer.speeds()[index],
+            None => self.speed(index, rate),
         }
-        if !self.observations.is_empty() {
-            return self.observations.iter().map(|wheel| wheel.speed).collect();
-        }
-        let axes = self.allocation.axes().iter();
-        axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
     }
 
-    /// Returns the motor torques that give the body the demanded torque, within the torque limit.
-    fn motors(&self, speeds: &[f64]) -> Vec<f64> {
-        let mut torques = self.allocation.limited_torques(&(self.against - self.demanded), self.torque_limit);
-        if let (Some(bias), Some(null)) = (self.bias, self.allocation.null_vector()) {
-            let square: f64 = null.iter().map(|part| part * part).sum();
-            let speed = null.iter().zip(speeds).map(|(part, speed)| part * speed).sum::<f64>() / square;
-            let mut part = bias.gain.get() * (bias.speed.get() - speed) * self.inertia;
-            for (torque, null) in torques.iter().zip(null).filter(|(_, null)| **null != 0.0) {
-                let ends = [self.torque_limit, -self.torque_limit].map(|limit| (limit - torque) / null);
-                part = part.clamp(ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
-            }
-            torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
+    /// Returns the speed of a wheel relative to a body with this rate (rad/s).
+    fn speed(&self, index: usize, rate: &Vector) -> f64 {
+        match self.observations.get(index) {
+            Some(wheel) => wheel.speed,
+            None => self.wheels[index].momentum / self.inertia - self.allocation.axes()[index].dot(rate),
         }
-        torques
+    }
+
+    /// Adds to the torques of the motors those that bring the wheels towards the speed of the bias and cancel on the body,
+    /// which has this rate (rad/s).
+    fn bias_speeds(&mut self, rate: &Vector) {
+        let (Some(bias), Some(null)) = (self.bias, self.allocation.null_vector().copied()) else { return };
+        let square: f64 = null.iter().map(|part| part * part).sum();
+        let known = null.iter().enumerate().map(|(index, part)| part * self.known_speed(index, rate));
+        let speed = known.sum::<f64>() / square;
+        let mut part = bias.gain.get() * (bias.speed.get() - speed) * self.inertia;
+        let wheels = self.allocation.flight_wheels_mut();
+        for (wheel, null) in wheels.iter().zip(null).filter(|(_, null)| *null != 0.0) {
+            let ends = [self.torque_limit, -self.torque_limit].map(|limit| (limit - wheel.torque) / null);
+            part = part.clamp(ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
+        }
+        wheels.iter_mut().zip(null).for_each(|(wheel, null)| wheel.torque += part * null);
     }
 
     /// Returns the torque within the limits of a wheel at this speed, and the time until the wheel reaches a limit (s).
@@ -181,20 +186,21 @@ impl WheelsState {
         (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
     }
 
-    /// Commands all wheels with the torques that give the demanded torque.
+    /// Commands all wheels with the torques that give the body the demanded torque, within the torque limit.
     fn drive_all(&mut self, now: Instant, rigid: &Vector) {
-        let speeds = self.speeds(rigid);
-        let mut torques = self.motors(&speeds);
-        self.compensate(&speeds, &mut torques);
-        for (index, torque) in torques.into_iter().enumerate() {
-            let speed = self.observations.get(index).map_or(speeds[index], |wheel| wheel.speed);
-            self.drive(now, index, speed, torque);
+        self.allocation.allocate(&(self.against - self.demanded), self.torque_limit);
+        self.bias_speeds(rigid);
+        for index in 0..self.wheels.len() {
+            let torque = self.compensated(index, self.allocation.flight_wheels()[index].torque, rigid);
+            self.drive(now, index, torque, rigid);
         }
     }
 
-    /// Sets the torque of a wheel from `now` on, subject to its failures and limits.
-    fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
+    /// Sets the torque of a wheel from `now` on, subject to its failures and limits, on a body with this rate (rad/s).
+    fn drive(&mut self, now: Instant, index: usize, torque: f64, rigid: &Vector) {
         self.commanded[index] = torque;
+        let turned = self.observations.get(index).map(|wheel| wheel.speed);
+        let speed = turned.unwrap_or_else(|| self.known_speed(index, rigid));
         let torque = self.failing[index].as_ref().map_or(torque, |failing| failing.output(torque));
         let (torque, seconds) = self.within_limits(index, speed, torque);
         let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
@@ -218,10 +224,8 @@ impl WheelsState {
         }
         if any {
             self.turn(now);
-            let speeds = self.speeds(rigid);
-            for (index, known) in speeds.into_iter().enumerate() {
-                let speed = self.observations.get(index).map_or(known, |wheel| wheel.speed);
-                self.drive(now, index, speed, self.commanded[index]);
+            for index in 0..self.wheels.len() {
+                self.drive(now, index, self.commanded[index], rigid);
             }
         }
     }
@@ -231,20 +235,18 @@ impl WheelsState {
         if self.failing[index].is_some() { self.commanded[index] } else { self.wheels[index].torque }
     }
 
-    /// Adds the friction compensation of the drives at these speeds (rad/s) to the torques (N m).
-    fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
-        let Some(FrictionCompensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
-        for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
-            // A wheel at rest is expected to move with the torque.
-            let direction = if *speed == 0.0 { *torque } else { *speed };
-            let coulomb = if direction == 0.0 {
-                0.0
-            } else {
-                libm::copysign(coulomb.for_wheel(wheel).get(), direction)
-            };
-            let added = *torque + coulomb + viscous.for_wheel(wheel).get() * speed;
-            *torque = added.clamp(-self.torque_limit, self.torque_limit);
-        }
+    /// Returns the torque of a drive (N m) with the compensation of the friction, on a body with this rate (rad/s).
+    fn compensated(&self, index: usize, torque: f64, rate: &Vector) -> f64 {
+        let Some(FrictionCompensation { coulomb, viscous }) = self.compensation.as_deref() else {
+            return torque;
+        };
+        let speed = self.known_speed(index, rate);
+        // A wheel at rest is expected to move with the torque.
+        let direction = if speed == 0.0 { torque } else { speed };
+        let coulomb =
+            if direction == 0.0 { 0.0 } else { libm::copysign(coulomb.for_wheel(index).get(), direction) };
+        let added = torque + coulomb + viscous.for_wheel(index).get() * speed;
+        added.clamp(-self.torque_limit, self.torque_limit)
     }
 }
 
@@ -268,10 +270,10 @@ impl WheelsState {
             let full: Vec<usize> =
                 (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
             for index in full {
-                if let Some(wheel) = self.observations.get(index) {
-                    self.drive(now, index, wheel.speed, self.commanded[index]);
-                } else {
+                if self.observations.is_empty() {
                     (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
+                } else {
+                    self.drive(now, index, self.commanded[index], &rigid.into());
                 }
             }
         }

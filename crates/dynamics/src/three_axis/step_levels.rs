@@ -36,6 +36,9 @@ const LONGEST: f64 = 1024.0;
 /// Number of halvings from the longest step to one that resolves all modes.
 const HALVINGS: i32 = 6;
 
+/// Finest level, which is used where even its steps are too long.
+const FINEST: usize = 60;
+
 /// Admissible estimated attitude drift due to modes that a step does not resolve (rad/s): 1e-10 rad in 1e4 s.
 /// Measured on the reference spacecraft, at rates from 1e-6 to 0.03 rad/s and modal rates of 1e-9 to 0.1 m
 /// sqrt(kg)/s: less than 2e-15 rad/s where steps are on average at least twice as long as those that resolve all
@@ -56,13 +59,22 @@ const LOSS: f64 = 1e-8;
 /// Available step lengths: level 0 is the longest, each further level about half of the previous one.
 #[derive(Clone, Debug)]
 pub(super) struct StepLevels {
-    base: f64,
+    levels: Vec<StepLevel>,
     /// Approximate maximum rotation of the body in a step (rad).
     max_rotation: f64,
-    /// Step length that resolves all modes (s).
-    resolving: f64,
     modes: Vec<ModeRotationRate>,
     unresolved: Vec<f64>,
+}
+
+/// Steps of a level, before their length avoids multiples of periods.
+#[derive(Clone, Debug)]
+struct StepLevel {
+    /// Step length (s).
+    length: f64,
+    /// True if the steps resolve all modes.
+    is_resolved: bool,
+    /// Fraction of each mode's displacement that is lost per step.
+    losses: Vec<f64>,
 }
 
 /// Motion of the body at the start of a step, as upper bounds.
@@ -107,11 +119,11 @@ impl StepLevels {
         // Damping that couples modes is a force that only resolved modes represent correctly.
         let longest =
             if model.coupled_damping.is_some() { resolving } else { libm::scalbn(resolving, HALVINGS) };
+        let modes = attitude_effects(model);
         Self {
-            base: longest.min(LONGEST),
+            levels: step_levels(longest.min(LONGEST), resolving, &modes),
             max_rotation: MAX_ROTATION,
-            resolving,
-            modes: attitude_effects(model),
+            modes,
             unresolved: coupled.iter().copied().filter(|w| *w > RESOLVED).collect(),
         }
     }
@@ -119,55 +131,51 @@ impl StepLevels {
     /// Creates levels with one step length (s), whatever the rotation.
     #[cfg(test)]
     pub fn fixed(h: f64) -> Self {
-        Self { base: h, max_rotation: f64::INFINITY, resolving: h, modes: Vec::new(), unresolved: Vec::new() }
+        let levels = step_levels(h, h, &[]);
+        Self { levels, max_rotation: f64::INFINITY, modes: Vec::new(), unresolved: Vec::new() }
     }
 
-    /// Returns the level for a motion of the body.
+    /// Returns the level for a motion of the body: the first whose steps are short enough.
     pub fn level(&self, motion: BodyMotion<'_>) -> usize {
-        let mut level = 0;
-        let mut h = self.base;
         let hub_rate = motion.amplitudes.map_or(0.0, |amplitudes| self.hub_rate_bound(amplitudes));
         // Non-finite motions need no short steps.
-        let drifts = |h: f64| match motion.amplitudes {
-            Some(amplitudes) => {
-                let limit = if h > self.resolving { DRIFT } else { RESOLVED_DRIFT };
-                self.exceeds_drift(h, (motion, hub_rate), amplitudes, limit)
-            }
-            None => h > self.resolving,
+        let is_too_long = |level: &StepLevel| {
+            let h = level.length;
+            let turns = h * (motion.rate + motion.acceleration * h) > self.max_rotation;
+            turns
+                || match motion.amplitudes {
+                    Some(amplitudes) => self.exceeds_drift(level, motion, hub_rate, amplitudes),
+                    None => !level.is_resolved,
+                }
         };
-        while level < 60 && (h * (motion.rate + motion.acceleration * h) > self.max_rotation || drifts(h)) {
-            h *= 0.5;
-            level += 1;
-        }
-        level
+        self.levels[..FINEST].iter().position(|level| !is_too_long(level)).unwrap_or(FINEST)
     }
 
-    /// Returns true if the estimated attitude drift in steps of `h` (s) exceeds `limit` (rad/s); `hub_rate` bounds the
+    /// Returns true if the estimated attitude drift in steps of a level exceeds the admissible one; `hub_rate` bounds the
     /// hub's rate due to oscillating modes (rad/s).
     fn exceeds_drift(
         &self,
-        h: f64,
-        (motion, hub_rate): (BodyMotion<'_>, f64),
+        level: &StepLevel,
+        motion: BodyMotion<'_>,
+        hub_rate: f64,
         amplitudes: &[ModeAmplitude],
-        limit: f64,
     ) -> bool {
-        let resolved = h <= self.resolving;
-        let loss = |(of, amplitude): (&ModeRotationRate, &ModeAmplitude)| {
-            let square = of.frequency * h * of.frequency * h;
-            let rotation = if resolved {
+        let drift = |((of, amplitude), loss): ((&ModeRotationRate, &ModeAmplitude), &f64)| {
+            let rotation = if level.is_resolved {
                 of.rotation * amplitude.displacement
             } else {
                 of.unresolved * amplitude.oscillation
             };
-            rotation * (LOSS * square * square * square).min(1.0)
+            rotation * loss
         };
         // Unresolved modes also rotate each other.
-        let hub_rate = if resolved { 0.0 } else { hub_rate };
-        let by = motion.elastic_rotation_rate + motion.acceleration * h + hub_rate;
+        let (limit, hub_rate) = if level.is_resolved { (RESOLVED_DRIFT, 0.0) } else { (DRIFT, hub_rate) };
+        let by = motion.elastic_rotation_rate + motion.acceleration * level.length + hub_rate;
         // The last mode, mostly the fastest, often exceeds the limit alone; the sum of non-negative terms is no
         // smaller.
-        let alone = self.modes.last().zip(amplitudes.last()).is_some_and(|last| by * loss(last) > limit);
-        alone || by * self.modes.iter().zip(amplitudes).map(loss).sum::<f64>() > limit
+        let last = self.modes.last().zip(amplitudes.last()).zip(level.losses.last());
+        last.is_some_and(|last| by * drift(last) > limit)
+            || by * self.modes.iter().zip(amplitudes).zip(&level.losses).map(drift).sum::<f64>() > limit
     }
 
     /// Returns an upper bound of the hub's rate due to oscillating modes (rad/s).
@@ -179,7 +187,7 @@ impl StepLevels {
     /// Returns `level`, or the first finer level whose steps resolve excitation at `frequency` (rad/s).
     pub fn level_for_frequency(&self, level: usize, frequency: f64) -> usize {
         let mut level = level;
-        while frequency > 0.0 && frequency * self.length(level) > IMBALANCE_PHASE && level < 60 {
+        while frequency > 0.0 && frequency * self.length(level) > IMBALANCE_PHASE && level < FINEST {
             level += 1;
         }
         level
@@ -187,9 +195,8 @@ impl StepLevels {
 
     /// Returns the step length of a level (s), a number of few bits so that sums of steps are exact.
     pub fn length(&self, level: usize) -> f64 {
-        let longest = (0..level).fold(self.base, |h, _| 0.5 * h);
-        let mut best = (0.0, few_bits(longest));
-        let mut h = longest;
+        let mut h = self.levels[level].length;
+        let mut best = (0.0, few_bits(h));
         for _ in 0..MAX_REDUCTIONS {
             let candidate = few_bits(h);
             let gap = self.gap(candidate);
@@ -213,6 +220,18 @@ impl StepLevels {
         };
         self.unresolved.iter().map(gap).fold(MIN_GAP, f64::min)
     }
+}
+
+/// Returns all levels of a body with these modes, from the longest step and the step that resolves all modes (s).
+fn step_levels(longest: f64, resolving: f64, modes: &[ModeRotationRate]) -> Vec<StepLevel> {
+    let level = |h: f64| {
+        let loss = |of: &ModeRotationRate| {
+            let square = of.frequency * h * of.frequency * h;
+            (LOSS * square * square * square).min(1.0)
+        };
+        StepLevel { length: h, is_resolved: h <= resolving, losses: modes.iter().map(loss).collect() }
+    };
+    std::iter::successors(Some(longest), |h| Some(0.5 * h)).take(FINEST + 1).map(level).collect()
 }
 
 /// Returns the effect of each mode's amplitude on the attitude: by the hub's rotation, by the change of the inertia,

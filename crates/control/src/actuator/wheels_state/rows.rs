@@ -1,9 +1,11 @@
 //! Rows of reaction wheels and their bearings, and their stored momentum.
 
+use std::mem;
+
 use flexsc_dynamics::three_axis::RotorObservation;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{self, Report};
+use flexsc_record::{BearingMotion, Bearings, Report, Wheel, Wheels};
 
 use super::{WheelState, WheelsState};
 use crate::actuator::MomentumStorage;
@@ -13,19 +15,35 @@ use crate::sensor::TachometerState;
 
 impl WheelsState {
     /// Returns the row of the bearings, with the speeds that are available to the drives; `None` without bearings.
-    fn bearings(&self, rotors: &[RotorObservation]) -> Option<flexsc_record::Bearings> {
+    fn bearings(&self, rotors: &[RotorObservation]) -> Option<Bearings> {
         let known: Vec<f64> = match &self.tachometer {
             Some(tachometer) => tachometer.speeds().to_vec(),
             None => self.observations.iter().map(|wheel| wheel.speed).collect(),
         };
-        let motion = |(wheel, known_rad_s): (&RotorObservation, f64)| flexsc_record::BearingMotion {
+        let motion = |(wheel, known_rad_s): (&RotorObservation, f64)| BearingMotion {
             sliding: wheel.slip.into(),
             friction_nm: wheel.friction,
             heat_j: wheel.heat,
             known_rad_s,
         };
         let wheels: Vec<_> = rotors.iter().zip(known).map(motion).collect();
-        (!wheels.is_empty()).then_some(flexsc_record::Bearings { wheels })
+        (!wheels.is_empty()).then_some(Bearings { wheels })
+    }
+}
+
+impl WheelsState {
+    /// Iterates over the motions of the wheels on a body with this rate (rad/s).
+    fn motions(&self, now: Instant, rate: Vector) -> impl Iterator<Item = Wheel> {
+        let seconds = self.elapsed(now);
+        let motion = move |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| Wheel {
+            speed_rad_s: self
+                .observations
+                .get(index)
+                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
+            momentum_nm_s: wheel.momentum_at(seconds),
+            torque_nm: wheel.torque,
+        };
+        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion)
     }
 }
 
@@ -37,15 +55,17 @@ impl Part for WheelsState {
     }
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
-        let wheels = || flexsc_record::Wheels { wheels: self.wheels(at.now, at.truth.rates()[0]) };
-        match at.occasion {
-            Occasion::Period => {
-                self.bearings(&at.truth.rotors()).into_iter().for_each(|row| report.add(row));
-                report.add(wheels());
-            }
-            Occasion::Cycle => report.add_value(wheels()),
-            Occasion::Sample => {}
+        if at.occasion == Occasion::Sample {
+            return;
         }
+        let mut wheels = report.reuse(|row: &mut Wheels| mem::take(&mut row.wheels));
+        wheels.clear();
+        wheels.extend(self.motions(at.now, at.truth.rates()[0].into()));
+        if at.occasion == Occasion::Cycle {
+            return report.add_value(Wheels { wheels });
+        }
+        self.bearings(&at.truth.rotors()).into_iter().for_each(|row| report.add(row));
+        report.add(Wheels { wheels });
     }
 }
 
@@ -61,20 +81,11 @@ impl MomentumStorage for WheelsState {
     fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
         match &self.tachometer {
             Some(tachometer) => tachometer.speeds().to_vec(),
-            None => self.wheels(now, rate).into_iter().map(|wheel| wheel.speed_rad_s).collect(),
+            None => self.motions(now, rate.into()).map(|wheel| wheel.speed_rad_s).collect(),
         }
     }
 
-    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
-        let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
-        let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| flexsc_record::Wheel {
-            speed_rad_s: self
-                .observations
-                .get(index)
-                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
-            momentum_nm_s: wheel.momentum_at(seconds),
-            torque_nm: wheel.torque,
-        };
-        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<Wheel> {
+        self.motions(now, rate.into()).collect()
     }
 }

@@ -1,5 +1,7 @@
 //! Run-time state of the adaptive observers: inputs, state estimate, and log row with the true values.
 
+use std::mem;
+
 use flexsc_numerics::time::Instant;
 use flexsc_record::{ChannelState, Report, TrackedMode, Tracking};
 
@@ -32,7 +34,8 @@ impl ObserverSet {
 }
 
 impl ObserverSet {
-    /// Writes the log row, with the true rates of the modes and the status of active damping about each axis.
+    /// Writes the log row over an earlier one, with the true rates of the modes and the status of active damping about each
+    /// axis.
     fn write_row(&self, rates: &[f64], damped: &[DampingStatus], tracking: &mut Tracking) {
         tracking.channels.clear();
         tracking.trackers.clear();
@@ -76,8 +79,11 @@ impl Part for ObserverSet {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         if at.occasion == Occasion::Cycle {
             let rates = at.truth.mode_rates();
-            let empty = || Tracking { channels: Vec::new(), trackers: Vec::new() };
-            report.write_row(empty, |row| self.write_row(&rates, at.damping, row));
+            let take = |row: &mut Tracking| (mem::take(&mut row.channels), mem::take(&mut row.trackers));
+            let (channels, trackers) = report.reuse(take);
+            let mut row = Tracking { channels, trackers };
+            self.write_row(&rates, at.damping, &mut row);
+            report.add(row);
         }
     }
 }

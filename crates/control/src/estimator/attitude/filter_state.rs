@@ -1,5 +1,7 @@
 //! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
 
+use std::mem;
+
 use flexsc_flight::attitude_estimator::{gyro_exposure, observation_exposure};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::random::Stream;
@@ -163,8 +165,15 @@ impl FilterSetup {
 }
 
 impl AttitudeFilterRun {
-    /// Returns the filter's log row, with its errors against the true orientation and the true gyro bias (rad/s).
-    fn attitude_row(&self, now: Instant, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+    /// Returns the filter's log row, with its errors against the true orientation and the true gyro bias (rad/s); its axes
+    /// are in the memory of `axes`.
+    fn attitude_row(
+        &self,
+        now: Instant,
+        truth: &Orientation,
+        bias: [f64; 3],
+        mut axes: Vec<AxisEstimate>,
+    ) -> Option<AttitudeEstimate> {
         let (Orientation::Attitude(truth), filter) = (truth, self.history.as_ref()?.latest()) else {
             return None;
         };
@@ -180,12 +189,14 @@ impl AttitudeFilterRun {
             bias_sd_rad_s: bias_sd[axis],
             innovation_rad: self.last_correction.innovation.component(axis),
         };
+        axes.clear();
+        axes.extend([0, 1, 2].map(axis));
         Some(AttitudeEstimate {
             q_w: estimate.w,
             q_x: estimate.i,
             q_y: estimate.j,
             q_z: estimate.k,
-            axes: [0, 1, 2].map(axis).into(),
+            axes,
             nees: filter.normalised(&error) / AttitudeEstimate::STATES,
             nis: self.last_correction.nis / AttitudeEstimate::MEASUREMENTS,
             numbers: self.last_correction.components.into(),
@@ -193,8 +204,8 @@ impl AttitudeFilterRun {
         })
     }
 
-    /// Returns the log row of the elastic modes; `None` if the filter does not estimate any.
-    fn elastic_row(&self) -> Option<ElasticEstimates> {
+    /// Returns the log row of the elastic modes, in the memory of `rows`; `None` if the filter does not estimate any.
+    fn elastic_row(&self, mut rows: Vec<ElasticEstimate>) -> Option<ElasticEstimates> {
         let elastic = self.history.as_ref()?.modes()?;
         let each = elastic.known.each.iter().zip(&elastic.state).zip(&elastic.frequencies);
         let modes = each.zip(elastic.deviations()).map(|(((mode, state), frequency), deviation)| {
@@ -207,7 +218,9 @@ impl AttitudeFilterRun {
                 true_frequency_rad_s: mode.true_frequency,
             }
         });
-        Some(ElasticEstimates { modes: modes.collect() })
+        rows.clear();
+        rows.extend(modes);
+        Some(ElasticEstimates { modes: rows })
     }
 }
 
@@ -217,9 +230,11 @@ impl Part for AttitudeFilterRun {
             return;
         }
         let (orientation, bias) = (at.truth.orientation(), at.truth.gyro_bias());
-        if let Some(row) = self.attitude_row(at.now, &orientation, bias) {
+        let axes = report.reuse(|row: &mut AttitudeEstimate| mem::take(&mut row.axes));
+        if let Some(row) = self.attitude_row(at.now, &orientation, bias, axes) {
             report.add(row);
-            self.elastic_row().into_iter().for_each(|row| report.add(row));
+            let modes = report.reuse(|row: &mut ElasticEstimates| mem::take(&mut row.modes));
+            self.elastic_row(modes).into_iter().for_each(|row| report.add(row));
         }
     }
 }

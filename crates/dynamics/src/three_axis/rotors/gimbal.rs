@@ -38,7 +38,14 @@ impl Gimbal {
 
 /// Returns the total momentum of the gimbals' rotors (N m s) and its rate (N m) at `t` (s) since the start of the
 /// segment; `None` without gimbals.
+#[inline]
 pub fn total_momentum(gimbals: &[Gimbal], t: f64) -> Option<(Vector, Vector)> {
+    // Most bodies have none, and ask in every step.
+    if gimbals.is_empty() { None } else { sum_momentum(gimbals, t) }
+}
+
+/// Returns the sum of the momenta of the gimbals' rotors (N m s) and its rate (N m); `None` without gimbals.
+fn sum_momentum(gimbals: &[Gimbal], t: f64) -> Option<(Vector, Vector)> {
     gimbals.iter().map(|gimbal| gimbal.at(t)).reduce(|sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
