@@ -20,6 +20,11 @@ pub struct ActuatorSet {
     executing: Vec<(Box<dyn Actuator>, [f64; 3])>,
     /// Indices of the actuators that store momentum; the first can be unloaded.
     keepers: Vec<usize>,
+    /// True if an actuator acts by pulses.
+    has_pulses: bool,
+    /// Back-EMF torque per unit of the rate about the first axis (N m s) of the first actuator that has one, and true if the
+    /// elastic rate is included.
+    back_emf: (f64, bool),
     unloader: Option<UnloaderState>,
     /// Demand of the laws about each axis.
     demands: Vec<Demand>,
@@ -45,6 +50,8 @@ impl ActuatorSet {
         let mut several = Self {
             executing: Vec::with_capacity(members.len()),
             keepers: Vec::new(),
+            has_pulses: false,
+            back_emf: Default::default(),
             unloader: None,
             demands: vec![Demand::Torque(0.0); axes],
             stages: Vec::new(),
@@ -63,7 +70,11 @@ impl ActuatorSet {
                 }
             }
         }
-        several
+        let has_pulses = several.pulsed().next().is_some();
+        let mut each = several.each().map(|actuator| actuator.capabilities().back_emf);
+        let back_emf = each.find(|(of, _)| *of != 0.0).unwrap_or_default();
+        drop(each);
+        Self { has_pulses, back_emf, ..several }
     }
 
     /// Limits the execution of demands to some of the actuators, in the order of the scenario without the unloading
@@ -206,12 +217,11 @@ impl Actuator for ActuatorSet {
     }
 
     fn capabilities(&self) -> Capabilities<'_> {
-        let mut back_emf = self.each().map(|actuator| actuator.capabilities().back_emf);
         Capabilities {
             momentum: Some(self),
-            pulses: self.pulsed().next().map(|_| self as &dyn PulsedActuator),
+            pulses: self.has_pulses.then_some(self as &dyn PulsedActuator),
             waveform: Some(self),
-            back_emf: back_emf.find(|(of, _)| *of != 0.0).unwrap_or_default(),
+            back_emf: self.back_emf,
         }
     }
 

@@ -1,7 +1,5 @@
 //! Abilities of actuators beyond torques about the axes: momentum storage, pulses, and waveforms of a manoeuvre.
 
-use std::mem;
-
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Report, ThrusterPulse, Thrusters};
@@ -125,12 +123,10 @@ pub struct JetCycle {
 impl JetCycle {
     /// Adds the current cycle of jets, and its rows, which are logged if pulses have begun since the last ones.
     pub fn report(jets: &dyn PulsedActuator, report: &mut Report) {
-        let mut thrusters = report.reuse(|row: &mut Thrusters| mem::take(&mut row.thrusters));
-        thrusters.clear();
-        let (on, fuel_kg, pulses) = report.write_value(|cycle: &mut Self| {
+        let (on, fuel_kg, pulses, thrusters) = report.write_value(|cycle: &mut Self| {
             jets.write_cycle(cycle);
-            thrusters.extend(cycle.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s }));
-            (cycle.on, cycle.fuel, cycle.pulses)
+            let each = cycle.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s });
+            (cycle.on, cycle.fuel, cycle.pulses, each.collect::<Vec<_>>())
         });
         let [roll_on_s, pitch_on_s, yaw_on_s] = on;
         report.add_revision(pulses, flexsc_record::Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg });
