@@ -114,7 +114,7 @@ fn parts_from_outside_log_their_states() {
             assert_eq!(log.units(topic)[field], unit);
             let path = format!("{topic}.{field}");
             assert!(layout.contains(&path), "no panel shows {path}");
-            let figure = figures::log_figure(&log, Path::new("own.mcap"), topic).expect("a figure");
+            let figure = figures::log_figure(&log, Path::new("own.mcap"), topic, None).expect("a figure");
             assert!(figure.svg().expect("a picture").contains(field), "{topic}");
         }
         // A log without the motion has no rows of the toys either.

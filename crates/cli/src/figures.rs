@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use clap::ValueEnum;
+use flexsc_core::Scenario;
 use flexsc_core::campaign::{CampaignRun, ColumnCells, CommandLog, RowMaker};
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Log};
@@ -11,30 +12,41 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour}
 use crate::memory_log;
 use crate::plot::{self, FigureKind};
 
-/// Returns the log, in memory and with events, of a run under these commands up to an instant.
+/// Returns the log, in memory and of this detail, of a run under these commands up to an instant.
 ///
 /// # Errors
 /// A failed run.
-pub fn log_of(run: &CampaignRun, commanded: &CommandLog, until: Instant) -> Result<Log, String> {
-    memory_log::log_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
+pub fn log_of(
+    run: &CampaignRun,
+    commanded: &CommandLog,
+    until: Instant,
+    detail: Detail,
+) -> Result<Log, String> {
+    memory_log::log_run(run, commanded, until, Path::new(&run.scenario.name), detail)
         .map_err(|failure| failure.to_string())
 }
 
-/// Returns the names of the figures that a log has.
+/// Returns the names of the figures that a log has. The scenario of the run is `known` where the parts of a program are at
+/// hand.
 ///
 /// # Errors
 /// An invalid log.
-pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
-    let drawable = plot::drawable_kinds(log, path).map_err(|failure| failure.to_string())?;
+pub fn names(log: &Log, path: &Path, known: Option<&Scenario>) -> Result<Vec<String>, String> {
+    let drawable = plot::drawable_kinds(log, path, known).map_err(|failure| failure.to_string())?;
     Ok(drawable.into_iter().map(FigureKind::name).collect())
 }
 
-/// Returns a figure of a log by its name.
+/// Returns a figure of a log by its name. The scenario of the run is `known` where the parts of a program are at hand.
 ///
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
-pub fn log_figure(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
-    plot::figure_of(log, path, name).map_err(|failure| failure.to_string())
+pub fn log_figure(
+    log: &Log,
+    path: &Path,
+    name: &str,
+    known: Option<&Scenario>,
+) -> Result<Figure, String> {
+    plot::figure_of(log, path, name, known).map_err(|failure| failure.to_string())
 }
 
 /// Returns named figures of a campaign from its columns: of the given kind, else the default ones; of the given

@@ -61,8 +61,7 @@ fn layout_for_scenario(scenario: Scenario, path: &Path) -> Result<Layout, CliErr
 
 fn layout_for_log(path: &Path) -> Result<Layout, CliError> {
     let log = Log::open(path)?;
-    let scenario = Scenario::parse(&path.display().to_string(), log.require_scenario()?)?;
-    let layout =
-        Layout::for_scenario(&scenario).for_topics(|topic| log.topics().iter().any(|own| own == topic));
+    let scenario = Scenario::parse_logged(&path.display().to_string(), log.require_scenario()?, &log)?;
+    let layout = Layout::for_log(&scenario, &log)?;
     Ok(layout.with_limits(&log)?)
 }

@@ -322,6 +322,7 @@ impl Campaign {
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
             own_parts: run.scenario.custom_parts().each(),
+            own_part_facts: run.scenario.custom_facts(),
             attachments: Vec::new(),
         }
     }

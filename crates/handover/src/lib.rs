@@ -28,12 +28,11 @@ pub fn hand_over(
     format: HandoverFormat,
     options: &HandoverOptions,
 ) -> Result<Vec<u8>, HandoverError> {
-    let scenario = Scenario::parse(&log.path().display().to_string(), log.require_scenario()?)?;
+    let scenario = Scenario::parse_logged(&log.path().display().to_string(), log.require_scenario()?, log)?;
     hand_over_run(log, &scenario, format, options)
 }
 
-/// Returns the file of a log of this scenario in a format of other programs. A scenario with parts of a program cannot
-/// be read from the log.
+/// Returns the file of a log of this scenario in a format of other programs.
 ///
 /// # Errors
 /// A log that lacks what the format needs, or options that contradict the run.

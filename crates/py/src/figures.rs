@@ -8,6 +8,7 @@ use flexsc_cli::figures;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::campaign::ColumnCells;
+use flexsc_core::record::Detail;
 use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale};
 use numpy::PyArray2;
@@ -15,11 +16,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::Scenario;
+use super::{Scenario, detail};
 use super::aside::aside;
 use super::campaign::Work;
 use super::commands::Commands;
 use super::log::Log;
+use super::parts;
 use super::table::column;
 
 /// A figure.
@@ -116,27 +118,47 @@ fn place(log: &Log) -> PathBuf {
     log.0.metadata().get("scenario").map_or("log", String::as_str).into()
 }
 
-/// A log of a run in memory, with its events.
+/// A log of a run in memory, with its events, or with its rows if `detail` is `full`.
 #[pyfunction]
-pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64, stepped: Option<&Commands>) -> PyResult<Log> {
-    let (run, Commands { commands, until }) = (scenario.run(run), Commands::from_stepped(stepped));
-    let log = aside(py, move |_| figures::log_of(&run, &commands, until))?.map_err(PyValueError::new_err)?;
-    Ok(Log(Arc::new(log)))
+pub fn log_of(
+    py: Python<'_>,
+    scenario: &Scenario,
+    run: u64,
+    log: &str,
+    stepped: Option<&Commands>,
+) -> PyResult<Log> {
+    let detail = detail(log)?.unwrap_or_default().min(Detail::Full);
+    let (run, is_own) = (scenario.run(run), scenario.inner.has_custom_parts());
+    let Commands { commands, until } = Commands::from_stepped(stepped);
+    let log = aside(py, move |_| {
+        parts::known_thread(is_own, || figures::log_of(&run, &commands, until, detail))
+    })?;
+    Ok(Log(Arc::new(log.map_err(PyValueError::new_err)?)))
 }
 
-/// The names of the figures that a log has.
+/// The names of the figures that a log has. The scenario, if given, is that of the run, with its parts in Python.
 #[pyfunction]
-pub fn log_figures(py: Python<'_>, log: &Log) -> PyResult<Vec<String>> {
+pub fn log_figures(py: Python<'_>, log: &Log, scenario: Option<&Scenario>) -> PyResult<Vec<String>> {
     let (path, log) = (place(log), log.0.clone());
-    aside(py, move |_| figures::names(&log, &path))?.map_err(PyValueError::new_err)
+    let known = scenario.map(|scenario| scenario.inner.clone());
+    aside(py, move |_| figures::names(&log, &path, known.as_ref()))?.map_err(PyValueError::new_err)
 }
 
+/// The figure of a log by its name. The scenario, if given, is that of the run, with its parts in Python.
 #[pyfunction]
-pub fn log_figure(py: Python<'_>, log: &Log, name: String) -> PyResult<Figure> {
+pub fn log_figure(
+    py: Python<'_>,
+    log: &Log,
+    name: String,
+    scenario: Option<&Scenario>,
+) -> PyResult<Figure> {
     let (path, log) = (place(log), log.0.clone());
-    let figure =
-        aside(py, move |_| figures::log_figure(&log, &path, &name))?.map_err(PyValueError::new_err)?;
-    Ok(Figure(Arc::new(figure)))
+    let known = scenario.map(|scenario| scenario.inner.clone());
+    let is_own = known.as_ref().is_some_and(|known| known.has_custom_parts());
+    let figure = aside(py, move |_| {
+        parts::known_thread(is_own, || figures::log_figure(&log, &path, &name, known.as_ref()))
+    })?;
+    Ok(Figure(Arc::new(figure.map_err(PyValueError::new_err)?)))
 }
 
 /// The figures of a campaign's columns: of a kind, or the natural ones.

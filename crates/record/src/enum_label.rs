@@ -35,6 +35,9 @@ macro_rules! labels {
                 values: &[$($label),+],
             };
 
+            /// Values of the enumeration, in the order of their labels.
+            pub const VALUES: &[Self] = &[$(Self::$value),+];
+
             /// Returns the label of the value.
             pub const fn label(self) -> &'static str {
                 Self::LABELS.values[self as usize]

@@ -3,6 +3,7 @@
 //! Names and numbers of the fields are those of the published schemas. Unused fields at the end of a message are left
 //! out.
 
+use super::columns::Columns;
 use super::row::{LogDate, LogSpan, Row, Sink, Topic, TopicRow, label_cells, rows};
 use crate::enum_label::LoggedEnum;
 
@@ -37,6 +38,8 @@ impl LogLevel {
         ],
         values: &["unknown", "debug", "info", "warning", "error", "fatal"],
     };
+    const VALUES: &[Self] =
+        &[Self::Unknown, Self::Debug, Self::Info, Self::Warning, Self::Error, Self::Fatal];
 }
 
 /// Extent of a deletion of scene entities.
@@ -54,6 +57,7 @@ impl Deleted {
         docs: &[" The entity of this id.", " All entities of the topic."],
         values: &["matching id", "all"],
     };
+    const VALUES: &[Self] = &[Self::MatchingId, Self::All];
 }
 
 /// Connection of the points of a line.
@@ -73,6 +77,7 @@ impl LineType {
         docs: &[" Each point with the next.", " Also the last point with the first.", " In pairs."],
         values: &["line strip", "line loop", "line list"],
     };
+    const VALUES: &[Self] = &[Self::Strip, Self::Loop, Self::List];
 }
 
 label_cells!(LogLevel, Deleted, LineType);
@@ -305,6 +310,10 @@ impl Row for Plumes {
 
     fn write_to<S: Sink>(&self, sink: &mut S) {
         self.0.write_to(sink);
+    }
+
+    fn read_rows(columns: &Columns, before: &str) -> Option<Vec<Self>> {
+        Some(SceneUpdate::read_rows(columns, before)?.into_iter().map(Self).collect())
     }
 }
 

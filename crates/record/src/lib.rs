@@ -25,6 +25,7 @@ mod recover;
 mod report;
 mod requirement_errors;
 pub mod row;
+mod row_columns;
 mod scene_source;
 mod states;
 mod stop_flag;

@@ -13,12 +13,13 @@ use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
 use super::decoder::Schema;
+use super::custom_topic::{CustomField, CustomTopic};
 use super::log_topic::UNIT_KEY;
 use super::mcap_reader::{for_each_record, outer_records, parsed};
 use super::memory_budget::MemoryBudget;
 use super::topic_table::TopicTable;
 use super::topics::TOPICS;
-use super::{COMMANDS, Columns};
+use super::{COMMANDS, Column, Columns};
 
 /// Returns a hint for a topic that other logs contain.
 fn elsewhere(topic: &str) -> &'static str {
@@ -91,6 +92,10 @@ pub enum LogError {
         why: String,
     },
 }
+
+/// Keys of the run's metadata that name the roles of custom parts, and that hold facts about them as JSON.
+pub(super) const OWN_PARTS: &str = "own_parts";
+pub(super) const OWN_PART_FACTS: &str = "own_part_facts";
 
 /// Log in memory.
 pub struct Log {
@@ -207,6 +212,36 @@ impl Log {
     /// Returns the metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
+    }
+
+    /// Returns the roles of the custom parts of the run, such as `law, sensor`; `None` without any.
+    pub fn own_parts(&self) -> Option<&str> {
+        self.metadata.get(OWN_PARTS).map(String::as_str)
+    }
+
+    /// Returns the facts about the custom parts of the run as JSON, if the log has them.
+    pub fn own_part_facts(&self) -> Option<&str> {
+        self.metadata.get(OWN_PART_FACTS).map(String::as_str)
+    }
+
+    /// Returns the topics of the log that the engine does not declare, with the fields that have columns of numbers or words.
+    pub fn custom_topics(&self) -> Result<Vec<Arc<CustomTopic>>, LogError> {
+        let is_custom = |name: &&String| TOPICS.iter().all(|known| known.name != name.as_str());
+        let names: Vec<&str> = self.topics.iter().filter(is_custom).map(String::as_str).collect();
+        let tables = self.tables(&names)?.into_iter().zip(&names);
+        let topic = |(table, name): (Option<Columns>, &&str)| {
+            let mut units = self.units(name);
+            let field = |(field, column): (String, Column)| match column {
+                Column::Numbers(_) if field != "time_s" => {
+                    let unit = units.remove(&field).unwrap_or_default();
+                    Some(CustomField::new(field, unit, ""))
+                }
+                Column::Texts(_) => Some(CustomField::word(field, "")),
+                _ => None,
+            };
+            CustomTopic::new(*name, "", table?.columns.into_iter().filter_map(field).collect()).ok()
+        };
+        Ok(tables.filter_map(topic).collect())
     }
 
     /// Returns the external commands of the run as text, if there were any.

@@ -8,6 +8,7 @@ use flexsc_numerics::time::Instant;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapError, WriteOptions, Writer};
 
+use super::log_file::{OWN_PART_FACTS, OWN_PARTS};
 use super::message::{Message, MessageEncoder, MessageSink};
 use super::metrics::Metrics;
 use super::provenance_check::COMMANDED;
@@ -54,12 +55,13 @@ impl<W: Write + Seek> McapLog<W> {
             ("units", "SI: rad, s, kg m², N m; suffixes of the fields name them".to_owned()),
         ];
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
-        let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
+        let own = (!from.own_parts.is_empty()).then(|| (OWN_PARTS.to_owned(), from.own_parts.join(", ")));
+        let facts = from.own_part_facts.as_ref().map(|facts| (OWN_PART_FACTS.to_owned(), facts.clone()));
         let commanded = commands.is_some().then(|| (COMMANDED.to_owned(), COMMANDS.to_owned()));
         write_metadata(
             &mut writer,
             "flexsc.run",
-            metadata.into_iter().chain(own).chain(commanded).collect(),
+            metadata.into_iter().chain(own).chain(facts).chain(commanded).collect(),
         )?;
         let by_topic = vec![None; TOPICS.len()];
         let channels =

@@ -27,6 +27,8 @@ pub struct Provenance {
     /// Roles of custom parts supplied by a calling program; with any, the run cannot be repeated from its scenario
     /// alone.
     pub own_parts: Vec<&'static str>,
+    /// Facts about custom parts that figures show, as JSON; `None` without such parts.
+    pub own_part_facts: Option<String>,
     /// Attached files, besides the scenario.
     pub attachments: Vec<Attachment>,
 }

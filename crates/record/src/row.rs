@@ -1,6 +1,7 @@
 //! Rows: the fields of a topic listed once, for protobuf schemas, protobuf bytes, columns and CSV.
 
-use super::Detail;
+use super::columns::{Column, Columns};
+use super::{Detail, row_columns};
 use crate::enum_label::LoggedEnum;
 
 /// Topic of the log.
@@ -109,6 +110,11 @@ pub trait Row {
 
     /// Writes the fields into a sink, in their order.
     fn write_to<S: Sink>(&self, sink: &mut S);
+
+    /// Reads rows from the columns of their fields, whose names begin with `before`; `None` if a column is missing.
+    fn read_rows(columns: &Columns, before: &str) -> Option<Vec<Self>>
+    where
+        Self: Sized;
 }
 
 /// Row that is a message of a topic.
@@ -144,6 +150,11 @@ pub trait FieldType {
 
     /// Writes the field into a sink.
     fn write_to<S: Sink>(&self, sink: &mut S);
+
+    /// Reads the values of the field in all rows from its column; `None` if it is missing or of another kind.
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>>
+    where
+        Self: Sized;
 }
 
 impl FieldType for f64 {
@@ -151,6 +162,9 @@ impl FieldType for f64 {
     #[inline]
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.number(*self);
+    }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        columns.numbers(name).map(<[f64]>::to_vec)
     }
 }
 
@@ -160,6 +174,9 @@ impl FieldType for u64 {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.count(*self);
     }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        if let Some(Column::Counts(counts)) = columns.get(name) { Some(counts.clone()) } else { None }
+    }
 }
 
 impl FieldType for String {
@@ -167,12 +184,18 @@ impl FieldType for String {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.text(self);
     }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        if let Some(Column::Texts(texts)) = columns.get(name) { Some(texts.clone()) } else { None }
+    }
 }
 
 impl FieldType for bool {
     const KIND: FieldKind = FieldKind::Flag;
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.flag(*self);
+    }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        Some(u64::read_column(columns, name)?.into_iter().map(|flag| flag != 0).collect())
     }
 }
 
@@ -185,6 +208,9 @@ impl FieldType for LogDate {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        Some(row_columns::nanoseconds(columns, name)?.map(Self).collect())
+    }
 }
 
 /// Time span in nanoseconds; 0 if unlimited.
@@ -195,6 +221,9 @@ impl FieldType for LogSpan {
     const KIND: FieldKind = FieldKind::Time("Duration");
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
+    }
+    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
+        Some(row_columns::nanoseconds(columns, name)?.map(Self).collect())
     }
 }
 
@@ -235,6 +264,16 @@ macro_rules! rows {
                 fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     $($crate::row::FieldType::write_to(&self.$field, sink);)+
                 }
+
+                fn read_rows(columns: &$crate::Columns, before: &str) -> Option<Vec<Self>> {
+                    $(let mut $field = $crate::row_columns::values::<$of>(
+                        columns,
+                        before,
+                        $crate::row::field_name(stringify!($field)),
+                    )?;)+
+                    let next = || Some(Self { $($field: $field.next()?),+ });
+                    Some(std::iter::from_fn(next).collect())
+                }
             }
 
             impl $name {
@@ -250,12 +289,18 @@ macro_rules! rows {
                 fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.row(self);
                 }
+                fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
+                    <$name as $crate::row::Row>::read_rows(columns, &format!("{name}."))
+                }
             }
 
             impl $crate::row::FieldType for Vec<$name> {
                 const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Rows(&<$name>::MESSAGE);
                 fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.rows(self);
+                }
+                fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
+                    $crate::row_columns::nested(columns, name)
                 }
             }
 
@@ -304,6 +349,9 @@ macro_rules! label_cells {
             #[inline]
             fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                 sink.label(*self as usize, &<$of>::LABELS);
+            }
+            fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
+                $crate::row_columns::labels(columns, name, &<$of>::LABELS, <$of>::VALUES)
             }
         })+
     };

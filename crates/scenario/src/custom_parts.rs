@@ -6,24 +6,31 @@ use flexsc_control::actuator::{ActuatorSpec, AssignedActuator};
 use flexsc_control::adaptation::AdaptationSpec;
 use flexsc_control::custom::Custom;
 use flexsc_control::estimator::EstimatorSpec;
-use flexsc_control::law::LawSpec;
+use flexsc_control::law::{LawKind, LawSpec, Stage};
 use flexsc_control::sensor::{SensorKind, SensorSpec};
-use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_formats::document::{ConfigError, Document, ScenarioError, nearest};
 use flexsc_record::CustomTopic;
 use flexsc_record::custom_topic::CustomTopics;
 use toml::{Table, Value};
 
 use super::{Scenario, ScenarioSpec};
 
-/// Placeholders in a text for a custom sensor and for a custom actuator.
-const SENSOR: &str = "continuous";
-const ACTUATOR: &str = "ideal";
+/// Placeholders in a text for a custom sensor, for a custom actuator, and for a custom law of a mode or a stage.
+pub(super) const SENSOR: &str = "continuous";
+pub(super) const ACTUATOR: &str = "ideal";
+const STAGE_LAW: &str = "open";
 
-/// Custom parts of a scenario: at most one law, estimator and adaptation, and any number of sensors and actuators.
+/// Law of another crate.
+pub type CustomLaw = Custom<dyn LawSpec + Send + Sync>;
+
+/// Custom parts of a scenario: at most one estimator and adaptation, one law or several of modes or stages, and any number
+/// of sensors and actuators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CustomParts {
-    /// Custom law.
-    pub law: Option<Custom<dyn LawSpec + Send + Sync>>,
+    /// Custom law that acts throughout.
+    pub law: Option<CustomLaw>,
+    /// Custom laws of modes of operation, each with the name of its mode, or of stages of the law, each with its number.
+    pub stage_laws: Vec<(String, CustomLaw)>,
     /// Custom sensors, each with its index among the sensors of the scenario.
     pub sensors: Vec<(usize, Custom<dyn SensorSpec>)>,
     /// Custom estimator.
@@ -66,14 +73,32 @@ impl Scenario {
         all.sensors.extend(own.sensors);
         all.actuators.retain(|(place, _)| own.actuators.iter().all(|(other, _)| other != place));
         all.actuators.extend(own.actuators);
+        if own.law.is_some()
+            && let Some(why) = self.stage_choice()
+        {
+            return Err(self.law_fault(why));
+        }
+        all.stage_laws.retain(|(stage, _)| own.stage_laws.iter().all(|(other, _)| other != stage));
+        all.stage_laws.extend(own.stage_laws);
         all.law = own.law.or(all.law);
         all.estimator = own.estimator.or(all.estimator);
         all.adaptation = own.adaptation.or(all.adaptation);
         let mut table = self.table_without_custom_parts();
-        for role in all.each().into_iter().filter(|role| !["sensor", "actuator"].contains(role)) {
+        let replaced = [
+            ("law", all.law.is_some()),
+            ("estimator", all.estimator.is_some()),
+            ("adaptation", all.adaptation.is_some()),
+        ];
+        for (role, _) in replaced.into_iter().filter(|(_, is_own)| *is_own) {
             table.remove(role);
         }
-        // Replaced sensors and actuators become placeholders.
+        // Replaced laws of modes and stages, sensors and actuators become placeholders.
+        for (stage, _) in &all.stage_laws {
+            let index = self.stage_index(stage).map_err(|why| self.law_fault(why))?;
+            if let Some(law) = stage_laws(&mut table).into_iter().nth(index) {
+                *law = open_law();
+            }
+        }
         for (place, _) in &all.sensors {
             self.write_placeholder(&mut table, ("sensor", self.sensor.len()), *place, SENSOR)?;
         }
@@ -85,7 +110,91 @@ impl Scenario {
     }
 }
 
+/// Returns the laws of the modes in a table, or of the stages of its law; empty without any.
+pub(super) fn stage_laws(table: &mut Table) -> Vec<&mut Value> {
+    let stages = match table.contains_key("mode") {
+        true => table.get_mut("mode"),
+        false => table.get_mut("law").and_then(|law| law.get_mut("stages")),
+    };
+    let Some(Value::Array(stages)) = stages else { return Vec::new() };
+    stages.iter_mut().filter_map(|stage| stage.get_mut("law")).collect()
+}
+
+/// Returns the placeholder of a custom law of a mode or a stage.
+pub(super) fn open_law() -> Value {
+    Value::Table(Table::from_iter([(STAGE_LAW.to_owned(), Value::Table(Table::new()))]))
+}
+
+/// Returns true if a part in a table is a custom one.
+pub(super) fn is_own(part: &Value) -> bool {
+    part.get("own").is_some()
+}
+
 impl ScenarioSpec {
+    /// Returns the error of a custom law that has no place in the scenario.
+    fn law_fault(&self, why: String) -> ScenarioError {
+        ScenarioError::Key { origin: self.name.clone(), key: "law".to_owned(), why }
+    }
+
+    /// Returns why a custom law cannot act throughout, with the names by which a mode or a stage gets it; `None` for a scenario
+    /// with one law.
+    pub(super) fn stage_choice(&self) -> Option<String> {
+        let names: Vec<String> = (0..self.law.stages().len()).map(|index| self.stage_name(index)).collect();
+        let last = names.last()?;
+        let listed = |quoted: Vec<String>| quoted.join(", ");
+        Some(if self.mode.is_empty() {
+            let stage = |(index, stage): (usize, &Stage)| {
+                format!("{index}, `{}` from {} s", stage.law.kind(), stage.from.get())
+            };
+            let stages = listed(self.law.stages().iter().enumerate().map(stage).collect());
+            format!(
+                "has stages, each with a law of its own: give yours to one by its number, in Python `law={{{last}: ...}}`; the \
+                 stages are {stages}"
+            )
+        } else {
+            let modes = listed(names.iter().map(|name| format!("`{name}`")).collect());
+            format!(
+                "must be left out with `[[mode]]`, where each mode has a law of its own: give yours to one by its name, in \
+                 Python `law={{\"{last}\": ...}}`; the modes are {modes}"
+            )
+        })
+    }
+
+    /// Returns the name of a mode of operation, or the number of a stage of the law.
+    fn stage_name(&self, index: usize) -> String {
+        self.mode.get(index).map_or_else(|| index.to_string(), |mode| mode.name.clone())
+    }
+
+    /// Returns the index of the mode of operation of this name, or of the stage of the law with this number.
+    ///
+    /// # Errors
+    /// The reason why there is none.
+    pub(super) fn stage_index(&self, name: &str) -> Result<usize, String> {
+        if self.mode.is_empty() {
+            let count = self.law.stages().len();
+            let known = name.parse().ok().filter(|index| *index < count);
+            return known.ok_or_else(|| match count {
+                0 => format!("has no modes of operation, got `{name}`"),
+                _ => format!("must be the index of a stage of the law, from 0 to {}, got `{name}`", count - 1),
+            });
+        }
+        self.mode.iter().position(|mode| mode.name == name).ok_or_else(|| {
+            let names: Vec<&str> = self.mode.iter().map(|mode| mode.name.as_str()).collect();
+            let near = nearest(name, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+            format!("must be one of {}, got `{name}`{near}", quoted.join(", "))
+        })
+    }
+
+    /// Returns the law of a mode of operation or of a stage.
+    fn stage_law_mut(&mut self, name: &str) -> Option<&mut LawKind> {
+        let index = self.stage_index(name).ok()?;
+        match self.mode.get_mut(index) {
+            Some(mode) => Some(&mut mode.law),
+            None => self.law.stage_law_mut(index),
+        }
+    }
+
     /// Writes the placeholder `word` of a custom part into the table, at index `place` of `count` parts of a role. An
     /// actuator keeps its axes, share and unloading.
     fn write_placeholder(
@@ -135,11 +244,14 @@ impl ScenarioSpec {
 
     /// Returns the custom parts of the scenario.
     pub fn custom_parts(&self) -> CustomParts {
+        let law =
+            |(index, stage): (usize, &Stage)| Some((self.stage_name(index), stage.law.custom()?.clone()));
         let sensor = |(place, sensor): (usize, &SensorKind)| Some((place, sensor.custom()?.clone()));
         let actuator =
             |(place, assigned): (usize, &AssignedActuator)| Some((place, assigned.kind.custom()?.clone()));
         CustomParts {
             law: self.law.custom().cloned(),
+            stage_laws: self.law.stages().iter().enumerate().filter_map(law).collect(),
             sensors: self.sensor.iter().enumerate().filter_map(sensor).collect(),
             estimator: self.estimator.as_ref().and_then(|estimator| estimator.custom().cloned()),
             adaptation: self.adaptation.as_ref().and_then(|adaptation| adaptation.custom().cloned()),
@@ -147,11 +259,11 @@ impl ScenarioSpec {
         }
     }
 
-    /// Returns the scenario with all its defaults, as a table with placeholders for custom sensors and actuators, and
-    /// without other custom parts.
+    /// Returns the scenario with all its defaults, as a table with placeholders for custom sensors and actuators and for
+    /// custom laws of modes and stages, and without other custom parts.
     pub fn table_without_custom_parts(&self) -> Table {
         let mut table = self.to_table();
-        let is_own = |part: &Value| part.get("own").is_some();
+        stage_laws(&mut table).into_iter().filter(|law| is_own(law)).for_each(|law| *law = open_law());
         for (role, word) in [("sensor", SENSOR), ("actuator", ACTUATOR)] {
             if let Some(Value::Array(parts)) = table.get_mut(role) {
                 let own = parts.iter_mut().filter(|part| is_own(part));
@@ -195,9 +307,14 @@ impl ScenarioSpec {
 
     /// Sets the custom parts for roles that the document leaves out, and for sensors and actuators with a placeholder.
     pub(super) fn inherit_custom_parts(&mut self, own: &CustomParts, document: &Document) {
-        let CustomParts { law, sensors, estimator, adaptation, actuators } = own;
+        let CustomParts { law, stage_laws, sensors, estimator, adaptation, actuators } = own;
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
             self.law = law.clone().into();
+        }
+        for (stage, law) in stage_laws {
+            if let Some(there) = self.stage_law_mut(stage).filter(|there| there.kind() == STAGE_LAW) {
+                *there = law.clone().into();
+            }
         }
         for (place, sensor) in sensors {
             if let Some(there) = self.sensor.get_mut(*place).filter(|there| there.is_continuous()) {
@@ -222,7 +339,7 @@ impl CustomParts {
     /// Returns the keys of the roles that have a custom part.
     pub fn each(&self) -> Vec<&'static str> {
         let all = [
-            ("law", self.law.is_some()),
+            ("law", self.law.is_some() || !self.stage_laws.is_empty()),
             ("sensor", !self.sensors.is_empty()),
             ("estimator", self.estimator.is_some()),
             ("adaptation", self.adaptation.is_some()),

@@ -21,6 +21,7 @@ mod fast_path;
 mod file_name;
 mod line_of_sight;
 mod log;
+mod logged_scenario;
 mod meant;
 pub mod metric_descriptions;
 mod mode_checks;
@@ -43,6 +44,7 @@ use std::sync::{Arc, OnceLock};
 
 use flexsc_control::law::{ErrorBand, Setpoint};
 use flexsc_control::operation::ModeTables;
+use flexsc_control::requirement::Requirements;
 use flexsc_control::sensor::SensorKind;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::LinearFlow;
@@ -57,7 +59,7 @@ pub use assessed_requirement::{
 };
 pub use bound::BoundSpec;
 pub use cost::{Cost, MOST_RUNS};
-pub use custom_parts::CustomParts;
+pub use custom_parts::{CustomLaw, CustomParts};
 pub use epoch::date_from_text;
 pub use failures::FailureInterval;
 pub use line_of_sight::LineOfSight;
@@ -114,13 +116,23 @@ impl Scenario {
 
     fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
+        let (written, model) = Self::assembled(document, parent, own)?;
+        Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
+    }
+
+    /// Returns the keys of a document in SI units, with custom parts, and the model of the body.
+    fn assembled(
+        document: &Document,
+        parent: Option<&Self>,
+        own: &CustomParts,
+    ) -> Result<(ScenarioSpec, BodyModel), ScenarioError> {
         let mut written: ScenarioSpec = document.read()?;
         written.inherit_custom_parts(own, document);
         if !written.mode.is_empty() && document.has("law") {
             let why = "must be left out with `[[mode]]`: each mode has a law of its own";
             return Err(document.at_key(&ConfigError::new("law", why)));
         }
-        written.adopt_modes();
+        written.adopt_modes().map_err(|fault| document.at_key(&fault))?;
         if written.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
@@ -139,28 +151,41 @@ impl Scenario {
         {
             return Err(document.missing("law"));
         }
-        Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
+        Ok((written, model))
     }
 
     /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
     /// the manoeuvre.
     fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
-        written.adopt_modes();
+        written.adopt_modes()?;
         let offers = written.offers(&model);
         let unmet = written.unmet_requirements(&offers);
         written.validate_compatibility(&model, &offers, &unmet)?;
         if let Some(conflict) = written.topic_conflict() {
             return Err(conflict);
         }
-        let study = ResolvedScenario::resolve(&written, &model, &unmet)?;
-        let mut scenario = Self { written, model, plan: None, linear: None, study };
+        let scenario = Self::resolved(written, model, &unmet)?;
         scenario.validate(&offers, &unmet)?;
-        scenario.plan = scenario.planned()?;
-        scenario.linear = scenario.linear_flow()?;
-        let period = scenario.study.assessment_period;
-        scenario.study.requirements =
-            requirement_checks::assessed(&scenario.written, &scenario.model, period)?;
-        Ok(scenario)
+        scenario.planned_and_assessed()
+    }
+
+    /// Resolves the data of all parts together, but for the plan and the requirements.
+    fn resolved(
+        written: ScenarioSpec,
+        model: BodyModel,
+        unmet: &Requirements,
+    ) -> Result<Self, ConfigError> {
+        let study = ResolvedScenario::resolve(&written, &model, unmet)?;
+        Ok(Self { written, model, plan: None, linear: None, study })
+    }
+
+    /// Plans the manoeuvre, and adds the exact flow and the requirements.
+    fn planned_and_assessed(mut self) -> Result<Self, ConfigError> {
+        self.plan = self.planned()?;
+        self.linear = self.linear_flow()?;
+        let period = self.study.assessment_period;
+        self.study.requirements = requirement_checks::assessed(&self.written, &self.model, period)?;
+        Ok(self)
     }
 
     /// Returns the one-axis body, for analyses that need one.

@@ -16,26 +16,12 @@ impl Scenario {
     /// # Errors
     /// Fails without a mode of this name, and if the parts of the mode are inconsistent without the others.
     pub fn in_mode(&self, name: &str) -> Result<Self, ScenarioError> {
-        if let Some(index) =
-            name.parse().ok().filter(|index| *index < self.law.stages().len() && self.mode.is_empty())
-        {
+        let fault =
+            |why| ScenarioError::Key { origin: self.name.clone(), key: "mode".to_owned(), why };
+        let index = self.stage_index(name).map_err(fault)?;
+        if self.mode.is_empty() {
             return self.clone().with(|written| written.keep_stage(index));
         }
-        let Some(index) = self.mode.iter().position(|mode| mode.name == name) else {
-            let names: Vec<String> = self.mode.iter().map(|mode| format!("`{}`", mode.name)).collect();
-            let why = if names.is_empty() {
-                match self.law.stages().len() {
-                    0 => format!("has no modes of operation, got `{name}`"),
-                    count => format!(
-                        "must be the index of a stage of the law, from 0 to {}, got `{name}`",
-                        count - 1
-                    ),
-                }
-            } else {
-                format!("must be one of {}, got `{name}`", names.join(", "))
-            };
-            return Err(ScenarioError::Key { origin: self.name.clone(), key: "mode".to_owned(), why });
-        };
         self.clone().with(|written| written.keep_mode(index))
     }
 

@@ -9,6 +9,7 @@ use flexsc_control::law::{AttitudeTarget, LawKind, Stages};
 use flexsc_control::one_or_many::OneOrMany;
 use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
 use flexsc_spacecraft::body::{Body, Drift};
@@ -134,13 +135,21 @@ impl ScenarioSpec {
     }
 
     /// Takes the laws, and the first target, from the modes of operation, if there are any.
-    pub(super) fn adopt_modes(&mut self) {
+    ///
+    /// # Errors
+    /// A law besides those of the modes, which a program has set.
+    pub(super) fn adopt_modes(&mut self) -> Result<(), ConfigError> {
         if self.mode.is_empty() {
-            return;
+            return Ok(());
         }
+        let is_other = !self.law.is_of_modes() && self.law != LawKind::default();
         self.law = LawKind::Stages(Stages::for_modes(self.mode.iter().map(OperatingMode::stage).collect()));
         let first = self.mode.first().and_then(|mode| mode.target.as_ref());
         self.mode_targets = first.map(ModeTarget::at_start).into_iter().collect();
+        match self.stage_choice().filter(|_| is_other) {
+            Some(why) => Err(ConfigError::new("law", why)),
+            None => Ok(()),
+        }
     }
 
     /// Returns true if the estimator is a set of adaptive observers.

@@ -6,7 +6,8 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, c
 
 use super::pointing::{decades, norm};
 use super::run_events::RunEvents;
-use super::three_axis::{CycleData, panels};
+use super::cycle_data::CycleData;
+use super::three_axis::panels;
 use super::{consistency, time, title};
 
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.

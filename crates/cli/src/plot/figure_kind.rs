@@ -7,7 +7,8 @@ use flexsc_figure::Figure;
 
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::three_axis::{self, CycleData};
+use super::cycle_data::CycleData;
+use super::three_axis;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drives, envelope, estimate,
     extra_loop, flywheel, frequency, gain, gimbals, hinges, identified_frequencies, line_of_sight,
@@ -133,6 +134,44 @@ impl FigureKind {
             }
             Self::Extra => extra_loop::extra(story).is_some(),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => false,
+        }
+    }
+
+    /// Returns the topics of a three-axis run whose rows the figure shows.
+    pub fn topics(self) -> &'static [&'static str] {
+        match self {
+            Self::Pointing => &["/pointing"],
+            Self::Rates => &["/rates"],
+            Self::Torques => &["/torques"],
+            Self::Deflection => &["/vibrations"],
+            Self::Energy => &["/energy", "/jets"],
+            Self::Position => &["/position"],
+            Self::Jets => &["/jets"],
+            Self::Tracking | Self::Damping => &["/tracking"],
+            Self::Wheel => &["/wheels", "/bearings", "/pointing"],
+            Self::Gimbals => &["/control_moment_gyros"],
+            Self::Magnetorquers => &["/magnetorquers", "/wheels", "/rates"],
+            Self::Accelerations => &["/accelerations"],
+            Self::LineOfSight => &["/line_of_sight"],
+            Self::Orbit => &["/orbit"],
+            Self::Drives => &["/drives"],
+            Self::Hinges => &["/hinges"],
+            Self::Frequency => &["/attitude_filter_modes"],
+            Self::Consistency => &["/attitude_filter"],
+            Self::PhasePlane
+            | Self::Torque
+            | Self::Angle
+            | Self::Outputs
+            | Self::Envelope
+            | Self::Gain
+            | Self::Modes
+            | Self::Estimate
+            | Self::Extra
+            | Self::Distribution
+            | Self::Scatter
+            | Self::Fan
+            | Self::Curve
+            | Self::Region => &[],
         }
     }
 

@@ -6,7 +6,7 @@ use flexsc_core::record::ControlMomentGyros;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
-use super::three_axis::CycleData;
+use super::cycle_data::CycleData;
 use super::{time, title};
 
 /// Colours of gimbals, cyclic.

@@ -5,7 +5,7 @@ use flexsc_figure::{Figure, Point};
 
 use super::drives::alike;
 use super::run_events::RunEvents;
-use super::three_axis::CycleData;
+use super::cycle_data::CycleData;
 use super::{time, title};
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {

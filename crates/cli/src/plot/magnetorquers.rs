@@ -4,8 +4,9 @@
 use flexsc_core::record::Magnetorquers;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::pointing::norm;
 use super::run_events::RunEvents;
-use super::three_axis::CycleData;
+use super::cycle_data::CycleData;
 use super::{time, title};
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
@@ -36,11 +37,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let x = time(0.0..story.end);
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
-    let norm = |vector: [f64; 3]| vector.iter().map(|part| part * part).sum::<f64>().sqrt();
     let points: Vec<Point> = if wheels {
-        cycles.over_time(|cycle| norm(cycle.stored_momentum_nm_s))
+        cycles.wheel_momenta(story, norm)
     } else {
-        cycles.over_time(|cycle| norm(cycle.rigid_rate_rad_s))
+        cycles.rates(|rigid, _| norm(rigid))
     };
     let (name, unit) = if wheels { ("momentum of the wheels", "N m s") } else { ("rate", "rad/s") };
     let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());

@@ -6,6 +6,7 @@ mod attitude_filter;
 mod campaign;
 mod columns;
 mod consistency;
+mod cycle_data;
 mod dead_zone;
 mod deflection;
 mod drives;
@@ -34,6 +35,7 @@ mod outputs;
 mod overlay;
 mod phase_plane;
 mod pointing;
+mod repeated_run;
 mod run_events;
 mod stale_check;
 mod three_axis;
@@ -47,6 +49,7 @@ mod wheels;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::Scenario;
 use flexsc_core::record::Log;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
@@ -58,7 +61,7 @@ pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use motion::MotionData;
 use run_events::RunEvents;
-use three_axis::CycleData;
+use cycle_data::CycleData;
 pub use title::readable;
 use title::{short, title};
 
@@ -121,7 +124,8 @@ impl PlotArgs {
         if !self.json {
             stale_check::warn_if_stale(&log, path);
         }
-        drawn_over(&log, path, asked, (self.from, self.to))
+        let range = ShownRange { from: self.from, to: self.to };
+        drawn_over(&log, path, asked, range, RunSource { known: None, is_told: !self.json })
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
@@ -161,20 +165,42 @@ impl PlotArgs {
     }
 }
 
-/// Returns the figure of a log in memory by its name; errors refer to the log as `path`.
+/// Interval of time that figures show (s); by default that which each figure chooses.
+#[derive(Copy, Clone, Default)]
+struct ShownRange {
+    from: Option<f64>,
+    to: Option<f64>,
+}
+
+/// Source of a run that is repeated.
+#[derive(Copy, Clone, Default)]
+struct RunSource<'a> {
+    /// Scenario with the parts of a program, if they are at hand.
+    known: Option<&'a Scenario>,
+    /// True if a repetition is told on the terminal.
+    is_told: bool,
+}
+
+/// Returns the figure of a log in memory by its name; errors refer to the log as `path`. The scenario of the run is `known`
+/// where the parts of a program are at hand.
 ///
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
-pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
+pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -> Result<Figure, CliError> {
     let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
-    let drawn = drawn(log, path, &[kind])?.into_iter().next();
+    let source = RunSource { known, is_told: false };
+    let drawn = drawn_over(log, path, &[kind], ShownRange::default(), source)?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 /// Returns the figures that a log has.
-pub fn drawable_kinds(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
-    Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
+pub fn drawable_kinds(
+    log: &Log,
+    path: &Path,
+    known: Option<&Scenario>,
+) -> Result<Vec<FigureKind>, CliError> {
+    Ok(FigureKind::all_in(&RunEvents::read(log, path, known)?))
 }
 
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {
@@ -205,17 +231,13 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
-/// Returns figures of a log: the named ones, or all that it has.
-fn drawn(log: &Log, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
-    drawn_over(log, path, asked, (None, None))
-}
-
-/// Returns figures over an interval of time, if given.
+/// Returns figures of a log over an interval of time, if given: the named ones, or all that it has.
 fn drawn_over(
     log: &Log,
     path: &Path,
     asked: &[FigureName],
-    (from, to): (Option<f64>, Option<f64>),
+    ShownRange { from, to }: ShownRange,
+    source: RunSource<'_>,
 ) -> Result<Vec<(String, Figure)>, CliError> {
     let (kinds, topics) = FigureName::split(asked);
     let of_topic = |topic: &str| Ok((topic.replace('/', "topic-"), topic::figure(log, path, topic)?));
@@ -226,7 +248,8 @@ fn drawn_over(
         let crop = |figure| shown.iter().fold(figure, time_range::crop);
         return Ok(figures.into_iter().map(|(name, figure)| (name, crop(figure))).collect());
     }
-    let mut story = RunEvents::read(log, path)?;
+    let mut story = RunEvents::read(log, path, source.known)?;
+    story.is_told = source.is_told;
     story.shown = time_range::resolve(from, to, story.end)?;
     let chosen = figure_kind::select(&kinds, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
@@ -244,7 +267,12 @@ fn drawn_over(
         FigureKind::Extra,
     ]);
     let is_three_axis = story.scenario.axis_count() == 3;
-    let cycles = if is_three_axis { CycleData::read(&story, log, path)? } else { CycleData::default() };
+    let topics: Vec<&str> = chosen.iter().flat_map(|kind| kind.topics()).copied().collect();
+    let cycles = if is_three_axis && !topics.is_empty() {
+        CycleData::read(&story, log, path, &topics)?
+    } else {
+        CycleData::default()
+    };
     let motion = if is_three_axis {
         MotionData::default()
     } else if all || !story.switches() {

@@ -173,13 +173,11 @@ pub struct MotionRecorder {
     pub motion: MotionData,
     early: f64,
     late: f64,
-    /// Times of the switchings, for comparison with the log.
-    pub switchings: Vec<f64>,
 }
 
 impl MotionRecorder {
     pub fn new(early: f64, late: f64) -> Self {
-        Self { motion: MotionData::default(), early, late, switchings: Vec::new() }
+        Self { motion: MotionData::default(), early, late }
     }
 
     fn observe(&mut self, time: f64, report: &Report) {
@@ -218,13 +216,12 @@ impl Record for MotionRecorder {
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
-            Sample::Switching(command, _) => self.switchings.push(command.time_s),
             Sample::Report(report) => {
                 self.observe(now.seconds(), report);
                 let estimate = report.get().map(|row| DominantModeEstimate::from_row(now.seconds(), row));
                 self.motion.estimates.extend(estimate);
             }
-            Sample::Begin(_) | Sample::Row(_) => {}
+            Sample::Begin(_) | Sample::Switching(..) | Sample::Row(_) => {}
         }
         Ok(())
     }

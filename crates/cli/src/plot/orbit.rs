@@ -5,7 +5,7 @@ use flexsc_core::record::{Light, Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::run_events::RunEvents;
-use super::three_axis::CycleData;
+use super::cycle_data::CycleData;
 use super::{time, title};
 
 /// Function that reads a component of an axis.

@@ -3,7 +3,8 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::run_events::RunEvents;
-use super::three_axis::{CycleData, panels};
+use super::cycle_data::CycleData;
+use super::three_axis::panels;
 use super::{time, title};
 
 /// Ratio of a band to the errors above which the band does not determine the height of a panel.
@@ -11,7 +12,7 @@ const WIDE: f64 = 3.0;
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |axis: usize| {
-        let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
+        let points = cycles.errors(|error| error[axis]);
         let name = if axis == 0 { "pointing error" } else { "" };
         vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)]
     };
@@ -52,7 +53,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = last.x.unnamed();
     }
-    let length = cycles.over_time(|cycle| norm(cycle.error_rad));
+    let length = cycles.errors(norm);
     panels.push(decades(story, "norm", vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), length)]));
     Figure { title: title(story, "pointing error"), panels, panel_height: 160 }
 }

@@ -4,9 +4,8 @@
 use std::path::Path;
 
 use flexsc_core::campaign::CommandLog;
-use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Log};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
 
 use super::columns::{labels, rows, topics};
 use super::motion::{MotionData, MotionRecorder};
@@ -20,8 +19,12 @@ pub struct RunEvents {
     pub run: u64,
     /// End of the run (s).
     pub end: f64,
-    /// External commands of the run.
-    commanded: Option<CommandLog>,
+    /// External commands of the run; `None` if the log lacks them.
+    pub(super) commanded: Option<CommandLog>,
+    /// Roles of the parts that a program supplied to the run, and that are not at hand.
+    pub(super) absent_parts: Option<String>,
+    /// True if a repetition of the run is told on the terminal.
+    pub is_told: bool,
     /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -73,10 +76,12 @@ pub struct AdaptationStep {
 }
 
 impl RunEvents {
-    /// Reads the events of a log.
-    pub fn read(log: &Log, path: &Path) -> Result<Self, CliError> {
+    /// Reads the events of a log, the scenario of which is `known` where the parts of a program are at hand.
+    pub fn read(log: &Log, path: &Path, known: Option<&Scenario>) -> Result<Self, CliError> {
         let toml = log.require_scenario()?;
-        let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
+        let origin = || format!("{}: scenario.toml", path.display());
+        let scenario = known.cloned().map_or_else(|| Scenario::parse_logged(&origin(), toml, log), Ok)?;
+        let absent_parts = log.own_parts().filter(|_| known.is_none()).map(str::to_owned);
         let metadata = log.metadata();
         let run = metadata.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
         let [law, command, means, objective, adaptation] =
@@ -120,6 +125,8 @@ impl RunEvents {
             run,
             end,
             commanded,
+            absent_parts,
+            is_told: false,
             shown: None,
             start,
             switchings,
@@ -136,43 +143,9 @@ impl RunEvents {
         if log.topics().iter().any(|topic| topic == "/attitude") {
             return Ok(self.smooth(MotionData::read(log)?));
         }
-        if let Some(why) = self.scenario.cost(None, true).limit_exceeded() {
-            let why = format!(
-                "its run is not repeated: {why}\n\nhint: a log made with `--log full` holds all that figures need"
-            );
-            return Err(CliError::Arguments(format!("{}: {why}", path.display())));
-        }
-        let mut repeat = MotionRecorder::new(early, late);
-        // The end of a torn log is rounded, and a switching may lie on it.
-        let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
-        let mut simulation = Simulation::new(&self.scenario, self.run);
-        self.commands(path)?
-            .run_until(&mut simulation, Instant::START + end, &mut repeat)
-            .map_err(|source| CliError::Run { name: self.scenario.name.clone(), source })?;
-        let same = |(a, b): (&f64, &SwitchingEvent)| (a - b.time).abs() <= 1e-6;
-        if repeat.switchings.len() < self.switchings.len()
-            || !repeat.switchings.iter().zip(&self.switchings).all(same)
-        {
-            let version = log.metadata().get("version").map_or("another", String::as_str);
-            return Err(unusable(
-                path,
-                format!(
-                    "flexsc {} switches at other times than this log of version {version}\n\n\
-                     hint: a log made with `--log full` holds all that figures need",
-                    env!("CARGO_PKG_VERSION")
-                ),
-            ));
-        }
-        Ok(self.smooth(repeat.motion))
-    }
-
-    /// Returns the external commands under which the run is repeated.
-    pub fn commands(&self, path: &Path) -> Result<&CommandLog, CliError> {
-        self.commanded.as_ref().ok_or_else(|| {
-            let why = "its run was killed, and is not repeated without its commands\n\n\
-                       hint: a log made with `--log full` holds most of what figures need";
-            unusable(path, why.to_owned())
-        })
+        let mut recorder = MotionRecorder::new(early, late);
+        self.repeat(log, path, "/attitude", &mut recorder)?;
+        Ok(self.smooth(recorder.motion))
     }
 
     /// Adds points between the rows of the motion under a switching law.

@@ -1,92 +1,18 @@
 //! Figures of a three-axis body: `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and
-//! `damping`, from its repeated run.
+//! `damping`.
 
-use std::any::Any;
-use std::path::Path;
-
-use flexsc_core::Simulation;
-use flexsc_core::control::actuator::JetCycle;
 use flexsc_core::numerics::attitude::AXES;
-use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::record::{
-    ChannelState, Jets, Log, Position, Record, RecordError, Report, Sample, ThreeAxisCycle, TrackedMode,
-    Tracking,
-};
+use flexsc_core::record::{ChannelState, Position, TrackedMode, Tracking};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
-use super::run_events::{RunEvents, unusable};
+use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
-use crate::error::CliError;
 
 /// Number of marks above which they are small.
 const MANY: usize = 100;
 /// Fraction of the values about other axes below which values are rounding errors, and drawn at the others' scale.
 const ROUNDING: f64 = 1e-9;
-
-/// Data of a repeated run: its reports, and rows that are recorded alone.
-#[derive(Default)]
-pub struct CycleData(Vec<(f64, Report)>);
-
-impl CycleData {
-    /// Repeats the run of a log.
-    pub fn read(story: &RunEvents, log: &Log, path: &Path) -> Result<Self, CliError> {
-        let mut cycles = Self::default();
-        // The end of a torn log is rounded, and a cycle may lie on it.
-        let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
-        let mut simulation = Simulation::new(&story.scenario, story.run);
-        story
-            .commands(path)?
-            .run_until(&mut simulation, Instant::START + end, &mut cycles)
-            .map_err(|source| CliError::Run { name: story.scenario.name.clone(), source })?;
-        let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
-        let logged = jets.numbers("fuel_kg").unwrap_or_default();
-        let fired = cycles.rows::<Jets>().map(|(_, row)| row.fuel_kg);
-        if !fired.take(logged.len()).eq(logged.iter().copied()) {
-            let version = log.metadata().get("version").map_or("another", String::as_str);
-            let own = env!("CARGO_PKG_VERSION");
-            let why = format!("flexsc {own} fires at other times than this log of version {version}");
-            return Err(unusable(path, why));
-        }
-        Ok(cycles)
-    }
-
-    /// Iterates over the logged rows of a type, each with its time (s).
-    pub fn rows<T: Any>(&self) -> impl Iterator<Item = (f64, &T)> {
-        self.0.iter().filter_map(|(time, report)| Some((*time, report.row()?)))
-    }
-
-    /// Iterates over the values of a type in the reports of cycles, each with its time (s).
-    pub fn values<T: Any>(&self) -> impl Iterator<Item = (f64, &T)> {
-        let cycles = self.0.iter().filter(|(_, report)| report.get::<ThreeAxisCycle>().is_some());
-        cycles.filter_map(|(time, report)| Some((*time, report.get()?)))
-    }
-
-    /// Returns a number of each cycle over time.
-    pub fn over_time(&self, value_of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
-        self.values().map(|(time, cycle)| (time, value_of(cycle))).collect()
-    }
-
-    /// Returns the propellant that the jets have used at each cycle (kg); NaN without jets.
-    pub fn fuel(&self) -> Vec<Point> {
-        let jets: Vec<Point> = self.values::<JetCycle>().map(|(time, jets)| (time, jets.fuel)).collect();
-        if jets.is_empty() { self.over_time(|_| f64::NAN) } else { jets }
-    }
-}
-
-impl Record for CycleData {
-    fn wants_motion(&self) -> bool {
-        true
-    }
-
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        match sample {
-            Sample::Report(report) => self.0.push((now.seconds(), report.clone())),
-            Sample::Row(row) => self.0.push((now.seconds(), Report::from_row(row))),
-            Sample::Begin(_) | Sample::Switching(..) => {}
-        }
-        Ok(())
-    }
-}
 
 /// Returns a panel for each axis, with lines of given names and colours.
 pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
@@ -112,8 +38,8 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
 /// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
 pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
-        let measured = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
-        let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
+        let measured = cycles.rates(|rigid, elastic| rigid[axis] + elastic[axis]);
+        let rigid = cycles.rates(|rigid, _| rigid[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
             // If both coincide, the wider line remains visible.
@@ -150,8 +76,8 @@ pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
 
 /// Returns the figure of the elastic modes' energy, and of the jets' propellant.
 pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
-    let fuel = cycles.fuel();
+    let [elastic, visible] = cycles.elastic_energies();
+    let fuel = cycles.fuel(story);
     let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
         x,
         y: FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
@@ -166,7 +92,6 @@ pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     energies.layers[0].shape = LayerShape::Line(3.2);
     energies.layers[0].colour = colour::SKY;
     "all modes".clone_into(&mut energies.layers[0].name);
-    let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
     energies.layers.push(Layer::new(
         "modes that move the gyro",
         colour::VERMILLION,
@@ -188,13 +113,12 @@ fn fires(panel: &Panel) -> bool {
 
 /// Returns the figure of the jets' firing times in each cycle.
 pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let on = |cycle: &JetCycle, axis: usize| cycle.on[axis];
-    let all: Vec<(f64, &JetCycle)> = cycles.values().collect();
-    let period = all.get(1).map_or(0.0, |(time, _)| time - all[0].0);
+    let on = |cycle: &[f64; 3], axis: usize| cycle[axis];
+    let (period, all) = cycles.pulses(story);
     let line = |axis: usize| {
         // Outline of each series of cycles with pulses, without points between them.
         let mut points = Vec::new();
-        for row in all.chunk_by(|a, b| (on(a.1, axis) == 0.0) == (on(b.1, axis) == 0.0)) {
+        for row in all.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
             let Some((first, _)) = row.first().filter(|(_, cycle)| on(cycle, axis) != 0.0) else { continue };
             let last = row.last().map_or(*first, |(time, _)| time + period);
             points.push((*first, 0.0));

@@ -6,7 +6,8 @@ use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;
-use super::three_axis::{CycleData, panels};
+use super::cycle_data::CycleData;
+use super::three_axis::panels;
 use super::{time, title};
 
 /// Colours of the axes.

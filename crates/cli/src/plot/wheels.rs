@@ -9,7 +9,7 @@ use flexsc_core::record;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
-use super::three_axis::CycleData;
+use super::cycle_data::CycleData;
 use super::{time, title};
 
 /// Colours of wheels, cyclic.
@@ -65,7 +65,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
                 .collect()
         };
         panels.push(panel(x.unnamed(), "friction", "N m", None, (0..count).map(friction).collect()));
-        let error = |axis: usize| cycles.over_time(|cycle| cycle.error_rad[axis]);
+        let error = |axis: usize| cycles.errors(|error| error[axis]);
         let axes = AXES.iter().enumerate().map(|(axis, name)| {
             Layer::new(name, COLOURS[axis % COLOURS.len()], LayerShape::Line(1.2), error(axis))
         });

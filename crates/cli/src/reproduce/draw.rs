@@ -28,7 +28,7 @@ impl PageCommand {
         let is_three_axis = scenario.axis_count() == 3;
         let (detail, option) =
             if is_three_axis { (Detail::Full, " --log full") } else { (Detail::Events, "") };
-        let figure = plot::figure_of(&self.log(detail)?, path, kind)?;
+        let figure = plot::figure_of(&self.log(detail)?, path, kind, None)?;
         let (text, name) = (&self.text, &scenario.name);
         Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {kind}")))
     }

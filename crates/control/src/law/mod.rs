@@ -252,6 +252,11 @@ impl LawKind {
         if let Self::Stages(laws) = self { laws.as_slice() } else { &[] }
     }
 
+    /// Returns the law of a stage of a law in sequence, to be replaced; `None` of any other law.
+    pub fn stage_law_mut(&mut self, index: usize) -> Option<&mut Self> {
+        if let Self::Stages(laws) = self { laws.law_mut(index) } else { None }
+    }
+
     /// Returns true if the law changes the actuators that execute its commands.
     pub fn selects_actuators(&self) -> bool {
         self.stages().iter().any(|stage| stage.actuators.is_some())

@@ -158,6 +158,11 @@ impl LawKind {
         }
     }
 
+    /// Returns true if the law, or that of a stage or mode, is of another crate.
+    pub fn has_custom(&self) -> bool {
+        self.custom().is_some() || self.stages().iter().any(|stage| stage.law.has_custom())
+    }
+
     /// Returns the law of another crate, if it is one.
     pub fn custom(&self) -> Option<&Custom<dyn LawSpec + Send + Sync>> {
         if let Self::Own(own) = self { Some(own) } else { None }

@@ -82,6 +82,11 @@ impl Stages {
         &self.list
     }
 
+    /// Returns the law of a stage, to be replaced.
+    pub(super) fn law_mut(&mut self, index: usize) -> Option<&mut LawKind> {
+        self.list.get_mut(index).map(|stage| &mut stage.law)
+    }
+
     /// Creates the run-time state of the laws about an axis, each with the authority of the actuators of its stage.
     pub fn start_with(&self, authorities: &[Authority]) -> Box<dyn Law> {
         let laws = self.list.iter().zip(authorities);

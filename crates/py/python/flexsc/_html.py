@@ -21,11 +21,11 @@ def picture(figure: engine.Figure) -> str:
     return re.sub(r'width="\d+" height="\d+"', small, figure.svg(), count=1)
 
 
-def of_log(log: engine.Log) -> str:
-    """The figure that shows a run at a glance."""
-    there = engine.log_figures(log)
+def of_log(log: engine.Log, scenario: engine.Scenario) -> str:
+    """The figure that shows the run of a scenario at a glance."""
+    there = engine.log_figures(log, scenario)
     name = next((name for name in AT_A_GLANCE if name in there), None)
-    return picture(engine.log_figure(log, name)) if name else ""
+    return picture(engine.log_figure(log, name, scenario)) if name else ""
 
 
 def heading(what: str, about: str) -> str:

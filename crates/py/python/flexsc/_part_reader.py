@@ -49,9 +49,11 @@ def _descend(part: Any, path: Sequence[str | int]) -> Any:
 
 
 def _has_own(value: Any) -> bool:
-    """True if a value is a part in Python, which is no class of `flexsc.scenario`, or a list with one."""
+    """True if a value is a part in Python, which is no class of `flexsc.scenario`, or has one within it."""
     if isinstance(value, list):
         return any(map(_has_own, value))
+    if isinstance(value, Part):
+        return any(_has_own(getattr(value, name)) for name in value._names)
     return isinstance(value, dict) and value.keys() == {"own"}
 
 

@@ -333,9 +333,10 @@ class Result(Topics, Exportable):
         return same and dict(self) == dict(other)
 
     def _native_log(self) -> engine.Log:
-        """The log of the run with its events, the source of figures."""
+        """The log of the run, the source of figures: with its rows if the result has them, else with its events."""
         if self._drawn is None:
-            self._drawn = engine.log_of(self.scenario._native, self.run, self._stepped)
+            detail = "events" if self._log == "none" else self._log
+            self._drawn = engine.log_of(self.scenario._native, self.run, detail, self._stepped)
         return self._drawn
 
     def __getstate__(self) -> dict[str, Any]:
@@ -377,5 +378,5 @@ class Result(Topics, Exportable):
         metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))
         topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
         held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
-        figure = _html.of_log(self._native_log()) if self._took < _html.SOON_S else ""
+        figure = _html.of_log(self._native_log(), self.scenario._native) if self._took < _html.SOON_S else ""
         return _html.heading(self.scenario.name, about) + figure + metrics + held

@@ -10,21 +10,25 @@ from flexsc import parts
 
 
 def by_role(
-    law: parts.Law | parts.ThreeAxisLaw | None,
+    law: parts.Law | parts.ThreeAxisLaw | Mapping[str | int, parts.Law | parts.ThreeAxisLaw] | None,
     estimator: parts.Estimator | None,
     adaptation: parts.Adaptation | None,
     actuator: parts.Actuator | Mapping[int, parts.Actuator] | None,
     sensor: parts.Sensor | Mapping[int, parts.Sensor] | None,
 ) -> list[tuple[str, object]]:
-    """Return the parts that are given, each with its role, such as `sensor 0`.
+    """Return the parts that are given, each with its role, such as `sensor 0` or `law point`.
 
     Raises:
         TypeError: An object is not of the class of its role.
     """
     sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
     actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
+    laws = {f"law {name}": each for name, each in law.items()} if isinstance(law, Mapping) else {"law": law}
     given: list[tuple[str, type[Any], object]] = [
-        ("law", parts.ThreeAxisLaw if isinstance(law, parts.ThreeAxisLaw) else parts.Law, law),
+        *(
+            (role, parts.ThreeAxisLaw if isinstance(each, parts.ThreeAxisLaw) else parts.Law, each)
+            for role, each in laws.items()
+        ),
         ("estimator", parts.Estimator, estimator),
         ("adaptation", parts.Adaptation, adaptation),
         *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),

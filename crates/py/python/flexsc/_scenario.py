@@ -153,7 +153,7 @@ class Scenario(ScenarioAnalysis):
     def with_parts(
         self,
         *,
-        law: Law | ThreeAxisLaw | None = None,
+        law: Law | ThreeAxisLaw | Mapping[str | int, Law | ThreeAxisLaw] | None = None,
         sensor: Sensor | Mapping[int, Sensor] | None = None,
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
@@ -163,7 +163,9 @@ class Scenario(ScenarioAnalysis):
 
         The objects are copied: later changes to them do not change the scenario. Give sensors and actuators
         of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
-        actuator of a list keeps its `axes` and its `share`.
+        actuator of a list keeps its `axes` and its `share`. In a scenario with modes of operation give laws
+        by the names of their modes, `law={"point": MyLaw()}`, and in one with stages by the numbers of their
+        stages; the other modes and stages keep their laws.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
         repeated without the objects, and campaigns are not written to directories.
 
@@ -174,9 +176,12 @@ class Scenario(ScenarioAnalysis):
         >>> flexsc.Scenario.example("relay-fixed").with_parts(law=Off()).parts
         {'law': <...Off object at ...>}
 
+        >>> flexsc.Scenario.example("safe-mode").with_parts(law={"safe": Off()}).parts
+        {'law safe': <...Off object at ...>}
+
         Raises:
             TypeError: An object is not of the class of its role.
-            ScenarioError: The parts do not fit the others.
+            ScenarioError: The parts do not fit the others, or a law has no place, because each mode has one.
         """
         from flexsc._roles import by_role
 
@@ -186,7 +191,8 @@ class Scenario(ScenarioAnalysis):
 
     @property
     def parts(self) -> dict[str, object]:
-        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`.
+        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of modes
+        as `law point`, and those of stages as `law 1`.
 
         >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
         {}

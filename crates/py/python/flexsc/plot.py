@@ -82,7 +82,7 @@ def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
     """
     log = _log(source)
     if log is not None:
-        return engine.log_figures(log)
+        return engine.log_figures(log, _known(source))
     return list(_of_campaign(source, None, metrics))
 
 
@@ -191,6 +191,11 @@ def _log(source: Source) -> engine.Log | None:
     return reading(source, engine.Log.open)
 
 
+def _known(source: Source) -> engine.Scenario | None:
+    """The scenario of a run, with its parts in Python, which repeat it if a figure needs that."""
+    return source.scenario._native if isinstance(source, Result) else None
+
+
 def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> dict[str, engine.Figure]:
     """The figures of a campaign, by names without that of the scenario if there is one only."""
     if isinstance(source, Table):
@@ -206,12 +211,13 @@ def _figure(source: Source, name: str) -> engine.Figure:
     log = _log(source)
     if log is not None:
         try:
-            return engine.log_figure(log, name)
+            return engine.log_figure(log, name, _known(source))
         except ValueError as error:
             # A name that no figure has.
             if "invalid variant" not in str(error):
                 raise
-        raise ValueError(f"there is no figure {name!r} for it; it has {', '.join(engine.log_figures(log))}")
+        names = ", ".join(engine.log_figures(log, _known(source)))
+        raise ValueError(f"there is no figure {name!r} for it; it has {names}")
     there = _of_campaign(source, None, ())
     if name not in there and isinstance(source, Table):
         kind, _, metric = name.partition("-")

@@ -189,7 +189,7 @@ pub fn kept(key: &str) -> &'static str {
 
 impl PythonLaw {
     /// Reads what a law says of itself.
-    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         let period: Option<f64> = part.getattr("period")?.extract()?;
         let reads: String = part.getattr("reads")?.extract()?;
         let tunable = part.getattr("tunable")?.call_method0("items")?;
@@ -215,7 +215,7 @@ impl PythonLaw {
             switches: part.getattr("switches")?.extract()?,
             tracks: part.getattr("tracks")?.extract()?,
             tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
-            signals: Signals::from_python(part, "law", true)?,
+            signals: Signals::from_python(part, role, true)?,
         })
     }
 }

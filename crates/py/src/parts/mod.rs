@@ -21,8 +21,7 @@ use std::sync::Arc;
 
 use flexsc_core::control::actuator::ActuatorSpec;
 use flexsc_core::control::custom::Custom;
-use flexsc_core::control::law::LawSpec;
-use flexsc_core::scenario::CustomParts;
+use flexsc_core::scenario::{CustomLaw, CustomParts};
 use pyo3::prelude::*;
 
 pub use actuator::{Demanded, Effort, Setting};
@@ -37,7 +36,8 @@ pub use three_axis_law::{ThreeAxisEvent, ThreeAxisHold};
 
 use signals::Signals;
 
-/// A part of each role by its key; sensors have their place behind it, `sensor 0`, and actuators after the first.
+/// A part of each role by its key; sensors have their place behind it, `sensor 0`, and actuators after the first; laws of
+/// modes of operation their name, and of stages their number.
 pub type Named = (String, Py<PyAny>);
 
 /// The engine's parts of Python's objects.
@@ -47,6 +47,7 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
         // The caller may change his object: a scenario does not.
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
+            Some(("law", stage)) => own.stage_laws.push((stage.to_owned(), law(&part, &stage_role(stage))?)),
             Some(("actuator", place)) => own.actuators.push((place.parse()?, actuator(&part, place)?)),
             Some((_, place)) => {
                 let role = if place == "0" { "sensor".to_owned() } else { format!("sensor{place}") };
@@ -54,7 +55,7 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
                 let signals = sensor.signals.clone();
                 own.sensors.push((place.parse()?, custom(Arc::new(sensor), signals.as_ref(), &part)));
             }
-            None if role == "law" => own.law = Some(law(&part)?),
+            None if role == "law" => own.law = Some(law(&part, "law")?),
             None if role == "estimator" => {
                 let estimator = estimator::PythonEstimator::from_python(&part)?;
                 let signals = estimator.signals.clone();
@@ -81,17 +82,27 @@ fn custom<T: ?Sized>(part: Arc<T>, signals: Option<&Signals>, object: &Bound<'_,
     Custom::with_topics(part, Signals::topics(signals)).with_origin(object::Object::new(object))
 }
 
+/// Returns the role of the law of a mode of operation or of a stage in the name of its topic: `law_point`, or `law1` for the
+/// second stage.
+fn stage_role(stage: &str) -> String {
+    match stage.parse() {
+        Ok(0_usize) => "law".to_owned(),
+        Ok(index) => format!("law{index}"),
+        Err(_) => format!("law_{}", stage.to_lowercase().replace('-', "_")),
+    }
+}
+
 /// Returns the engine's law of a Python object: compiled, about three axes together, or about each axis.
-fn law(part: &Bound<'_, PyAny>) -> PyResult<Custom<dyn LawSpec + Send + Sync>> {
+fn law(part: &Bound<'_, PyAny>, role: &str) -> PyResult<CustomLaw> {
     if part.hasattr("address")? {
         return Ok(custom(Arc::new(compiled::CompiledLaw::from_python(part)?), None, part));
     }
     if is_of(part, "ThreeAxisLaw")? {
-        let law = three_axis_law::PythonThreeAxisLaw::from_python(part)?;
+        let law = three_axis_law::PythonThreeAxisLaw::from_python(part, role)?;
         let signals = law.signals.clone();
         return Ok(custom(Arc::new(law), signals.as_ref(), part));
     }
-    let law = law::PythonLaw::from_python(part)?;
+    let law = law::PythonLaw::from_python(part, role)?;
     let signals = law.signals.clone();
     Ok(custom(Arc::new(law), signals.as_ref(), part))
 }
@@ -113,6 +124,9 @@ pub fn named(py: Python<'_>, own: &CustomParts) -> Vec<Named> {
         }
     };
     add("law".to_owned(), own.law.as_ref().and_then(Custom::origin));
+    for (stage, law) in &own.stage_laws {
+        add(format!("law {stage}"), law.origin());
+    }
     add("estimator".to_owned(), own.estimator.as_ref().and_then(Custom::origin));
     add("adaptation".to_owned(), own.adaptation.as_ref().and_then(Custom::origin));
     for (place, sensor) in &own.sensors {

@@ -255,7 +255,7 @@ pub struct PythonThreeAxisLaw {
 
 impl PythonThreeAxisLaw {
     /// Reads what a law says of itself.
-    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         let period: Option<f64> = part.getattr("period")?.extract()?;
         let tunable = part.getattr("tunable")?.call_method0("items")?;
         let number = |pair: PyResult<Bound<'_, PyAny>>| -> PyResult<(&'static str, f64)> {
@@ -267,7 +267,7 @@ impl PythonThreeAxisLaw {
             period: period.map(|period| positive(period, "period")).transpose()?,
             promise: part.getattr("promise")?.extract()?,
             tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
-            signals: Signals::from_python(part, "law", false)?,
+            signals: Signals::from_python(part, role, false)?,
         })
     }
 }

@@ -1,11 +1,12 @@
 //! Panels that follow from the declarations of topics alone: of the engine, and of custom parts.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::{ActuatorKind, AssignedActuator};
 use flexsc_core::control::estimator::{self, EstimatorKind};
-use flexsc_core::control::law::{Controllers, LawKind};
+use flexsc_core::control::law::Controllers;
 use flexsc_core::control::part::{Occasion, Part, ReportContext, TrueState};
 use flexsc_core::control::sensor::{Orientation, Sensor, SensorKind};
 use flexsc_core::dynamics::AxisState;
@@ -22,9 +23,8 @@ use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 /// Topics with declared panels that have their place among the panels of the motion.
 const PLACED: [&str; 3] = ["/control_moment_gyros", "/hinges", "/wheels"];
 
-/// Returns the tab of the declared panels that have no place elsewhere; `None` without any.
-pub fn tab(scenario: &Scenario) -> Option<Tab> {
-    let custom = scenario.custom_topics();
+/// Returns the tab of the declared panels that have no place elsewhere, those of custom topics included; `None` without any.
+pub fn tab(scenario: &Scenario, custom: &[Arc<CustomTopic>]) -> Option<Tab> {
     let custom = custom.iter().flat_map(|topic| custom_panels(topic));
     let own = unplaced(scenario).flat_map(|topic| panels(topic, MOST_LINES));
     let panels: Vec<LayoutPanel> = own.chain(custom).collect();
@@ -32,9 +32,8 @@ pub fn tab(scenario: &Scenario) -> Option<Tab> {
 }
 
 /// Returns the topics of that tab, with the least detail of a log that has each.
-pub fn topics(scenario: &Scenario) -> Vec<(Cow<'static, str>, Detail)> {
+pub fn topics(scenario: &Scenario, custom: &[Arc<CustomTopic>]) -> Vec<(Cow<'static, str>, Detail)> {
     let own = unplaced(scenario).map(|topic| (Cow::Borrowed(topic.name), topic.logged.detail()));
-    let custom = scenario.custom_topics();
     let custom = custom.iter().map(|topic| (Cow::Owned(topic.name().to_owned()), Detail::Full));
     own.chain(custom).collect()
 }
@@ -110,7 +109,7 @@ fn reported_topics(scenario: &Scenario) -> Vec<&'static str> {
     let sensors: Vec<Box<dyn Sensor>> = sensors.collect();
     let estimator = (!matches!(scenario.estimator, Some(EstimatorKind::Own(_))))
         .then(|| estimator::start(&scenario.estimator_context(), seed));
-    let laws = (!matches!(scenario.law, LawKind::Own(_)))
+    let laws = (!scenario.law.has_custom())
         .then(|| Controllers::new(&scenario.law, &scenario.study.authorities, &[]));
     let is_own = |assigned: &AssignedActuator| matches!(assigned.kind, ActuatorKind::Own(_));
     let actuator = (!scenario.actuator.iter().any(is_own)).then(|| scenario.study.actuator(scenario, seed));

@@ -12,6 +12,7 @@ mod panel;
 mod three_axis;
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::FiringMethod;
@@ -21,7 +22,7 @@ use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::row::{Logging, Topic};
-use flexsc_core::record::{Detail, Summary, TOPICS};
+use flexsc_core::record::{CustomTopic, Detail, Log, LogError, Summary, TOPICS};
 use flexsc_core::spacecraft::body::BodyAxes;
 use serde_json::{Map, Value, json};
 
@@ -52,8 +53,22 @@ struct Tab {
 }
 
 impl Layout {
+    /// Returns the layout of a log of a scenario, with all that it can show.
+    ///
+    /// # Errors
+    /// A log that cannot be read.
+    pub fn for_log(scenario: &Scenario, log: &Log) -> Result<Self, LogError> {
+        let layout = Self::with_custom_topics(scenario, &log.custom_topics()?);
+        Ok(layout.for_topics(|topic| log.topics().iter().any(|own| own == topic)))
+    }
+
     /// Returns the layout of a scenario's logs, with all that they can show.
     pub fn for_scenario(scenario: &Scenario) -> Self {
+        Self::with_custom_topics(scenario, &scenario.custom_topics())
+    }
+
+    /// Returns the layout of a scenario's logs with these custom topics.
+    fn with_custom_topics(scenario: &Scenario, custom: &[Arc<CustomTopic>]) -> Self {
         let mut tabs = match scenario.model.axes() {
             BodyAxes::One(body) => one_axis::tabs(scenario, body),
             BodyAxes::Three(body) => three_axis::tabs(scenario, body),
@@ -63,7 +78,7 @@ impl Layout {
                 LayoutPanel::states("mode", "Mode of operation", vec![panel::line("/mode.mode", "mode")]);
             first.panels.insert(1, mode);
         }
-        tabs.extend(declared::tab(scenario));
+        tabs.extend(declared::tab(scenario, custom));
         tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });
         let rows = scenario.duration.seconds() / scenario.log_period().seconds();
         if FEW.contains(&rows) {
@@ -72,7 +87,7 @@ impl Layout {
             }
         }
         let known = topics(scenario).into_iter().map(|(topic, detail)| (Cow::Borrowed(topic), detail));
-        Self { tabs, topics: known.chain(declared::topics(scenario)).collect() }
+        Self { tabs, topics: known.chain(declared::topics(scenario, custom)).collect() }
     }
 
     /// Returns the layout with the panels that a log of this detail can show.

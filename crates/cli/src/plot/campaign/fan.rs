@@ -12,9 +12,10 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, c
 use rayon::prelude::*;
 
 use super::super::motion::MotionData;
-use super::super::readable;
+use super::super::pointing::norm;
+use super::super::{FigureKind, readable};
 use super::super::run_events::RunEvents;
-use super::super::three_axis::CycleData;
+use super::super::cycle_data::CycleData;
 use super::super::time;
 use crate::error::CliError;
 use crate::{progress, say};
@@ -62,7 +63,7 @@ pub fn logs(
 /// # Errors
 /// An invalid log, or a run that cannot be repeated.
 pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
-    let first = RunEvents::read(&Log::open(&paths[0])?, &paths[0])?;
+    let first = RunEvents::read(&Log::open(&paths[0])?, &paths[0], None)?;
     let end = first.scenario.duration.seconds();
     let instants: Vec<f64> = (0..INSTANTS).map(|i| end * i as f64 / (INSTANTS - 1) as f64).collect();
     let bar = progress::bar(paths.len() as u64, "logs");
@@ -117,15 +118,16 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
 /// Returns the signals of a run that are shown.
 fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
     let log = Log::open(path)?;
-    let story = RunEvents::read(&log, path)?;
+    let story = RunEvents::read(&log, path, None)?;
     let signal = |name: &str, unit, line, held| SignalFan { name: name.to_owned(), unit, line, held };
     let mut signals = Vec::new();
     if story.scenario.axis_count() == 3 {
-        let cycles = CycleData::read(&story, &log, path)?;
-        let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
-        signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
-        signals.push(signal("propellant", "kg", cycles.fuel(), false));
+        let topics = [FigureKind::Pointing, FigureKind::Energy].map(FigureKind::topics).concat();
+        let cycles = CycleData::read(&story, &log, path, &topics)?;
+        let [elastic, _] = cycles.elastic_energies();
+        signals.push(signal("pointing error", "rad", cycles.errors(norm), false));
+        signals.push(signal("elastic energy", "J", elastic, false));
+        signals.push(signal("propellant", "kg", cycles.fuel(&story), false));
         signals.extend(adaptation_fans(&story));
     } else if story.switches() {
         if !story.means.is_empty() {
