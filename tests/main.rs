@@ -163,6 +163,7 @@ mod plan_figures;
 mod plates;
 mod plot;
 #[cfg(feature = "full")]
+mod repeated_runs;
 mod report;
 mod reproduce;
 mod requirements;

@@ -2,9 +2,11 @@
 
 mod actuator;
 mod adaptation;
+mod drawn;
 mod estimator;
 mod law;
 mod sensor;
+mod stage_laws;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -40,12 +40,7 @@ pub fn names(log: &Log, path: &Path, known: Option<&Scenario>) -> Result<Vec<Str
 ///
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
-pub fn log_figure(
-    log: &Log,
-    path: &Path,
-    name: &str,
-    known: Option<&Scenario>,
-) -> Result<Figure, String> {
+pub fn log_figure(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -> Result<Figure, String> {
     plot::figure_of(log, path, name, known).map_err(|failure| failure.to_string())
 }
 

@@ -16,13 +16,13 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use super::{Scenario, detail};
 use super::aside::aside;
 use super::campaign::Work;
 use super::commands::Commands;
 use super::log::Log;
 use super::parts;
 use super::table::column;
+use super::{Scenario, detail};
 
 /// A figure.
 #[pyclass(frozen, module = "flexsc._native")]
@@ -130,9 +130,8 @@ pub fn log_of(
     let detail = detail(log)?.unwrap_or_default().min(Detail::Full);
     let (run, is_own) = (scenario.run(run), scenario.inner.has_custom_parts());
     let Commands { commands, until } = Commands::from_stepped(stepped);
-    let log = aside(py, move |_| {
-        parts::known_thread(is_own, || figures::log_of(&run, &commands, until, detail))
-    })?;
+    let log =
+        aside(py, move |_| parts::known_thread(is_own, || figures::log_of(&run, &commands, until, detail)))?;
     Ok(Log(Arc::new(log.map_err(PyValueError::new_err)?)))
 }
 
@@ -146,12 +145,7 @@ pub fn log_figures(py: Python<'_>, log: &Log, scenario: Option<&Scenario>) -> Py
 
 /// The figure of a log by its name. The scenario, if given, is that of the run, with its parts in Python.
 #[pyfunction]
-pub fn log_figure(
-    py: Python<'_>,
-    log: &Log,
-    name: String,
-    scenario: Option<&Scenario>,
-) -> PyResult<Figure> {
+pub fn log_figure(py: Python<'_>, log: &Log, name: String, scenario: Option<&Scenario>) -> PyResult<Figure> {
     let (path, log) = (place(log), log.0.clone());
     let known = scenario.map(|scenario| scenario.inner.clone());
     let is_own = known.as_ref().is_some_and(|known| known.has_custom_parts());

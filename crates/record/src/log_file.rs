@@ -12,8 +12,8 @@ use mcap::records::{Channel, Record};
 use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
-use super::decoder::Schema;
 use super::custom_topic::{CustomField, CustomTopic};
+use super::decoder::Schema;
 use super::log_topic::UNIT_KEY;
 use super::mcap_reader::{for_each_record, outer_records, parsed};
 use super::memory_budget::MemoryBudget;

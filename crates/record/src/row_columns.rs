@@ -81,12 +81,8 @@ mod tests {
     fn rows_are_read_as_they_were_written() {
         let jets = |fuel_kg| Jets { roll_on_s: 0.1, pitch_on_s: -0.2, yaw_on_s: 0.0, fuel_kg };
         read_back(&[jets(0.5), jets(1.5)]);
-        let torque = |applied_nm| Torque {
-            feedforward_nm: 0.0,
-            feedback_nm: 1.0,
-            applied_nm,
-            disturbance_nm: 3.0,
-        };
+        let torque =
+            |applied_nm| Torque { feedforward_nm: 0.0, feedback_nm: 1.0, applied_nm, disturbance_nm: 3.0 };
         read_back(&[Torques { axes: vec![torque(1.0), torque(2.0)] }, Torques { axes: Vec::new() }]);
         let axis = OrbitAxis { position_m: 1.0, velocity_m_s: 2.0, nadir: 3.0, field_t: 4.0, sun: 5.0 };
         let orbit = |light| Orbit { axes: vec![axis.clone(); 3], light, sunlight: 0.5 };
@@ -107,7 +103,10 @@ mod tests {
         let whole = columns(&[Torques { axes: Vec::new() }]);
         assert!(whole.timed_rows::<Jets>().is_none());
         let foreign = Columns {
-            columns: vec![("sliding".to_owned(), Column::Labels(vec![1], vec!["stuck".into(), "gone".into()]))],
+            columns: vec![(
+                "sliding".to_owned(),
+                Column::Labels(vec![1], vec!["stuck".into(), "gone".into()]),
+            )],
         };
         assert_eq!(labels(&foreign, "sliding", &Sliding::LABELS, Sliding::VALUES), None);
     }

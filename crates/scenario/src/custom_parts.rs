@@ -175,12 +175,15 @@ impl ScenarioSpec {
             let known = name.parse().ok().filter(|index| *index < count);
             return known.ok_or_else(|| match count {
                 0 => format!("has no modes of operation, got `{name}`"),
-                _ => format!("must be the index of a stage of the law, from 0 to {}, got `{name}`", count - 1),
+                _ => {
+                    format!("must be the index of a stage of the law, from 0 to {}, got `{name}`", count - 1)
+                }
             });
         }
         self.mode.iter().position(|mode| mode.name == name).ok_or_else(|| {
             let names: Vec<&str> = self.mode.iter().map(|mode| mode.name.as_str()).collect();
-            let near = nearest(name, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+            let near =
+                nearest(name, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
             format!("must be one of {}, got `{name}`{near}", quoted.join(", "))
         })

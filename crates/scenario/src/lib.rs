@@ -170,11 +170,7 @@ impl Scenario {
     }
 
     /// Resolves the data of all parts together, but for the plan and the requirements.
-    fn resolved(
-        written: ScenarioSpec,
-        model: BodyModel,
-        unmet: &Requirements,
-    ) -> Result<Self, ConfigError> {
+    fn resolved(written: ScenarioSpec, model: BodyModel, unmet: &Requirements) -> Result<Self, ConfigError> {
         let study = ResolvedScenario::resolve(&written, &model, unmet)?;
         Ok(Self { written, model, plan: None, linear: None, study })
     }

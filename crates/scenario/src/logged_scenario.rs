@@ -90,11 +90,8 @@ impl ScenarioSpec {
         let sensor = |(place, _): &(usize, _)| {
             let kind: &SensorKind = &self.sensor[*place];
             let period_s = kind.period(None)?.seconds();
-            let facts = SensorFacts {
-                period_s,
-                noise_rad: kind.angle_noise(),
-                rate_noise_rad_s: kind.rate_noise(0),
-            };
+            let facts =
+                SensorFacts { period_s, noise_rad: kind.angle_noise(), rate_noise_rad_s: kind.rate_noise(0) };
             Some((*place, facts))
         };
         let adaptation = |of: &AdaptationKind| AdaptationFacts {
@@ -124,7 +121,11 @@ impl LawFacts {
             period_s: offers.period.map(Span::seconds),
             switches: offers.is_switching,
             band_rad: if let ErrorBand::Absolute(band) = band { Some(band) } else { None },
-            tunable: law.tunable().into_iter().map(|number| (number.key.into_owned(), number.value)).collect(),
+            tunable: law
+                .tunable()
+                .into_iter()
+                .map(|number| (number.key.into_owned(), number.value))
+                .collect(),
         }
     }
 }
@@ -190,7 +191,11 @@ impl CustomFacts {
 impl SensorFacts {
     /// Returns the table of a sampled sensor with the period and the noises.
     fn sampled(&self) -> Value {
-        let keys = [("period", Some(self.period_s)), ("noise", Some(self.noise_rad)), ("rate_noise", self.rate_noise_rad_s)];
+        let keys = [
+            ("period", Some(self.period_s)),
+            ("noise", Some(self.noise_rad)),
+            ("rate_noise", self.rate_noise_rad_s),
+        ];
         let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), Value::Float(value?))));
         Value::Table(Table::from_iter([("sampled".to_owned(), Value::Table(keys.collect()))]))
     }

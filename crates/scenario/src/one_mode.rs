@@ -16,8 +16,7 @@ impl Scenario {
     /// # Errors
     /// Fails without a mode of this name, and if the parts of the mode are inconsistent without the others.
     pub fn in_mode(&self, name: &str) -> Result<Self, ScenarioError> {
-        let fault =
-            |why| ScenarioError::Key { origin: self.name.clone(), key: "mode".to_owned(), why };
+        let fault = |why| ScenarioError::Key { origin: self.name.clone(), key: "mode".to_owned(), why };
         let index = self.stage_index(name).map_err(fault)?;
         if self.mode.is_empty() {
             return self.clone().with(|written| written.keep_stage(index));

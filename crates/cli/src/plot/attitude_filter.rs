@@ -4,9 +4,9 @@
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::cycle_data::CycleData;
 use super::pointing::{decades, norm};
 use super::run_events::RunEvents;
-use super::cycle_data::CycleData;
 use super::three_axis::panels;
 use super::{consistency, time, title};
 

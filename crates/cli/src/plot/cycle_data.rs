@@ -132,7 +132,9 @@ impl CycleData {
         self.over_time(
             |cycle| of(cycle.rigid_rate_rad_s, cycle.elastic_rate_rad_s),
             |row: &Rates| {
-                let rates = |axis: usize| row.axes.get(axis).map_or([f64::NAN; 2], |of| [of.rigid_rad_s, of.elastic_rad_s]);
+                let rates = |axis: usize| {
+                    row.axes.get(axis).map_or([f64::NAN; 2], |of| [of.rigid_rad_s, of.elastic_rad_s])
+                };
                 of([0, 1, 2].map(|axis| rates(axis)[0]), [0, 1, 2].map(|axis| rates(axis)[1]))
             },
         )

@@ -5,8 +5,8 @@ use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::record::Vibrations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Largest number of points with a panel each.

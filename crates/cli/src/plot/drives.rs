@@ -4,8 +4,8 @@
 use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Colours of drives, hinges and modes, cyclic.

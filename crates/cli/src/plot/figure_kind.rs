@@ -5,9 +5,9 @@ use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::record::{AttitudeEstimate, ElasticEstimates};
 use flexsc_figure::Figure;
 
+use super::cycle_data::CycleData;
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::cycle_data::CycleData;
 use super::three_axis;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drives, envelope, estimate,

@@ -5,8 +5,8 @@ use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::ControlMomentGyros;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Colours of gimbals, cyclic.

@@ -3,9 +3,9 @@
 use flexsc_core::record::{HingeMotion, Hinges};
 use flexsc_figure::{Figure, Point};
 
+use super::cycle_data::CycleData;
 use super::drives::alike;
 use super::run_events::RunEvents;
-use super::cycle_data::CycleData;
 use super::{time, title};
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {

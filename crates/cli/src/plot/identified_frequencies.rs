@@ -5,8 +5,8 @@ use flexsc_core::record::{ElasticEstimate, ElasticEstimates};
 use flexsc_core::scenario::Scenario;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Upper end of the axis, as a multiple of the true frequency, even if the filter's uncertainty is larger.

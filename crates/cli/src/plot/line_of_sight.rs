@@ -3,8 +3,8 @@
 use flexsc_core::record::{LineOfSightAxis, LineOfSightSample};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 const COLOURS: [plotters::style::RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];

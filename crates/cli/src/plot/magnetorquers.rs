@@ -4,9 +4,9 @@
 use flexsc_core::record::Magnetorquers;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::cycle_data::CycleData;
 use super::pointing::norm;
 use super::run_events::RunEvents;
-use super::cycle_data::CycleData;
 use super::{time, title};
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
@@ -37,11 +37,8 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let x = time(0.0..story.end);
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
-    let points: Vec<Point> = if wheels {
-        cycles.wheel_momenta(story, norm)
-    } else {
-        cycles.rates(|rigid, _| norm(rigid))
-    };
+    let points: Vec<Point> =
+        if wheels { cycles.wheel_momenta(story, norm) } else { cycles.rates(|rigid, _| norm(rigid)) };
     let (name, unit) = if wheels { ("momentum of the wheels", "N m s") } else { ("rate", "rad/s") };
     let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
     let kept = Panel::new(x, y, vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), points)]);

@@ -56,12 +56,12 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
 pub use campaign::{column_figures, directory_figures};
+use cycle_data::CycleData;
 pub use figure_kind::FigureKind;
 pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use motion::MotionData;
 use run_events::RunEvents;
-use cycle_data::CycleData;
 pub use title::readable;
 use title::{short, title};
 
@@ -195,11 +195,7 @@ pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -
 }
 
 /// Returns the figures that a log has.
-pub fn drawable_kinds(
-    log: &Log,
-    path: &Path,
-    known: Option<&Scenario>,
-) -> Result<Vec<FigureKind>, CliError> {
+pub fn drawable_kinds(log: &Log, path: &Path, known: Option<&Scenario>) -> Result<Vec<FigureKind>, CliError> {
     Ok(FigureKind::all_in(&RunEvents::read(log, path, known)?))
 }
 

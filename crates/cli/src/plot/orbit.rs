@@ -4,8 +4,8 @@
 use flexsc_core::record::{Light, Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Function that reads a component of an axis.

@@ -2,8 +2,8 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
 

@@ -118,7 +118,8 @@ impl RunEvents {
         let other = |own: &&Metric, logged: &Metric| {
             own.name == logged.name && own.index == logged.index && !is_same(own, logged)
         };
-        let different = logged.into_iter().find_map(|logged| own.iter().find(|own| other(own, &logged)).cloned());
+        let different =
+            logged.into_iter().find_map(|logged| own.iter().find(|own| other(own, &logged)).cloned());
         Ok(different.map(|metric| format!("its metric `{}` differs", metric.name)))
     }
 }

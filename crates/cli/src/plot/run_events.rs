@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
+use flexsc_core::Scenario;
 use flexsc_core::campaign::CommandLog;
 use flexsc_core::record::{Column, Columns, Log};
-use flexsc_core::Scenario;
 
 use super::columns::{labels, rows, topics};
 use super::motion::{MotionData, MotionRecorder};

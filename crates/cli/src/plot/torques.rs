@@ -5,8 +5,8 @@ use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
-use super::run_events::RunEvents;
 use super::cycle_data::CycleData;
+use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
 

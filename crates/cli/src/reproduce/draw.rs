@@ -21,16 +21,12 @@ impl PageCommand {
         Ok((figure, format!("{} --figures DIR", self.text)))
     }
 
-    /// Returns a figure of a run's log, with the motion of a single-axis body by repeating the run, as `flexsc plot`
-    /// does.
+    /// Returns a figure of a run's log of events, for which the run is repeated, as `flexsc plot` does.
     fn plot(&self, args: &simulate::SimulateArgs, kind: &str) -> Result<(Figure, String), CliError> {
         let (scenario, path) = self.simulated(args)?;
-        let is_three_axis = scenario.axis_count() == 3;
-        let (detail, option) =
-            if is_three_axis { (Detail::Full, " --log full") } else { (Detail::Events, "") };
-        let figure = plot::figure_of(&self.log(detail)?, path, kind, None)?;
+        let figure = plot::figure_of(&self.log(Detail::Events)?, path, kind, None)?;
         let (text, name) = (&self.text, &scenario.name);
-        Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {kind}")))
+        Ok((figure, format!("{text} && flexsc plot {name}.mcap --what {kind}")))
     }
 
     /// Returns the log of a simulation in this detail.

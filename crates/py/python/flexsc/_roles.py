@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from operator import index
-from typing import Any
+from typing import Any, TypeAlias
 
 from flexsc import parts
 
+# Laws by the names of modes, or by the numbers of stages.
+_StageLaws: TypeAlias = (
+    "Mapping[str, parts.Law | parts.ThreeAxisLaw] | Mapping[int, parts.Law | parts.ThreeAxisLaw]"
+)
+
 
 def by_role(
-    law: parts.Law | parts.ThreeAxisLaw | Mapping[str | int, parts.Law | parts.ThreeAxisLaw] | None,
+    law: parts.Law | parts.ThreeAxisLaw | _StageLaws | None,
     estimator: parts.Estimator | None,
     adaptation: parts.Adaptation | None,
     actuator: parts.Actuator | Mapping[int, parts.Actuator] | None,

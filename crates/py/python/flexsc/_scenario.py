@@ -153,7 +153,11 @@ class Scenario(ScenarioAnalysis):
     def with_parts(
         self,
         *,
-        law: Law | ThreeAxisLaw | Mapping[str | int, Law | ThreeAxisLaw] | None = None,
+        law: Law
+        | ThreeAxisLaw
+        | Mapping[str, Law | ThreeAxisLaw]
+        | Mapping[int, Law | ThreeAxisLaw]
+        | None = None,
         sensor: Sensor | Mapping[int, Sensor] | None = None,
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,

@@ -11,12 +11,12 @@ use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 use rayon::prelude::*;
 
+use super::super::cycle_data::CycleData;
 use super::super::motion::MotionData;
 use super::super::pointing::norm;
-use super::super::{FigureKind, readable};
 use super::super::run_events::RunEvents;
-use super::super::cycle_data::CycleData;
 use super::super::time;
+use super::super::{FigureKind, readable};
 use crate::error::CliError;
 use crate::{progress, say};
 

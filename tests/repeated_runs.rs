@@ -1,0 +1,96 @@
+//! Figures of logs without the rows that they show: the run is repeated, told, and checked against the log.
+
+use std::path::Path;
+
+use flexsc_cli::figures;
+use flexsc_core::Scenario;
+use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
+use flexsc_core::control::law::Command;
+use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
+
+use crate::util::Dir;
+
+const ONE_ANGLE: &str =
+    "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0\nmodes = [{ frequency = 1.3, gain = 0.2 }]";
+const THREE_AXES: &str = "duration = 10.0\n[law.open]\n[body.spatial]\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\n\
+                          points = [{ name = \"hub\" }]\n\
+                          modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]";
+
+fn at(seconds: f64) -> Instant {
+    Instant::START + Span::from_seconds(seconds)
+}
+
+/// Returns commands of a torque about the first axis (N m) from each of some times on (s).
+fn commands(given: &[(f64, f64)]) -> CommandLog {
+    let mut log = CommandLog::default();
+    given.iter().for_each(|(time, torque)| log.push(at(*time), [*torque, 0.0, 0.0].map(Command::Torque)));
+    log
+}
+
+/// Returns a log of the events of a run under some commands that says it is one under others.
+fn log(text: &str, given: &CommandLog, written: &CommandLog, until: Instant) -> Log {
+    let scenario = Scenario::parse("steered.toml", text).expect("a scenario");
+    let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
+    let mut provenance = Campaign::provenance(&run);
+    provenance.attachments.push(written.attachment());
+    let mut bytes = LogBytes::new(&provenance, Detail::Events).expect("a log");
+    let metrics = given.simulate(&run, until, &mut bytes).expect("a run");
+    let end = RunEnd::at(until, run.scenario.duration);
+    Log::read(Path::new("steered.mcap"), bytes.finish(&metrics, end).expect("a log")).expect("a log")
+}
+
+#[test]
+fn a_run_under_other_commands_than_those_of_its_log_is_not_drawn() {
+    let given = commands(&[(1.0, 0.5), (3.0, -0.1), (5.0, 0.2)]);
+    let fewer = commands(&[(1.0, 0.5), (5.0, 0.2)]);
+    let path = Path::new("steered.mcap");
+    for (text, name) in [(ONE_ANGLE, "angle"), (THREE_AXES, "pointing")] {
+        for until in [Instant::END, at(7.5)] {
+            figures::log_figure(&log(text, &given, &given, until), path, name, None).expect("the same run");
+            let fault = figures::log_figure(&log(text, &given, &fewer, until), path, name, None);
+            let fault = fault.err().expect("another run");
+            let words = [
+                "repeats another run than that of this log",
+                "its metric `",
+                "hint: a log made with `--log full`",
+            ];
+            assert!(words.iter().all(|words| fault.contains(words)), "{fault}");
+        }
+    }
+}
+
+#[test]
+fn a_repeated_run_is_told_and_rows_are_not_repeated() {
+    let dir = Dir::with(&["relay-fixed", "iss-ringdown"]);
+    for (name, figure, topic) in
+        [("relay-fixed", "angle", "/attitude"), ("iss-ringdown", "energy", "/energy")]
+    {
+        for detail in ["events", "full"] {
+            dir.run(&format!("simulate {name}.toml --set duration=60 --log {detail} -o {detail}")).exits(0);
+        }
+        let note = format!("note: repeats the run, because events/{name}.mcap has no rows of {topic}\n");
+        let plot = |detail: &str, more: &str| {
+            dir.run(&format!("plot {detail}/{name}.mcap --what {figure} --format svg -o {detail} {more}"))
+                .exits(0)
+        };
+        assert_eq!(plot("events", "").err.matches(&note).count(), 1);
+        assert!(!plot("full", "").err.contains("note: "));
+        assert_eq!(plot("events", "--json").err, "");
+    }
+}
+
+#[test]
+fn pulses_of_jets_are_drawn_from_the_rows_of_any_log() {
+    let dir = Dir::with(&["iss-ringdown", "wheels-and-jets"]);
+    for name in ["iss-ringdown", "wheels-and-jets"] {
+        let svg = |detail: &str| {
+            dir.run(&format!("simulate {name}.toml --set duration=500 --log {detail} -o {detail}")).exits(0);
+            let drawn =
+                dir.run(&format!("plot {detail}/{name}.mcap --what jets --format svg -o {detail}")).exits(0);
+            assert!(!drawn.err.contains("note: "), "{}", drawn.err);
+            dir.text(&format!("{detail}/{name}-jets.svg"))
+        };
+        assert!(svg("events") == svg("full"), "{name}");
+    }
+}
