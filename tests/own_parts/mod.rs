@@ -2,9 +2,9 @@
 
 mod actuator;
 mod adaptation;
-mod drawn;
 mod estimator;
 mod law;
+mod log_figures;
 mod sensor;
 mod stage_laws;
 

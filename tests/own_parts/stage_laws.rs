@@ -14,7 +14,7 @@ const PD: &str = "law.pd = { k_p = 4.0, k_d = 30.0, period = 0.25 }\n";
 /// Returns a scenario with the modes `first`, which ends after 10 s, and `second`.
 fn of_modes() -> Scenario {
     let text = format!(
-        "{BODY}[[mode]]\nname = \"first\"\n{PD}leave = [{{ to = \"second\", when = \"time_in_mode > 10\" }}]\n\
+        "{BODY}[[mode]]\nname = \"first\"\n{PD}leave = [{{ to = \"second\", when = \"time > 10\" }}]\n\
          [[mode]]\nname = \"second\"\n{PD}"
     );
     Scenario::parse("modes.toml", &text).expect("a scenario")
@@ -50,7 +50,7 @@ fn a_law_of_a_mode_or_a_stage_acts_in_it_alone() {
         let late = acting(&scenario.with_custom_parts(for_stage(second)).expect("it fits"));
         assert!(early.first() == Some(&0.0) && early.iter().all(|time| *time <= 10.5), "{early:?}");
         assert!(late.last() == Some(&40.0) && late.iter().all(|time| *time >= 10.0), "{late:?}");
-        assert_eq!(acting(&scenario), []);
+        assert!(acting(&scenario).is_empty());
     }
 }
 
@@ -64,7 +64,7 @@ fn a_law_without_a_place_is_refused() {
         ),
         (
             of_stages(),
-            ["each with a law of its own", "`law={1: ...}`", "0, `pd` from 0 s, 1, `pd` from 10 s"],
+            ["each with a law of its own", "`law={1: ...}`", "`0`, pd from 0 s; `1`, pd from 10 s"],
         ),
     ] {
         let fault = scenario.with_custom_parts(bare.clone()).expect_err("no place").to_string();

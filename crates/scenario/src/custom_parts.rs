@@ -141,21 +141,18 @@ impl ScenarioSpec {
     pub(super) fn stage_choice(&self) -> Option<String> {
         let names: Vec<String> = (0..self.law.stages().len()).map(|index| self.stage_name(index)).collect();
         let last = names.last()?;
-        let listed = |quoted: Vec<String>| quoted.join(", ");
         Some(if self.mode.is_empty() {
-            let stage = |(index, stage): (usize, &Stage)| {
-                format!("{index}, `{}` from {} s", stage.law.kind(), stage.from.get())
-            };
-            let stages = listed(self.law.stages().iter().enumerate().map(stage).collect());
             format!(
                 "has stages, each with a law of its own: give yours to one by its number, in Python `law={{{last}: ...}}`; the \
-                 stages are {stages}"
+                 stages are {}",
+                self.listed_stages()
             )
         } else {
-            let modes = listed(names.iter().map(|name| format!("`{name}`")).collect());
+            let modes: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
             format!(
                 "must be left out with `[[mode]]`, where each mode has a law of its own: give yours to one by its name, in \
-                 Python `law={{\"{last}\": ...}}`; the modes are {modes}"
+                 Python `law={{\"{last}\": ...}}`; the modes are {}",
+                modes.join(", ")
             )
         })
     }

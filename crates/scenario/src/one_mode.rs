@@ -57,14 +57,10 @@ impl Scenario {
 
     /// Returns the error of an analysis of one loop, for a scenario whose laws act one after another.
     pub fn stage_choice_fault(&self) -> Option<ConfigError> {
-        let stage = |(index, stage): (usize, &Stage)| {
-            format!("`{index}`, {} from {} s", stage.law.kind(), stage.from.get())
-        };
-        let stages: Vec<String> = self.law.stages().iter().enumerate().map(stage).collect();
-        (!stages.is_empty() && self.mode.is_empty()).then(|| {
+        (!self.law.stages().is_empty() && self.mode.is_empty()).then(|| {
             let why = format!(
                 "has several loops, one in each stage: choose one with `--mode`, in Python `in_mode`: {}",
-                stages.join("; ")
+                self.listed_stages()
             );
             ConfigError::new("law.stages", why)
         })
@@ -72,6 +68,15 @@ impl Scenario {
 }
 
 impl ScenarioSpec {
+    /// Returns the stages of the law as a text: their numbers, laws and start times.
+    pub(super) fn listed_stages(&self) -> String {
+        let stage = |(index, stage): (usize, &Stage)| {
+            format!("`{index}`, {} from {} s", stage.law.kind(), stage.from.get())
+        };
+        let stages: Vec<String> = self.law.stages().iter().enumerate().map(stage).collect();
+        stages.join("; ")
+    }
+
     /// Replaces the modes by the parts of one of them.
     fn keep_mode(&mut self, index: usize) {
         let in_use = self.sensors_in_use(index);

@@ -56,9 +56,9 @@ impl RunEvents {
     ) -> Result<(), CliError> {
         if let Some(own) = self.absent_parts.as_deref() {
             let why = format!(
-                "it has no rows of {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"
+                "has no rows of {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"
             );
-            return Err(unusable(path, why));
+            return Err(CliError::Arguments(format!("{}: {why}", path.display())));
         }
         if let Some(why) = self.scenario.cost(None, true).limit_exceeded() {
             let why = format!("{}: its run is not repeated: {why}\n\n{FULL}", path.display());

@@ -333,7 +333,7 @@ class Result(Topics, Exportable):
         return same and dict(self) == dict(other)
 
     def _native_log(self) -> engine.Log:
-        """The log of the run, the source of figures: with its rows if the result has them, else with its events."""
+        """The log of the run, the source of figures: with its rows if the result has them."""
         if self._drawn is None:
             detail = "events" if self._log == "none" else self._log
             self._drawn = engine.log_of(self.scenario._native, self.run, detail, self._stepped)

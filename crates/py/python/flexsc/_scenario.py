@@ -195,8 +195,8 @@ class Scenario(ScenarioAnalysis):
 
     @property
     def parts(self) -> dict[str, object]:
-        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of modes
-        as `law point`, and those of stages as `law 1`.
+        """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of
+        modes as `law point`, and those of stages as `law 1`.
 
         >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
         {}

@@ -59,7 +59,7 @@ fn a_log_of_events_is_drawn_where_the_parts_are() {
         let log = logged(&study, Detail::Events);
         let fault = figures::log_figure(&log, path, name, None).err().expect("no rows");
         let words = [
-            format!("it has no rows of {topic}"),
+            format!("own.mcap: has no rows of {topic}"),
             "only the program of its parts (law, sensor, estimator, actuator) can repeat its run".to_owned(),
             "hint: a log made with `--log full`".to_owned(),
         ];
