@@ -1,4 +1,4 @@
-//! Figures of logs without the rows that they show: the run is repeated, told, and checked against the log.
+//! Figures of logs without the rows that they show: the run is repeated, noted, and checked against the log.
 
 use std::path::Path;
 
@@ -61,7 +61,7 @@ fn a_run_under_other_commands_than_those_of_its_log_is_not_drawn() {
 }
 
 #[test]
-fn a_repeated_run_is_told_and_rows_are_not_repeated() {
+fn a_repeated_run_is_noted_and_rows_are_not_repeated() {
     let dir = Dir::with(&["relay-fixed", "iss-ringdown"]);
     for (name, figure, topic) in
         [("relay-fixed", "angle", "/attitude"), ("iss-ringdown", "energy", "/energy")]

@@ -16,7 +16,7 @@ use super::{ONE_ANGLE, RELAY, THREE_AXES, adaptation, of_own_parts};
 use crate::util::Dir;
 
 /// Returns the log of a scenario's run.
-fn logged(scenario: &Scenario, detail: Detail) -> Log {
+pub fn logged(scenario: &Scenario, detail: Detail) -> Log {
     let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
     figures::log_of(&run, &CommandLog::default(), Instant::END, detail).expect("a log")
 }
@@ -70,7 +70,7 @@ fn a_log_of_events_is_drawn_where_the_parts_are() {
 
 #[test]
 fn the_command_draws_lays_out_and_exports_a_log_of_own_parts() {
-    for (text, topic) in [(ONE_ANGLE, "/attitude.angle_rad"), (THREE_AXES, "/rates.axes[0].rate_rad_s")] {
+    for (text, topic) in [(ONE_ANGLE, "/attitude.angle_rad"), (THREE_AXES, "/pointing.roll_error_rad")] {
         let study = of_own_parts(text);
         let dir = Dir::holding("own.mcap", logged(&study, Detail::Full).bytes());
         let drawn = dir.run("plot own.mcap --format svg -o figures").exits(0);

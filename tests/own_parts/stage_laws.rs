@@ -1,11 +1,12 @@
 //! Custom laws of modes of operation and of stages: given by name or number, and never dropped without an error.
 
 use flexsc_core::control::law::LawKind;
-use flexsc_core::record::{Detail, Trace};
+use flexsc_core::record::Detail;
 use flexsc_core::scenario::{CustomLaw, CustomParts};
-use flexsc_core::{Document, Scenario, Simulation};
+use flexsc_core::{Document, Scenario};
 
 use super::law;
+use super::log_figures::logged;
 
 const BODY: &str = "duration = 40.0\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n[log]\nperiod = 1.0\n[sensor.sampled]\n\
                     period = 0.25\n";
@@ -37,10 +38,8 @@ fn for_stage(name: &str) -> CustomParts {
 
 /// Returns the times (s) of the rows of the own law.
 fn acting(scenario: &Scenario) -> Vec<f64> {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    let rows = trace.topic("/pid").and_then(|rows| rows.numbers("time_s"));
-    rows.unwrap_or_default().to_vec()
+    let rows = logged(scenario, Detail::Full).columns("/pid").unwrap_or_default();
+    rows.numbers("time_s").unwrap_or_default().to_vec()
 }
 
 #[test]

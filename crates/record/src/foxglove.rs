@@ -3,8 +3,7 @@
 //! Names and numbers of the fields are those of the published schemas. Unused fields at the end of a message are left
 //! out.
 
-use super::columns::Columns;
-use super::row::{LogDate, LogSpan, Row, Sink, Topic, TopicRow, label_cells, rows};
+use super::row::{LogDate, LogSpan, Row, Sink, Source, Topic, TopicRow, label_cells, rows};
 use crate::enum_label::LoggedEnum;
 
 /// Severity of a log line.
@@ -312,8 +311,8 @@ impl Row for Plumes {
         self.0.write_to(sink);
     }
 
-    fn read_rows(columns: &Columns, before: &str) -> Option<Vec<Self>> {
-        Some(SceneUpdate::read_rows(columns, before)?.into_iter().map(Self).collect())
+    fn read_rows<S: Source>(source: &S, before: &str) -> Option<Vec<Self>> {
+        Some(SceneUpdate::read_rows(source, before)?.into_iter().map(Self).collect())
     }
 }
 

@@ -1,7 +1,6 @@
 //! Rows: the fields of a topic listed once, for protobuf schemas, protobuf bytes, columns and CSV.
 
-use super::columns::{Column, Columns};
-use super::{Detail, row_columns};
+use super::Detail;
 use crate::enum_label::LoggedEnum;
 
 /// Topic of the log.
@@ -111,8 +110,8 @@ pub trait Row {
     /// Writes the fields into a sink, in their order.
     fn write_to<S: Sink>(&self, sink: &mut S);
 
-    /// Reads rows from the columns of their fields, whose names begin with `before`; `None` if a column is missing.
-    fn read_rows(columns: &Columns, before: &str) -> Option<Vec<Self>>
+    /// Reads rows from a source of their fields, whose names begin with `before`; `None` if a field is missing.
+    fn read_rows<S: Source>(source: &S, before: &str) -> Option<Vec<Self>>
     where
         Self: Sized;
 }
@@ -143,6 +142,22 @@ pub trait Sink {
     fn rows<R: Row>(&mut self, rows: &[R]);
 }
 
+/// Source of the fields of rows: all values of a field together.
+pub trait Source {
+    /// Reads doubles.
+    fn read_numbers(&self, name: &str) -> Option<Vec<f64>>;
+    /// Reads counts, and flags as 0 or 1.
+    fn read_counts(&self, name: &str) -> Option<Vec<u64>>;
+    /// Reads indices of an enumeration's values.
+    fn read_labels(&self, name: &str, labels: &LoggedEnum) -> Option<Vec<usize>>;
+    /// Reads texts.
+    fn read_texts(&self, name: &str) -> Option<Vec<String>>;
+    /// Reads dates or time spans (ns), to the precision of a double in seconds.
+    fn read_times(&self, name: &str) -> Option<Vec<u64>>;
+    /// Returns the number of nested rows in each row, and the source of their fields.
+    fn nested_rows(&self, name: &str) -> Option<(&[u32], &Self)>;
+}
+
 /// Type that can be a field.
 pub trait FieldType {
     /// Kind of the field's contents.
@@ -151,8 +166,8 @@ pub trait FieldType {
     /// Writes the field into a sink.
     fn write_to<S: Sink>(&self, sink: &mut S);
 
-    /// Reads the values of the field in all rows from its column; `None` if it is missing or of another kind.
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>>
+    /// Reads the values of the field in all rows; `None` if it is missing or of another kind.
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>>
     where
         Self: Sized;
 }
@@ -163,8 +178,8 @@ impl FieldType for f64 {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.number(*self);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        columns.numbers(name).map(<[f64]>::to_vec)
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        source.read_numbers(name)
     }
 }
 
@@ -174,8 +189,8 @@ impl FieldType for u64 {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.count(*self);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        if let Some(Column::Counts(counts)) = columns.get(name) { Some(counts.clone()) } else { None }
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        source.read_counts(name)
     }
 }
 
@@ -184,8 +199,8 @@ impl FieldType for String {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.text(self);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        if let Some(Column::Texts(texts)) = columns.get(name) { Some(texts.clone()) } else { None }
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        source.read_texts(name)
     }
 }
 
@@ -194,8 +209,8 @@ impl FieldType for bool {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.flag(*self);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        Some(u64::read_column(columns, name)?.into_iter().map(|flag| flag != 0).collect())
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        Some(source.read_counts(name)?.into_iter().map(|flag| flag != 0).collect())
     }
 }
 
@@ -208,8 +223,8 @@ impl FieldType for LogDate {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        Some(row_columns::nanoseconds(columns, name)?.map(Self).collect())
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        Some(source.read_times(name)?.into_iter().map(Self).collect())
     }
 }
 
@@ -222,8 +237,8 @@ impl FieldType for LogSpan {
     fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
-    fn read_column(columns: &Columns, name: &str) -> Option<Vec<Self>> {
-        Some(row_columns::nanoseconds(columns, name)?.map(Self).collect())
+    fn read_values<S: Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+        Some(source.read_times(name)?.into_iter().map(Self).collect())
     }
 }
 
@@ -265,12 +280,9 @@ macro_rules! rows {
                     $($crate::row::FieldType::write_to(&self.$field, sink);)+
                 }
 
-                fn read_rows(columns: &$crate::Columns, before: &str) -> Option<Vec<Self>> {
-                    $(let mut $field = $crate::row_columns::values::<$of>(
-                        columns,
-                        before,
-                        $crate::row::field_name(stringify!($field)),
-                    )?;)+
+                fn read_rows<S: $crate::row::Source>(source: &S, before: &str) -> Option<Vec<Self>> {
+                    $(let name = format!("{before}{}", $crate::row::field_name(stringify!($field)));
+                    let mut $field = <$of as $crate::row::FieldType>::read_values(source, &name)?.into_iter();)+
                     let next = || Some(Self { $($field: $field.next()?),+ });
                     Some(std::iter::from_fn(next).collect())
                 }
@@ -289,8 +301,8 @@ macro_rules! rows {
                 fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.row(self);
                 }
-                fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
-                    <$name as $crate::row::Row>::read_rows(columns, &format!("{name}."))
+                fn read_values<S: $crate::row::Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+                    <$name as $crate::row::Row>::read_rows(source, &format!("{name}."))
                 }
             }
 
@@ -299,8 +311,10 @@ macro_rules! rows {
                 fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.rows(self);
                 }
-                fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
-                    $crate::row_columns::nested(columns, name)
+                fn read_values<S: $crate::row::Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+                    let (counts, inner) = source.nested_rows(name)?;
+                    let mut rows = <$name as $crate::row::Row>::read_rows(inner, "")?.into_iter();
+                    Some(counts.iter().map(|count| rows.by_ref().take(*count as usize).collect()).collect())
                 }
             }
 
@@ -350,8 +364,9 @@ macro_rules! label_cells {
             fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                 sink.label(*self as usize, &<$of>::LABELS);
             }
-            fn read_column(columns: &$crate::Columns, name: &str) -> Option<Vec<Self>> {
-                $crate::row_columns::labels(columns, name, &<$of>::LABELS, <$of>::VALUES)
+            fn read_values<S: $crate::row::Source>(source: &S, name: &str) -> Option<Vec<Self>> {
+                let indices = source.read_labels(name, &<$of>::LABELS)?;
+                indices.into_iter().map(|index| <$of>::VALUES.get(index).copied()).collect()
             }
         })+
     };

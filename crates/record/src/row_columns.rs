@@ -1,7 +1,7 @@
 //! Reading of rows from columns, the inverse of what `Columns::push` writes.
 
 use super::columns::{Column, Columns};
-use super::row::{FieldType, Row, TopicRow};
+use super::row::{Source, TopicRow};
 use crate::enum_label::LoggedEnum;
 
 impl Columns {
@@ -14,51 +14,39 @@ impl Columns {
     }
 }
 
-/// Returns the values of a field, the name of which follows `before`.
-pub(crate) fn values<T: FieldType>(
-    columns: &Columns,
-    before: &str,
-    name: &str,
-) -> Option<std::vec::IntoIter<T>> {
-    let values = if before.is_empty() {
-        T::read_column(columns, name)
-    } else {
-        T::read_column(columns, &format!("{before}{name}"))
-    };
-    values.map(Vec::into_iter)
-}
+impl Source for Columns {
+    fn read_numbers(&self, name: &str) -> Option<Vec<f64>> {
+        self.numbers(name).map(<[f64]>::to_vec)
+    }
 
-/// Returns the nested rows of each row.
-pub(crate) fn nested<R: Row>(columns: &Columns, name: &str) -> Option<Vec<Vec<R>>> {
-    let Some(Column::Rows(counts, inner)) = columns.get(name) else { return None };
-    let mut rows = R::read_rows(inner, "")?.into_iter();
-    Some(counts.iter().map(|count| rows.by_ref().take(*count as usize).collect()).collect())
-}
+    fn read_counts(&self, name: &str) -> Option<Vec<u64>> {
+        if let Some(Column::Counts(counts)) = self.get(name) { Some(counts.clone()) } else { None }
+    }
 
-/// Returns the values of an enumeration; `None` if a row has another label.
-pub(crate) fn labels<T: Copy>(
-    columns: &Columns,
-    name: &str,
-    labels: &LoggedEnum,
-    values: &[T],
-) -> Option<Vec<T>> {
-    let Some(Column::Labels(indices, names)) = columns.get(name) else { return None };
-    let value = |name: &String| {
-        let place = labels.values.iter().position(|label| label == name)?;
-        values.get(place).copied()
-    };
-    let known: Vec<Option<T>> = names.iter().map(value).collect();
-    indices.iter().map(|index| known.get(usize::from(*index)).copied().flatten()).collect()
-}
+    fn read_labels(&self, name: &str, labels: &LoggedEnum) -> Option<Vec<usize>> {
+        let Some(Column::Labels(indices, names)) = self.get(name) else { return None };
+        let place = |name: &String| labels.values.iter().position(|label| label == name);
+        let known: Vec<Option<usize>> = names.iter().map(place).collect();
+        indices.iter().map(|index| known.get(usize::from(*index)).copied().flatten()).collect()
+    }
 
-/// Returns dates or time spans in nanoseconds, to the precision of their seconds.
-pub(crate) fn nanoseconds(columns: &Columns, name: &str) -> Option<impl Iterator<Item = u64>> {
-    Some(columns.numbers(name)?.iter().map(|seconds| (seconds * 1e9).round() as u64))
+    fn read_texts(&self, name: &str) -> Option<Vec<String>> {
+        if let Some(Column::Texts(texts)) = self.get(name) { Some(texts.clone()) } else { None }
+    }
+
+    fn read_times(&self, name: &str) -> Option<Vec<u64>> {
+        Some(self.numbers(name)?.iter().map(|seconds| libm::round(seconds * 1e9) as u64).collect())
+    }
+
+    fn nested_rows(&self, name: &str) -> Option<(&[u32], &Self)> {
+        if let Some(Column::Rows(counts, inner)) = self.get(name) { Some((counts, inner)) } else { None }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::row::FieldType;
     use crate::{Hinges, Jets, Metric, Metrics, Orbit, OrbitAxis, Torque, Torques};
     use crate::{Light, states::Sliding};
 
@@ -108,6 +96,6 @@ mod tests {
                 Column::Labels(vec![1], vec!["stuck".into(), "gone".into()]),
             )],
         };
-        assert_eq!(labels(&foreign, "sliding", &Sliding::LABELS, Sliding::VALUES), None);
+        assert_eq!(Sliding::read_values(&foreign, "sliding"), None);
     }
 }

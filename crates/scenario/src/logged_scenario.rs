@@ -3,17 +3,12 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use flexsc_control::adaptation::{Adaptation, AdaptationKind, AdaptationSpec, Objective, SearchStep};
+use flexsc_control::adaptation::{AdaptationFacts, AdaptationSpec};
 use flexsc_control::custom::Custom;
-use flexsc_control::law::{Authority, ErrorBand, Law, LawSpec, Open, Tunable};
-use flexsc_control::offers::LawOffers;
-use flexsc_control::part::Part;
+use flexsc_control::law::{LawFacts, LawSpec};
 use flexsc_control::requirement::Requirements;
 use flexsc_control::sensor::SensorKind;
-use flexsc_control::state_estimate::EstimateNeeds;
 use flexsc_formats::document::{Document, ScenarioError};
-use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Log;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -39,23 +34,6 @@ struct CustomFacts {
     adaptation: Option<AdaptationFacts>,
 }
 
-/// Facts about a custom law.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-struct LawFacts {
-    /// Period (s), if it has one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    period_s: Option<f64>,
-    /// True if its torque changes only with its state.
-    switches: bool,
-    /// Half width of the error band that it promises (rad), if it promises one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    band_rad: Option<f64>,
-    /// Initial values of its tunable parameters, by key.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    tunable: BTreeMap<String, f64>,
-}
-
 /// Facts about a custom sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct SensorFacts {
@@ -66,18 +44,6 @@ struct SensorFacts {
     /// Standard deviation of the measured rate (rad/s), if it measures rates.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     rate_noise_rad_s: Option<f64>,
-}
-
-/// Facts about a custom adaptation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct AdaptationFacts {
-    /// Key of the tuned parameter.
-    tunes: String,
-    /// Key of the objective.
-    objective: String,
-    /// Length of the windows (s), unless they are those of the envelope.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    window_s: Option<f64>,
 }
 
 impl ScenarioSpec {
@@ -94,11 +60,6 @@ impl ScenarioSpec {
                 SensorFacts { period_s, noise_rad: kind.angle_noise(), rate_noise_rad_s: kind.rate_noise(0) };
             Some((*place, facts))
         };
-        let adaptation = |of: &AdaptationKind| AdaptationFacts {
-            tunes: of.tunes().to_owned(),
-            objective: of.objective().key().to_owned(),
-            window_s: of.window().map(Span::seconds),
-        };
         let facts = CustomFacts {
             law: own.law.as_deref().map(LawFacts::from_law),
             stage_laws: own
@@ -107,32 +68,10 @@ impl ScenarioSpec {
                 .map(|(stage, law)| (stage.clone(), LawFacts::from_law(&**law)))
                 .collect(),
             sensors: own.sensors.iter().filter_map(sensor).collect(),
-            adaptation: self.adaptation.as_ref().filter(|_| own.adaptation.is_some()).map(adaptation),
+            adaptation: own.adaptation.as_deref().map(AdaptationFacts::from_adaptation),
         };
         serde_json::to_string(&facts).ok()
     }
-}
-
-impl LawFacts {
-    fn from_law(law: &(dyn LawSpec + Send + Sync)) -> Self {
-        let offers = law.offers();
-        let band = law.expected_band();
-        Self {
-            period_s: offers.period.map(Span::seconds),
-            switches: offers.is_switching,
-            band_rad: if let ErrorBand::Absolute(band) = band { Some(band) } else { None },
-            tunable: law
-                .tunable()
-                .into_iter()
-                .map(|number| (number.key.into_owned(), number.value))
-                .collect(),
-        }
-    }
-}
-
-/// Returns a span of this length (s), if it can be one.
-fn span(seconds: f64) -> Option<Span> {
-    (seconds.is_finite() && seconds > 0.0).then(|| Span::from_seconds(seconds))
 }
 
 impl CustomFacts {
@@ -198,59 +137,6 @@ impl SensorFacts {
         ];
         let keys = keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), Value::Float(value?))));
         Value::Table(Table::from_iter([("sampled".to_owned(), Value::Table(keys.collect()))]))
-    }
-}
-
-impl LawSpec for LawFacts {
-    fn start(&self, authority: &Authority) -> Box<dyn Law> {
-        Open::default().start(authority)
-    }
-
-    fn offers(&self) -> LawOffers {
-        let period = self.period_s.and_then(span);
-        LawOffers { is_switching: self.switches, ..LawOffers::new(period, EstimateNeeds::Motion) }
-    }
-
-    fn expected_band(&self) -> ErrorBand {
-        self.band_rad.map_or(ErrorBand::None, ErrorBand::Absolute)
-    }
-
-    fn tunable(&self) -> Vec<Tunable> {
-        self.tunable.iter().map(|(key, value)| Tunable::unbounded(key.clone(), *value)).collect()
-    }
-}
-
-impl AdaptationSpec for AdaptationFacts {
-    fn tunes(&self) -> &str {
-        &self.tunes
-    }
-
-    fn objective(&self) -> Objective {
-        Objective::from_key(&self.objective).unwrap_or_default()
-    }
-
-    fn window(&self) -> Option<Span> {
-        self.window_s.and_then(span)
-    }
-
-    fn start(&self, _: f64, _: Seed) -> Box<dyn Adaptation> {
-        Box::new(Ended)
-    }
-}
-
-/// Adaptation that has ended.
-#[derive(Debug)]
-struct Ended;
-
-impl Part for Ended {}
-
-impl Adaptation for Ended {
-    fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
-        None
-    }
-
-    fn copy(&self) -> Box<dyn Adaptation> {
-        Box::new(Self)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use clap::ValueEnum;
 use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::record::{AttitudeEstimate, ElasticEstimates};
 use flexsc_figure::Figure;
 
 use super::cycle_data::CycleData;
@@ -206,14 +205,12 @@ impl FigureKind {
             Self::Hinges => hinges::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),
             Self::LineOfSight => line_of_sight::figure(story, cycles),
-            Self::Frequency if cycles.rows::<ElasticEstimates>().next().is_some() => {
+            Self::Frequency if story.scenario.axis_count() == 3 => {
                 identified_frequencies::figure(story, cycles)
             }
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
-            Self::Consistency if cycles.rows::<AttitudeEstimate>().next().is_some() => {
-                attitude_filter::figure(story, cycles)
-            }
+            Self::Consistency if story.scenario.axis_count() == 3 => attitude_filter::figure(story, cycles),
             Self::Consistency => consistency::figure(story, motion),
             Self::Extra => extra_loop::figure(story, motion),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => return None,

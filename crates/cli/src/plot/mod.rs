@@ -125,7 +125,7 @@ impl PlotArgs {
             stale_check::warn_if_stale(&log, path);
         }
         let range = ShownRange { from: self.from, to: self.to };
-        drawn_over(&log, path, asked, range, RunSource { known: None, is_told: !self.json })
+        drawn_over(&log, path, asked, range, RunSource { known: None, is_noted: !self.json })
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
@@ -177,8 +177,8 @@ struct ShownRange {
 struct RunSource<'a> {
     /// Scenario with the parts of a program, if they are at hand.
     known: Option<&'a Scenario>,
-    /// True if a repetition is told on the terminal.
-    is_told: bool,
+    /// True if a repetition is noted on the terminal.
+    is_noted: bool,
 }
 
 /// Returns the figure of a log in memory by its name; errors refer to the log as `path`. The scenario of the run is `known`
@@ -188,7 +188,7 @@ struct RunSource<'a> {
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -> Result<Figure, CliError> {
     let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
-    let source = RunSource { known, is_told: false };
+    let source = RunSource { known, is_noted: false };
     let drawn = drawn_over(log, path, &[kind], ShownRange::default(), source)?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
@@ -245,7 +245,7 @@ fn drawn_over(
         return Ok(figures.into_iter().map(|(name, figure)| (name, crop(figure))).collect());
     }
     let mut story = RunEvents::read(log, path, source.known)?;
-    story.is_told = source.is_told;
+    story.is_noted = source.is_noted;
     story.shown = time_range::resolve(from, to, story.end)?;
     let chosen = figure_kind::select(&kinds, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();

@@ -69,7 +69,7 @@ impl RunEvents {
                        hint: a log made with `--log full` holds most of what figures need";
             unusable(path, why.to_owned())
         })?;
-        if self.is_told {
+        if self.is_noted {
             say!("note: repeats the run, because {} has no rows of {missing}", path.display());
         }
         // The end of a torn log is rounded, and a switching may lie on it.

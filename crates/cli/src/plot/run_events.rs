@@ -23,8 +23,8 @@ pub struct RunEvents {
     pub(super) commanded: Option<CommandLog>,
     /// Roles of the parts that a program supplied to the run, and that are not at hand.
     pub(super) absent_parts: Option<String>,
-    /// True if a repetition of the run is told on the terminal.
-    pub is_told: bool,
+    /// True if a repetition of the run is noted on the terminal.
+    pub is_noted: bool,
     /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -126,7 +126,7 @@ impl RunEvents {
             end,
             commanded,
             absent_parts,
-            is_told: false,
+            is_noted: false,
             shown: None,
             start,
             switchings,

@@ -1,5 +1,6 @@
 //! Adaptation loops: they tune a parameter of the law to reduce an objective.
 
+mod adaptation_facts;
 mod objective;
 mod random_search;
 
@@ -14,6 +15,7 @@ use crate::law::Tunable;
 use crate::offers::Offers;
 use crate::part::Part;
 
+pub use adaptation_facts::AdaptationFacts;
 pub use flexsc_record::Decision;
 pub use objective::Objective;
 pub use random_search::{RandomSearch, RandomSearchState, SearchStep};
