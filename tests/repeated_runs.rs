@@ -81,15 +81,17 @@ fn a_repeated_run_is_noted_and_rows_are_not_repeated() {
 }
 
 #[test]
-fn pulses_of_jets_are_drawn_from_the_rows_of_any_log() {
-    let dir = Dir::with(&["iss-ringdown", "wheels-and-jets"]);
-    for name in ["iss-ringdown", "wheels-and-jets"] {
+fn decisions_and_pulses_are_drawn_from_the_rows_of_any_log() {
+    let dir = Dir::with(&["iss-ringdown", "wheels-and-jets", "relay-adaptive"]);
+    for (name, figure) in [("iss-ringdown", "jets"), ("wheels-and-jets", "jets"), ("relay-adaptive", "gain")]
+    {
         let svg = |detail: &str| {
-            dir.run(&format!("simulate {name}.toml --set duration=500 --log {detail} -o {detail}")).exits(0);
-            let drawn =
-                dir.run(&format!("plot {detail}/{name}.mcap --what jets --format svg -o {detail}")).exits(0);
+            dir.run(&format!("simulate {name}.toml --set duration=1500 --log {detail} -o {detail}")).exits(0);
+            let drawn = dir
+                .run(&format!("plot {detail}/{name}.mcap --what {figure} --format svg -o {detail}"))
+                .exits(0);
             assert!(!drawn.err.contains("note: "), "{}", drawn.err);
-            dir.text(&format!("{detail}/{name}-jets.svg"))
+            dir.text(&format!("{detail}/{name}-{figure}.svg"))
         };
         assert!(svg("events") == svg("full"), "{name}");
     }

@@ -263,13 +263,14 @@ fn drawn_over(
         FigureKind::Extra,
     ]);
     let is_three_axis = story.scenario.axis_count() == 3;
+    let is_still = chosen.iter().all(|kind| *kind == FigureKind::Gain);
     let topics: Vec<&str> = chosen.iter().flat_map(|kind| kind.topics()).copied().collect();
     let cycles = if is_three_axis && !topics.is_empty() {
         CycleData::read(&story, log, path, &topics)?
     } else {
         CycleData::default()
     };
-    let motion = if is_three_axis {
+    let motion = if is_three_axis || is_still {
         MotionData::default()
     } else if all || !story.switches() {
         story.motion(log, path, 0.0, 0.0)?
