@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import flexsc
@@ -151,6 +152,47 @@ def test_sweeps_have_curves_and_maps() -> None:
     assert len(drawn.axes) == 2
     assert drawn.axes[1].get_xlabel() == "envelope late mean (µrad)" or drawn.axes[1].get_ylabel() != ""
     assert drawn.axes[0].get_ylabel() == "law.relay.weak (rad/s²)"
+
+
+def test_a_notebook_shows_a_figure_once(run: Result, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in Jupyter: the value of a cell is displayed, and then every figure of pyplot that is still open."""
+    shown: list[Any] = []
+
+    def display(value: Any) -> None:
+        own = getattr(value, "_ipython_display_", None)
+        if own is not None:
+            own()
+        else:
+            shown.append(value)
+
+    python: Any = ModuleType("IPython.display")
+    python.display = display
+    monkeypatch.setitem(sys.modules, "IPython.display", python)
+
+    def end_of_cell(value: Any) -> list[Any]:
+        shown.clear()
+        if value is not None:
+            display(value)
+        for number in matplotlib.pyplot.get_fignums():
+            display(matplotlib.pyplot.figure(number))
+        matplotlib.pyplot.close("all")
+        return list(shown)
+
+    with monkeypatch.context() as notebook:
+        notebook.setattr(matplotlib, "get_backend", lambda: "module://matplotlib_inline.backend_inline")
+        last = run.plot("gain")
+        assert end_of_cell(last) == [last]
+        # A figure that is no value of the cell, and several of them.
+        other, more = run.plot("gain"), run.plot("angle")
+        assert end_of_cell(None) == [other, more]
+        # Shown again, it is one like any other.
+        assert end_of_cell(last) == [last]
+        whole = matplotlib.pyplot.figure()
+        assert end_of_cell(run.plot("gain", on=whole)) == [whole, whole]
+    # Elsewhere a figure is pyplot's.
+    kept = run.plot("gain")
+    assert [matplotlib.pyplot.figure(number) for number in matplotlib.pyplot.get_fignums()] == [kept]
+    assert not hasattr(kept, "_ipython_display_")
 
 
 def test_without_matplotlib_only_drawing_fails() -> None:

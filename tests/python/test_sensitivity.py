@@ -123,6 +123,29 @@ def test_leaps_have_no_derivative() -> None:
     assert none["itae"][ANGLE] == pytest.approx(5000.0)
 
 
+def test_a_smooth_minimum_has_derivatives() -> None:
+    # The angle changes its sign at t = -a/w, so J = T³ w/3 + a T²/2 with the signs turned there, and
+    # dJ/dw = 2 t³/3 - T³/3, which vanishes at t = T / 2^(1/3).
+    least = -0.1 * 2.0 ** (1.0 / 3.0) / 100.0
+    for factor in (1.0, 1.0 + 1e-5, 1.0 - 1e-4, 1.01):
+        rate = factor * least
+        expected = 2.0 * (0.1 / -rate) ** 3 / 3.0 - 100.0**3 / 3.0
+        for step in (1e-3, 0.02):
+            found = flexsc.sensitivities(drifting(rate=rate), [RATE], ["itae"], step=step)
+            assert abs(found["itae"][RATE] - expected) < 1e-5 * 100.0**3 / 3.0
+            assert abs(found["itae"][RATE] - expected) <= found.error("itae", RATE)
+
+
+@pytest.mark.parametrize("place", [0.05, 1.0 / 3.0, 0.45, 0.7, -1.0 / 3.0])
+def test_a_bend_has_no_derivative(place: float) -> None:
+    # A body at rest has J = |a| T²/2, which bends at a = 0: here `place` steps away.
+    step = 1e-3
+    with pytest.warns(RuntimeWarning, match=r"bends.*: itae by body\.planar\.angle"):
+        found = flexsc.sensitivities(drifting(-place * step, rate=0.0), [ANGLE], ["itae"], step={ANGLE: step})
+    assert math.isnan(found["itae"][ANGLE])
+    assert found == pickle.loads(pickle.dumps(found))
+
+
 def test_wrong_arguments_are_named() -> None:
     scenario = drifting(rate=0.0)
     with pytest.raises(ValueError, match=r"body\.planar\.rate is 0, so its step must be given"):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 # Pixels of the command's figures in inches, and in points.
 INCH = 1.0 / 96.0
@@ -31,3 +33,22 @@ def frame(ax: Axes) -> None:
     ax.set_axisbelow(True)
     for spine in ax.spines.values():
         spine.set(color=FRAME, linewidth=0.8 * POINT)
+
+
+def show_once(figure: Figure) -> None:
+    """Let a notebook that shows the figures of a cell at its end show this one once, also as its value."""
+    from matplotlib import get_backend
+
+    if "inline" in get_backend():
+        shown: Any = figure
+        # Notebooks call it in place of their own display of a value.
+        shown._ipython_display_ = partial(_display, figure)
+
+
+def _display(figure: Any) -> None:
+    """Display a figure of pyplot, which then is one like any other."""
+    display = import_module("IPython.display").display
+    pyplot: Any = import_module("matplotlib.pyplot")
+    del figure._ipython_display_
+    pyplot.close(figure)
+    display(figure)

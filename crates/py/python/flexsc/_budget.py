@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._equality import Compared
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True)
-class BudgetLevel:
+@dataclass(frozen=True, eq=False)
+class BudgetLevel(Compared):
     """Level of an index at a probability, computed in three ways.
 
     >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
@@ -44,8 +45,8 @@ class BudgetLevel:
     """
 
 
-@dataclass(frozen=True)
-class IndexBudget:
+@dataclass(frozen=True, eq=False)
+class IndexBudget(Compared):
     """Budget of one pointing index.
 
     >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
@@ -119,8 +120,8 @@ class IndexBudget:
         return index_budget(self, ax)
 
 
-@dataclass(frozen=True)
-class PointingBudget:
+@dataclass(frozen=True, eq=False)
+class PointingBudget(Compared):
     """Budgets of all pointing indices that a scenario limits, and the verdicts of its requirements.
 
     >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from flexsc import _arrow
+from flexsc._equality import equal
 from flexsc._named import library
 
 if TYPE_CHECKING:
@@ -19,6 +20,9 @@ class Lookup(Mapping[str, _Value]):
 
     __slots__ = ()
     __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other) if isinstance(other, Mapping) else NotImplemented
 
     def __array__(self, *_: object, **__: object) -> NoReturn:
         # NumPy and pandas would take the names for the values.
@@ -60,9 +64,9 @@ class Columns(Lookup["npt.NDArray[Any]"]):
         return len(next(iter(self.values()), ()))
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Columns) or type(self) is not type(other):
-            return NotImplemented
-        return equal(self, other)
+        return super().__eq__(other) if type(self) is type(other) else NotImplemented
+
+    __hash__ = None
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Return the rows through Arrow's PyCapsule interface: NaN, which means no value, is null."""
@@ -76,8 +80,8 @@ class Columns(Lookup["npt.NDArray[Any]"]):
         """Return the rows as a `pandas.DataFrame`, which must be installed (`pip install pandas`).
 
         A column with several parts per row becomes one column per part, such as
-        `modes.displacement_rad[0]`; rows of different lengths become arrays in cells. `frame.attrs` has the
-        `units` of the columns that have one, and the scenario.
+        `modes.displacement_rad[0]` or `axes.modes.displacement_rad[2][0]`; rows of different lengths become
+        arrays in cells. `frame.attrs` has the `units` of the columns that have one, and the scenario.
 
         >>> import flexsc
         >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate(log="full")
@@ -87,14 +91,16 @@ class Columns(Lookup["npt.NDArray[Any]"]):
         Raises:
             ImportError: pandas is not installed.
         """
+        from numpy import ndindex
+
         pandas = library("pandas", f"{type(self).__name__}.to_pandas")
         unit = self._arrow_unit()
         flat: dict[str, Any] = {}
         units: dict[str, str] = {}
         for name, values in self.items():
-            parts = {name: values}
-            if values.ndim == 2:
-                parts = {f"{name}[{part}]": values[:, part] for part in range(values.shape[1])}
+            parts = {}
+            for place in ndindex(values.shape[1:]):
+                parts[name + "".join(f"[{part}]" for part in place)] = values[(slice(None), *place)]
             flat |= parts
             if unit(name):
                 units |= dict.fromkeys(parts, unit(name))
@@ -121,13 +127,10 @@ class Columns(Lookup["npt.NDArray[Any]"]):
     def _variables(self, dimension: str) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
         """Return the columns for xarray: the names of the dimensions, the values and the unit of each."""
         unit = self._arrow_unit()
-        found = {}
+        found: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {}
         for name, values in self.items():
             values = rectangular(values)
-            dimensions: tuple[str, ...] = (dimension,)
-            if values.ndim == 2:
-                # The parts of a list have the name of the list.
-                dimensions += (name.rpartition(".")[0] or f"{name}_index",)
+            dimensions = (dimension, *_dimensions(name, values.ndim - 1))
             found[name] = (dimensions, values, {"units": unit(name)} if unit(name) else {})
         return found
 
@@ -142,28 +145,24 @@ class _Stream:
         return self._columns.__arrow_c_stream__(requested_schema)
 
 
-def equal(one: Mapping[str, npt.NDArray[Any]], other: Mapping[str, npt.NDArray[Any]]) -> bool:
-    """True if two mappings have the same names with equal arrays; NaN, no value, equals NaN."""
-    return one.keys() == other.keys() and all(_same(values, other[name]) for name, values in one.items())
-
-
-def _same(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
-    import numpy as np
-
-    if one.shape != other.shape or (one.dtype == object) != (other.dtype == object):
-        return False
-    if one.dtype == object:
-        return all(_same(*pair) for pair in zip(one, other, strict=True))
-    return np.array_equal(one, other, equal_nan=one.dtype.kind == other.dtype.kind == "f")
+def _dimensions(name: str, count: int) -> list[str]:
+    """The dimensions of the lists in a column: the parts of a list have the name of the list."""
+    path = name.split(".")[:-1]
+    lists = [".".join(path[:end]) for end in range(max(1, len(path) - count + 1), len(path) + 1)]
+    # A list of numbers within them has no name but that of the column.
+    return [*lists, *(f"{name}_index" + "_index" * depth for depth in range(count - len(lists)))]
 
 
 def rectangular(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return rows within rows as an array of shape (rows, parts), if all rows have the same length."""
+    """Return rows within rows as an array of shape (rows, parts, ...), if all rows have the same shape."""
     import numpy as np
 
-    if values.dtype != object or not len(values) or len({len(row) for row in values}) != 1:
+    if values.dtype != object or not len(values):
         return values
-    return np.stack(list(values))
+    rows = [rectangular(row) for row in values]
+    if any(row.dtype == object for row in rows) or len({row.shape for row in rows}) != 1:
+        return values
+    return np.stack(rows)
 
 
 def read_only(arrays: Iterable[npt.NDArray[Any]]) -> None:

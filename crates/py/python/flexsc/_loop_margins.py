@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LoopMargins(Brief):
     """Margins of one signal of a loop, with the loops of the other signals closed, or of all together.
 
@@ -94,7 +94,7 @@ class LoopMargins(Brief):
     """
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StabilityMargins(Brief):
     """Margins of a stable loop: of each signal at the break, and of all together.
 

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING
 
+from flexsc._equality import Compared
+
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
@@ -18,8 +20,8 @@ _ROUNDING = 1e-8
 _LARGEST = 1e4
 
 
-@dataclass(frozen=True)
-class Margins:
+@dataclass(frozen=True, eq=False)
+class Margins(Compared):
     """Margins of a loop: how far the commands may be off before the closed loop is unstable.
 
     They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones.

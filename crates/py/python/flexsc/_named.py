@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from typing import Any, TypeVar
+
+from flexsc._equality import Compared, equal
 
 _Value = TypeVar("_Value")
 
@@ -37,6 +39,13 @@ class Named(dict[str, _Value]):
     def __missing__(self, name: object) -> _Value:
         raise no_such(self._what, name, self)
 
+    def __eq__(self, other: object) -> bool:
+        return equal(self, other) if isinstance(other, Mapping) else NotImplemented
+
+    # That of a dictionary takes arrays for truth values.
+    __ne__ = object.__ne__
+    __hash__ = None
+
 
 def _brief(value: Any) -> str:
     """Return a short text of a value: four digits of a number, the shape of an array."""
@@ -53,7 +62,7 @@ def _brief(value: Any) -> str:
     return repr(value)
 
 
-class Brief:
+class Brief(Compared):
     """A dataclass whose text has the shapes of its arrays, not their values."""
 
     def __repr__(self) -> str:

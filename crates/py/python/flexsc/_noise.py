@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Values = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OutputNoise(Brief):
     """Noise of one output of a loop, in the unit of the output.
 
@@ -82,7 +82,7 @@ class OutputNoise(Brief):
     """
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WheelLines(Brief):
     """Lines of the outputs under one harmonic of one unbalanced wheel, over its speed.
 
@@ -129,7 +129,7 @@ class WheelLines(Brief):
     """
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class WheelSpectrum(Brief):
     """Lines of the imbalance of wheels over their speed.
 
@@ -158,7 +158,7 @@ class WheelSpectrum(Brief):
     """
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class NoiseSpectrum(Brief):
     """Noise of the loop of a scenario, exact from its linear model.
 

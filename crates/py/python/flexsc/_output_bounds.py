@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Witness(Brief):
     """State at the start and inputs over time that bring an output beyond its limits.
 
@@ -77,7 +77,7 @@ class Witness(Brief):
     """
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OutputBound(Brief):
     """Guaranteed range of an output over sets of states, inputs and parameters, and the verdict.
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from flexsc._columns import Lookup, equal
+from flexsc._columns import Lookup
 from flexsc._named import no_such
 
 if TYPE_CHECKING:
@@ -42,9 +42,6 @@ class Quantities(Lookup["npt.NDArray[np.float64]"]):
         if name not in self._values:
             raise no_such("no quantity", name, self._values)
         return self._values[name]
-
-    def __eq__(self, other: object) -> bool:
-        return equal(self, other) if isinstance(other, Quantities) else NotImplemented
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._values)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _units
 from flexsc._columns import Lookup
+from flexsc._equality import Compared
 from flexsc._named import Named, library, no_such
 from flexsc._population import evaluate
 from flexsc._values import checked, number_to_vary
@@ -31,7 +32,7 @@ _TOLERANCE, _ROUNDING = 0.1, 1e-8
 
 
 @dataclass(frozen=True, eq=False)
-class Sensitivities(Lookup["Named[float]"]):
+class Sensitivities(Compared, Lookup["Named[float]"]):
     """Derivatives of metrics by keys: a mapping from each metric to its derivatives by key.
 
     >>> scenario, key = flexsc.Scenario.example("wheel-fixed-gain"), "body.planar.modes[0].frequency"
@@ -175,7 +176,8 @@ def sensitivities(
     two differences to a step of zero gives the derivative, and their distance the estimate of its error.
 
     A metric that counts leaps, and one that a switching or the end of the run cuts off bends. Where the two
-    differences disagree by more than a tenth, the derivative is NaN and a RuntimeWarning names it.
+    differences disagree by more than a tenth, of the larger one or of what the curvature changes within a
+    step, the derivative is NaN and a RuntimeWarning names it.
 
     Args:
         scenario: The scenario.
@@ -222,11 +224,22 @@ def sensitivities(
     largest = np.maximum(np.abs(around).max(axis=1), np.abs(first))
     apart = np.abs(narrow - wide)
     errors = np.abs(found - narrow) + 4.0 * np.finfo(np.float64).eps * largest / h
-    size = np.maximum(np.abs(narrow), np.abs(wide))
-    leaps = ~np.isfinite(found) | ((apart > _TOLERANCE * size) & (apart * h > _ROUNDING * largest))
+    # Where the derivative vanishes, as at a minimum, the curvature shows whether the metric is smooth.
+    bend = (around[:, 1] - 2.0 * first + around[:, 0]) / h**2
+    bend_narrow = 4.0 * (around[:, 3] - 2.0 * first + around[:, 2]) / h**2
+    smooth = _agree(wide, narrow) | (_agree(bend, bend_narrow) & (apart <= _TOLERANCE * abs(bend) * h))
+    leaps = ~np.isfinite(found) | (~smooth & (apart * h > _ROUNDING * largest))
     found[leaps] = errors[leaps] = np.nan
     _warn([(metrics[metric], keys[key]) for key, metric in np.argwhere(leaps)])
     return Sensitivities(scenario, keys, metrics, first, found.T, errors.T)
+
+
+def _agree(one: Values, other: Values) -> npt.NDArray[np.bool_]:
+    """True where two estimates of a value agree."""
+    import numpy as np
+
+    agree: npt.NDArray[np.bool_] = abs(one - other) <= _TOLERANCE * np.maximum(abs(one), abs(other))
+    return agree
 
 
 def _names(what: str, names: Sequence[str]) -> list[str]:

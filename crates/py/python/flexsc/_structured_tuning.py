@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._equality import Compared
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,8 +17,8 @@ if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
 
-@dataclass(frozen=True)
-class TunedPlant:
+@dataclass(frozen=True, eq=False)
+class TunedPlant(Compared):
     """Margins of a plant before and after tuning.
 
     >>> tuned = flexsc.Scenario.example("earth-observer").tune({"law.attitude.damping": (0.4, 1.5)})
@@ -66,8 +67,8 @@ class TunedPlant:
     """
 
 
-@dataclass(frozen=True)
-class TunedMeasure:
+@dataclass(frozen=True, eq=False)
+class TunedMeasure(Compared):
     """Quantity besides the margins that a tuning minimised or limited, with its largest value of all plants.
 
     >>> scenario = flexsc.Scenario.example("attitude-hold")
@@ -109,8 +110,8 @@ class TunedMeasure:
     """
 
 
-@dataclass(frozen=True)
-class TunedScenario:
+@dataclass(frozen=True, eq=False)
+class TunedScenario(Compared):
     """Tuned scenario, with the margins of its plants before and after.
 
     >>> tuned = flexsc.Scenario.example("earth-observer").tune({"law.attitude.damping": (0.4, 1.5)})

@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._equality import equal
 from flexsc._named import no_such
 
 if TYPE_CHECKING:
@@ -138,11 +139,11 @@ class Metrics(dict[str, Any]):
         self._meanings: dict[str, dict[str, str]] | None = None
 
     def __eq__(self, other: object) -> bool:
-        import numpy as np
+        return equal(self, other) if isinstance(other, Mapping) else NotImplemented
 
-        if not isinstance(other, Mapping):
-            return NotImplemented
-        return self.keys() == other.keys() and all(np.array_equal(self[name], other[name]) for name in self)
+    # That of a dictionary takes arrays for truth values.
+    __ne__ = object.__ne__
+    __hash__ = None
 
     def __missing__(self, name: object) -> Any:
         raise no_such("no metric", name, self)

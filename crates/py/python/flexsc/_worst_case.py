@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from flexsc import _native as engine
+from flexsc._equality import Compared
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,7 @@ Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
 
 
 @dataclass(frozen=True, eq=False)
-class WorstCase:
+class WorstCase(Compared):
     """Worst point of the ranges of the uncertain keys that a search found.
 
     >>> scenario = flexsc.Scenario.example("slew-wheel-lqg")

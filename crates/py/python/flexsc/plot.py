@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
 from flexsc import _html
 from flexsc import _native as engine
-from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib
+from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib, show_once
 from flexsc._frequency_figures import bode, nichols, poles
 from flexsc._log import Log
 from flexsc._missing import reading
@@ -158,6 +158,7 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
 
         height = 30 + sum(_height(panel, drawn.panel_height) for panel in panels)
         on = pyplot.figure(figsize=(WIDTH * INCH, height * INCH), layout="constrained")
+        show_once(on)
     on.suptitle(drawn.title, fontsize=14 * POINT)
     axes = on.subplots(len(panels), 1, squeeze=False)[:, 0]
     for ax, panel in zip(axes, panels, strict=True):
