@@ -16,8 +16,17 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
-/// Name, unit, width of rows within each row, or else where each begins and ends, and the values.
-type Given<'py> = (String, String, Option<i32>, Option<Vec<i32>>, Bound<'py, PyAny>);
+/// Lists at one depth of a column.
+#[derive(FromPyObject)]
+pub enum Lists {
+    /// The length of each list, if all are equally long.
+    Length(i32),
+    /// The index at which each list begins, and the one at which the last ends.
+    Offsets(Vec<i32>),
+}
+
+/// Name, unit, number of rows, lists within the rows from the outermost depth, and values.
+type Given<'py> = (String, String, usize, Vec<Lists>, Bound<'py, PyAny>);
 
 fn refused(error: ArrowError) -> PyErr {
     PyValueError::new_err(error.to_string())
@@ -50,21 +59,40 @@ fn values(object: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
     }
 }
 
+/// Returns a column of `rows` cells: the values, in lists of these depths.
+fn nested(rows: usize, depths: Vec<Lists>, values: ArrayRef) -> Result<ArrayRef, ArrowError> {
+    // The number of lists at a depth; none of them may hold a value that could be counted.
+    let mut count = rows;
+    let mut counted = Vec::new();
+    for lists in depths {
+        let inner = match &lists {
+            Lists::Length(length) => count * usize::try_from(*length).unwrap_or_default(),
+            Lists::Offsets(offsets) => {
+                offsets.last().and_then(|end| usize::try_from(*end).ok()).unwrap_or_default()
+            }
+        };
+        counted.push((lists, count));
+        count = inner;
+    }
+    counted.into_iter().rev().try_fold(values, |inner, (lists, count)| -> Result<ArrayRef, ArrowError> {
+        let item = Arc::new(Field::new("item", inner.data_type().clone(), true));
+        let array: ArrayRef = match lists {
+            Lists::Length(length) => {
+                Arc::new(FixedSizeListArray::try_new_with_length(item, length, inner, None, count)?)
+            }
+            Lists::Offsets(offsets) => {
+                let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
+                Arc::new(ListArray::try_new(item, offsets, inner, None)?)
+            }
+        };
+        Ok(array)
+    })
+}
+
 fn batch(columns: Vec<Given<'_>>, about: HashMap<String, String>) -> PyResult<RecordBatch> {
     let (mut fields, mut arrays) = (Vec::new(), Vec::<ArrayRef>::new());
-    for (name, unit, width, offsets, object) in columns {
-        let inner = values(&object)?;
-        let item = Arc::new(Field::new("item", inner.data_type().clone(), true));
-        let array: ArrayRef = match (width, offsets) {
-            (Some(width), _) => {
-                Arc::new(FixedSizeListArray::try_new(item, width, inner, None).map_err(refused)?)
-            }
-            (None, Some(offsets)) => {
-                let offsets = OffsetBuffer::new(ScalarBuffer::from(offsets));
-                Arc::new(ListArray::try_new(item, offsets, inner, None).map_err(refused)?)
-            }
-            (None, None) => inner,
-        };
+    for (name, unit, rows, depths, object) in columns {
+        let array = nested(rows, depths, values(&object)?).map_err(refused)?;
         let field = Field::new(name, array.data_type().clone(), true);
         let reported: HashMap<_, _> =
             (!unit.is_empty()).then(|| ("unit".to_owned(), unit)).into_iter().collect();

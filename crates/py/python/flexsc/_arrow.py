@@ -10,7 +10,7 @@ from flexsc import _native as engine
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-_Given = tuple[str, str, int | None, list[int] | None, Any]
+_Given = tuple[str, str, int, list[int | list[int]], Any]
 
 
 def stream(
@@ -29,22 +29,30 @@ def schema(
 
 def _given(name: str, unit: str, array: npt.NDArray[Any]) -> _Given:
     """A column as the engine takes it: rows within rows by their width, or by where each begins and ends."""
-    if array.dtype == object:
-        parts: list[npt.NDArray[Any]] = list(array)
-        offsets = [0]
-        for part in parts:
-            offsets.append(offsets[-1] + len(part))
-        return name, unit, None, offsets, _joined(parts)
-    if array.ndim == 2:
-        return name, unit, array.shape[1], None, _flat(array.reshape(-1))
-    return name, unit, None, None, _flat(array)
+    rows, lists = len(array), list[int | list[int]]()
+    while array.dtype == object or array.ndim > 1:
+        if array.dtype == object:
+            parts: list[npt.NDArray[Any]] = list(array)
+            offsets = [0]
+            for part in parts:
+                offsets.append(offsets[-1] + len(part))
+            lists.append(offsets)
+            array = _joined(parts)
+        else:
+            lists.append(array.shape[1])
+            array = array.reshape(array.shape[0] * array.shape[1], *array.shape[2:])
+    # A text has no NumPy type that the engine reads.
+    return name, unit, rows, lists, array.tolist() if array.dtype.kind == "U" else array
 
 
-def _joined(parts: list[npt.NDArray[Any]]) -> Any:
+def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
+    """The rows of all parts, one behind another; rows of unlike shapes as an array of arrays."""
     import numpy as np
 
-    return _flat(np.concatenate(parts)) if parts else np.empty(0)
+    from flexsc._values import objects
 
-
-def _flat(array: npt.NDArray[Any]) -> Any:
-    return array.tolist() if array.dtype.kind == "U" else array
+    if not parts:
+        return np.empty(0)
+    if len({part.shape[1:] for part in parts}) == 1 and all(part.dtype != object for part in parts):
+        return np.concatenate(parts)
+    return objects([row for part in parts for row in part])

@@ -60,7 +60,8 @@ class Topics(Lookup[Topic]):
 
         Every column has shape (rows,): numbers as float64, counts as int64, labels such as `state` as str.
         Values with several parts per row, such as modes, are columns of shape (rows, modes), such as
-        `modes.displacement_rad`; if the rows have different lengths, they are arrays of arrays.
+        `modes.displacement_rad`, or (rows, axes, modes); if the rows have different lengths, they are arrays
+        of arrays.
 
         Raises:
             KeyError: There is no such topic.

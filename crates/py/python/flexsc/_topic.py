@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 class Topic(Columns):
     """A topic: its columns by name, in the order of a log file.
 
-    Every column has shape (rows,), or (rows, parts) for values with several parts per row, such as modes, and
-    is read-only. Polars, PyArrow, DuckDB and pandas can read a topic directly, through Arrow's PyCapsule
-    interface: there NaN, which means no value, is null, and each field has its `unit` as metadata.
+    Every column has shape (rows,), or (rows, parts) for values with several parts per row, such as modes, or
+    (rows, axes, modes) for modes about each axis, and is read-only. Polars, PyArrow, DuckDB and pandas can
+    read a topic directly, through Arrow's PyCapsule interface: there NaN, which means no value, is null, and
+    each field has its `unit` as metadata.
 
     >>> import flexsc
     >>> command = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate()["command"]
@@ -96,8 +97,9 @@ class Topic(Columns):
         """Return the topic as an `xarray.Dataset`, which must be installed (`pip install xarray`).
 
         The dimension of the rows is `time_s`, with the times (s) as its coordinate, or `row` for a topic
-        without times. Values with several parts per row have a second dimension, such as `modes` for
-        `modes.displacement_rad`. Each variable has its unit as the attribute `units`.
+        without times. Values with several parts per row have further dimensions, such as `modes` for
+        `modes.displacement_rad`, or `axes` and `axes.modes`. Each variable has its unit as the attribute
+        `units`.
 
         >>> import flexsc
         >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 50.0).simulate(log="full")

@@ -151,12 +151,13 @@ def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
 
 
 def _by_row(values: npt.NDArray[Any], counts: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """Values of lists, one behind another, by the rows that have so many of them each."""
     import numpy as np
 
     if not len(counts):
         return values
-    if values.ndim == 1 and (counts == counts[0]).all():
-        return values.reshape(len(counts), int(counts[0]))
+    if values.dtype != object and (counts == counts[0]).all():
+        return values.reshape(len(counts), int(counts[0]), *values.shape[1:])
     return objects(np.split(values, np.cumsum(counts)[:-1]))
 
 
