@@ -15,7 +15,7 @@ use crate::util::{Dir, table};
 fn twelve(name: &str, set: &[(&str, &str)]) -> Vec<Metrics> {
     let scenario = scenario(name, set);
     let run = |number| {
-        let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
+        let run = CampaignRun::new(scenario.clone(), number);
         Campaign::simulate(&run, ()).expect("a run")
     };
     (0..12).map(run).collect()

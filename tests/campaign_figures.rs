@@ -156,7 +156,9 @@ fn the_worst_runs_can_be_repeated() {
             let arguments = command.strip_prefix("flexsc ").expect("of flexsc").replace('\'', "");
             dir.run(&arguments).exits(0);
             let run = worst["run"].as_u64().expect("a number");
-            let own = dir.text(&format!("{name}/run-{run}/runs-{run}-{}.csv", run + 1));
+            // The points of a sweep have the noise of run 0.
+            let noise = if name == "sweep" { 0 } else { run };
+            let own = dir.text(&format!("{name}/run-{run}/runs-{noise}-{}.csv", noise + 1));
             let own = own.lines().nth(1).expect("a row");
             let whole = dir.text(&format!("{name}/runs.csv"));
             if name == "sweep" {
@@ -250,4 +252,36 @@ fn a_torn_log_is_left_out() {
     dir.run("plot c/relay-sampled-0.mcap --worst 2")
         .exits(2)
         .says(&["--worst: ", "not the directory of a campaign"]);
+}
+
+#[test]
+fn requirements_are_drawn_first_under_their_names() {
+    let dir = Dir::with(&["slew-wheel-lqg"]);
+    dir.run("simulate slew-wheel-lqg.toml --runs 8 --table csv -o csv").exits(3);
+    dir.run("plot csv -o figures --format svg").exits(0);
+    let names = dir.names("figures");
+    for requirement in ["arrival", "stability"] {
+        let name = format!("slew-wheel-lqg-distribution-{requirement}");
+        assert!(names.contains(&format!("{name}.svg")), "{names:?}");
+        let drawing = Drawing::read(&dir, &name);
+        drawing.shows(&["fraction of runs", &format!("{requirement} (µrad)")]);
+        assert!(drawing.0.contains(&format!(": {requirement} (8 runs)")), "{requirement}");
+        assert!(drawing.0.contains("requirement, met by "), "{requirement}");
+    }
+    // They are the values of the table, and their worst runs are listed.
+    let values: Vec<Vec<f64>> = table(&dir, "csv/runs.csv")
+        .iter()
+        .map(|row| serde_json::from_str(&row["requirement_values"]).expect("numbers"))
+        .collect();
+    let found = worst(&dir, "csv -o worst.svg --worst 1");
+    let of = |name: &str| found.iter().find(|worst| worst["metric"] == *name).expect("a worst run");
+    let largest = values.iter().map(|values| values[1]).fold(0.0, f64::max);
+    near(of("stability")["value"].as_f64().expect("a number"), largest, 1e-12 * largest);
+    // The name and the element of the list are one metric.
+    for metric in ["arrival", "requirement_values[0]"] {
+        dir.run(&format!("plot csv -o one --format svg --what distribution --metric {metric} --force"))
+            .exits(0);
+        assert_eq!(dir.names("one"), ["slew-wheel-lqg-distribution-arrival.svg"]);
+    }
+    dir.run("plot csv -o one --metric departure").exits(2).says(&["no metric `departure`", "arrival"]);
 }

@@ -18,7 +18,7 @@ fn word(metrics: &Metrics, name: &str) -> String {
 }
 
 fn beside(scenario: &Scenario, record: impl Record) -> Metrics {
-    let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(scenario.clone(), 0);
     Campaign::simulate(&run, record).expect("a run")
 }
 

@@ -131,6 +131,7 @@ mod foreign_logs;
 mod fuzz_corpus;
 mod layout;
 mod logs;
+mod misspelt_units;
 mod results;
 mod scene;
 mod typos;
@@ -152,6 +153,7 @@ mod live;
 #[cfg(feature = "live")]
 mod live_limits;
 mod newcomers;
+mod option_units;
 #[cfg(feature = "parquet")]
 mod paper_figures;
 mod parts;
@@ -162,6 +164,7 @@ mod plan;
 mod plan_figures;
 mod plates;
 mod plot;
+mod point_noise;
 #[cfg(feature = "full")]
 mod repeated_runs;
 mod report;

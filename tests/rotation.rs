@@ -228,7 +228,7 @@ fn a_campaign_plans_for_the_body_as_it_is_written() {
         assert_ne!(run.scenario.model, study.scenario().model);
         // The scenario that its log holds is the same run.
         let again = Scenario::parse("log", &run.scenario.self_contained().to_toml()).expect("valid");
-        let again = CampaignRun { number: run.number, scenario: again, drawn: Vec::new() };
+        let again = CampaignRun::new(again, run.number);
         assert_eq!(
             Campaign::simulate(run, ()).expect("a run").to_json(),
             Campaign::simulate(&again, ()).expect("a run").to_json()

@@ -53,7 +53,7 @@ pub fn run_of(dir: &Dir, name: &str, duration: f64) -> CampaignRun {
     document.set_text("duration", &format!("{duration:?}")).expect("a key");
     let scenario = Scenario::from_document(&document).expect("a scenario");
     let campaign = Campaign::new(scenario, &format!("{name}.toml"), None).expect("a campaign");
-    CampaignRun { number: 0, scenario: Campaign::undrawn(campaign.scenario().clone()), drawn: Vec::new() }
+    CampaignRun::new(Campaign::undrawn(campaign.scenario().clone()), 0)
 }
 
 /// Returns the numbers of a field of the telemetry.

@@ -179,7 +179,7 @@ fn a_killed_run_loses_at_most_2000_messages() {
     let mut document = Document::load(&dir.path("relay-fixed.toml")).expect("a scenario");
     document.set_text("duration", "1e5").expect("a key");
     let scenario = Scenario::from_document(&document).expect("a scenario");
-    let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
+    let run = CampaignRun::new(scenario, 0);
     let provenance = Campaign::provenance(&run);
     let mut log = LogFile::create(&dir.path("x.mcap"), &provenance, Detail::Events).expect("created");
     let mut killer = Killer { dir: &dir, written: 1, looks: 0 };

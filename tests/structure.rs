@@ -343,7 +343,7 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     let error = study(Some(damping)).expect_err("solved again").to_string();
     assert!(error.contains("`body.matrices.mass` cannot be used") && error.contains("m.csv"), "{error}");
     // What the log holds repeats alone, to the same bytes.
-    let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(scenario.clone(), 0);
     let toml = Campaign::provenance(&run).toml;
     let again = Scenario::from_document(&Document::parse("log", toml).expect("TOML")).expect("valid");
     assert_eq!(again.model, scenario.model);

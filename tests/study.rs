@@ -16,7 +16,7 @@ pub fn scenario(name: &str, set: &[(&str, &str)]) -> Scenario {
 
 /// The metrics of a run.
 pub fn metrics(scenario: Scenario) -> Metrics {
-    Campaign::simulate(&CampaignRun { number: 0, scenario, drawn: Vec::new() }, ()).expect("a run")
+    Campaign::simulate(&CampaignRun::new(scenario, 0), ()).expect("a run")
 }
 
 /// A metric that is a list.

@@ -106,6 +106,35 @@ fn a_table_that_is_set_under_a_wrong_name_gets_its_whole_path() {
 }
 
 #[test]
+fn keys_verbs_signs_and_topics_are_those_that_are_meant() {
+    let dir = Dir::with(&["earth-observer", "relay-fixed"]);
+    for (command, words) in [
+        (
+            "simulate earth-observer.toml --log none --set wheels.torque=1",
+            "there is no key `wheels.torque`; did you mean `actuator.wheels.torque`?",
+        ),
+        (
+            "simulate earth-observer.toml --log none --set star_tracker.noise=1e-5",
+            "did you mean `sensor[1].star_tracker.noise`?",
+        ),
+        ("tune earth-observer.toml --vary law.attitude.bandwith=0.1:0.4", "did you mean `bandwidth`?"),
+        ("tune earth-observer.toml --vary wheels.torque=0.1:0.4", "did you mean `actuator.wheels.torque`?"),
+        ("run earth-observer.toml", "a similar subcommand exists: 'simulate'"),
+        ("validate earth-observer.toml", "a similar subcommand exists: 'check'"),
+        ("bode earth-observer.toml", "a similar subcommand exists: 'margins'"),
+    ] {
+        dir.run(command).exits(2).says(&[words]);
+    }
+    let text = dir.text("earth-observer.toml").replacen("bandwidth = 0.1 ", "bandwidth = '18\"' ", 1);
+    dir.write("signs.toml", text);
+    dir.run("check signs.toml").exits(2).says(&["has the unit `\"`", "did you mean `arcsec`?"]);
+    dir.run("simulate relay-fixed.toml --set duration=50 -o run.mcap").exits(0);
+    let topic = |name: &str| dir.run(&format!("export run.mcap --topic {name}")).exits(0).printed();
+    assert_eq!(topic("command"), topic("/command"));
+    dir.run("export run.mcap --topic comand").exits(2);
+}
+
+#[test]
 fn keys_and_forms_of_distributions_are_suggested() {
     let dir = Dir::with(&["earth-observer"]);
     let text = dir.text("earth-observer.toml");

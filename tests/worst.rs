@@ -67,7 +67,7 @@ fn the_worst_arrival_is_that_of_no_point_of_a_grid() {
     let most = (0..81).map(|number| value(&grid.run(number).expect("a point"))).fold(0.0, f64::max);
     assert!(found.value() >= most, "{} of the search, {most} of the grid", found.value());
     assert!(found.value() < 1.05 * most);
-    let run = CampaignRun { number: 0, scenario: found.witness.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(found.witness.clone(), 0);
     assert_eq!(value(&run).to_bits(), found.value().to_bits());
     assert!(found.witness.uncertain.is_empty());
 }

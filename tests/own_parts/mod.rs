@@ -99,7 +99,7 @@ fn parts_from_outside_log_their_states() {
         let study = of_own_parts(text);
         let mut trace = Trace::new(Detail::Full);
         Simulation::new(&study, 0).run(&mut trace).expect("a run");
-        let run = CampaignRun { number: 0, scenario: study.clone(), drawn: Vec::new() };
+        let run = CampaignRun::new(study.clone(), 0);
         let provenance = with_layout(Campaign::provenance(&run), &study, Detail::Full);
         let layout = String::from_utf8(provenance.attachments[0].data.clone()).expect("a text");
         let mut bytes = LogBytes::new(&provenance, Detail::Full).expect("a log");

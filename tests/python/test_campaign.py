@@ -212,6 +212,31 @@ def test_a_directory_that_is_gone_is_an_error(tmp_path: Path) -> None:
         table["duty"]
 
 
+def test_points_of_a_sweep_have_the_noise_of_one_run(sampled: Scenario) -> None:
+    short, key = sampled.with_("duration", 2000.0).without("uncertain"), "law.relay.k_t"
+    metric = "duty"
+    table = flexsc.sweep(short, key, [0.3, 0.33, 0.3], metrics=[metric])
+    alone = [short.with_(key, value).simulate(0, "none").metrics[metric] for value in (0.3, 0.33, 0.3)]
+    assert table[metric].tolist() == alone
+    population = [[0.3], [0.33], [0.3]]
+    assert table[metric].tolist() == flexsc.evaluate(short, [key], population, metric).tolist()
+    assert [table.row(place).run for place in range(3)] == [0, 0, 0]
+    # A part, another order and logs do not change it.
+    assert flexsc.sweep(short, key, [0.3, 0.33, 0.3], runs=range(1, 3))[metric].tolist() == alone[1:]
+    assert flexsc.sweep(short, key, [0.33, 0.3])[metric].tolist() == [alone[1], alone[0]]
+    # Replica i has the noise of run i at every point.
+    twice = flexsc.sweep(short, key, [0.3, 0.33], replicas=2)
+    again = [short.with_(key, value).simulate(1, "none").metrics[metric] for value in (0.3, 0.33)]
+    assert twice[metric].tolist() == [alone[0], again[0], alone[1], again[1]]
+    new = flexsc.sweep(short, key, [0.3, 0.33, 0.3], noise="new")
+    runs = [short.with_(key, 0.3).simulate(run, "none").metrics[metric] for run in (0, 2)]
+    assert new[metric][[0, 2]].tolist() == runs
+    assert runs[0] != runs[1]
+    wrong: Any = "old"
+    with pytest.raises(ValueError, match="noise must be 'same' or 'new', got 'old'"):
+        flexsc.sweep(short, key, [0.3], noise=wrong)
+
+
 def test_a_sweep_draws_only_if_it_is_asked_to(sampled: Scenario) -> None:
     drawn = {"uncertain": {"law.relay.k_t": {"uniform": [0.3, 0.32]}}}
     study = Scenario({**sampled.with_("duration", 100.0).to_dict(), **drawn}, "study")

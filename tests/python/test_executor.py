@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import random
@@ -138,6 +139,8 @@ def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path)
         more = flexsc.campaign(study, 700, out=out, executor=pool)
         assert more.rows == 700
         assert (more["switchings"][:600] == whole["switchings"]).all()
+        with pytest.raises(ValueError, match="holds 700 runs of this campaign, and 5 would replace them"):
+            flexsc.campaign(study, 5, out=out, executor=pool)
         files.rm_file("/bucket/study/manifest.toml")
         with pytest.raises(ValueError, match="its campaign is unknown"):
             flexsc.campaign(study, 700, out=out, executor=pool)
@@ -189,8 +192,70 @@ def test_another_campaign_is_not_replaced(study: Scenario, tmp_path: Path) -> No
     with pytest.raises(ValueError, match="another campaign"):
         flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path)
     assert flexsc.campaign(study.with_("duration", 700.0), 20, out=tmp_path, force=True).rows == 20
+    study = study.with_("duration", 700.0)
+    # Fewer runs than there are would be rows of other runs; a range adds to those that are there.
+    with pytest.raises(
+        ValueError, match=r"holds 20 runs of this campaign, and 3 would replace them(.|\n)*force=True"
+    ):
+        flexsc.campaign(study, 3, out=tmp_path)
+    assert flexsc.read_campaign(tmp_path).rows == 20
+    assert flexsc.campaign(study, range(20, 24), out=tmp_path).rows == 24
+    assert flexsc.campaign(study, 3, out=tmp_path, force=True)["run"].tolist() == [0, 1, 2]
+    values = {"law.relay.k_t": [0.30, 0.31, 0.32]}
+    flexsc.sweep(study, values, out=tmp_path / "sweep")
+    assert flexsc.sweep(study, values, out=tmp_path / "sweep", runs=range(1, 2)).rows == 3
     with pytest.raises(ValueError, match="is not a campaign"):
         flexsc.read_campaign(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+@pytest.mark.parametrize("pool", [None, "threads"])
+def test_a_path_with_the_ending_of_a_table_is_one_file(
+    study: Scenario, tmp_path: Path, ending: str, pool: str | None
+) -> None:
+    out = tmp_path / "new" / f"rows.{ending}"
+    with ThreadPoolExecutor(2) as threads:
+        executor = threads if pool else None
+        table = flexsc.campaign(study, 6, out=out, executor=executor)
+        assert out.is_file()
+        same(table, flexsc.campaign(study, 6))
+        if ending == "csv":
+            with out.open(newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            assert [int(row["run"]) for row in rows] == table["run"].tolist()
+            assert [float(row["duty"]) for row in rows] == table["duty"].tolist()
+        else:
+            read = pytest.importorskip("pyarrow.parquet").read_table(out)
+            assert read["duty"].to_pylist() == table["duty"].tolist()
+        before = out.read_bytes()
+        with pytest.raises(ValueError, match=r"already exists(.|\n)*force=True"):
+            flexsc.campaign(study, 3, out=out, executor=executor)
+        assert out.read_bytes() == before
+        assert flexsc.campaign(study, 3, out=out, executor=executor, force=True).rows == 3
+        assert out.read_bytes() != before
+        bucket = f"memory://{pool}/rows.{ending}"
+        flexsc.campaign(study, 2, out=bucket, executor=executor)
+        assert pytest.importorskip("fsspec").filesystem("memory").exists(f"/{pool}/rows.{ending}")
+        with pytest.raises(ValueError, match="already exists"):
+            flexsc.campaign(study, 2, out=bucket, executor=executor)
+    assert [path.name for path in out.parent.iterdir()] == [out.name]
+
+
+def test_other_endings_and_inputs_are_no_place_for_rows(study: Scenario, tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match=r"out: \S+rows\.svg cannot be written as \.svg(.|\n)*\.csv or \.parquet"
+    ):
+        flexsc.campaign(study, 2, out=tmp_path / "rows.svg")
+    with pytest.raises(ValueError, match="cannot contain the logs"):
+        flexsc.campaign(study, 2, out=tmp_path / "rows.csv", log="events")
+    points = tmp_path / "points.csv"
+    points.write_text("law.relay.k_t\n0.3\n")
+    with pytest.raises(ValueError, match="the table of the points"):
+        flexsc.sweep(study, points=points, out=points, force=True)
+    assert list(tmp_path.iterdir()) == [points]
+    # The version of a directory is no ending.
+    assert flexsc.campaign(study, 2, out=tmp_path / "v1.2").rows == 2
+    assert (tmp_path / "v1.2" / "manifest.toml").is_file()
 
 
 def test_some_metrics_and_designs(study: Scenario) -> None:

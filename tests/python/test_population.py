@@ -90,6 +90,45 @@ def test_an_unknown_key_is_an_error(fixed: Scenario) -> None:
         flexsc.evaluate(fixed.with_("duration", 10.0), ["law.relay.k_tt"], [[0.3]], "duty")
 
 
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [
+        # A key of another kind, of a table that is not there, and of a law beside modes of operation.
+        ("earth-observer", "law.pd.k_p"),
+        ("earth-observer", "environment.orbit.anomali"),
+        ("earth-observer", "sensor[0].gyro.nois"),
+        ("earth-observer", "sensor[7].gyro.noise"),
+        ("safe-mode", "law.attitude.bandwidth"),
+    ],
+)
+def test_a_key_of_another_scenario_is_an_error(name: str, key: str) -> None:
+    scenario = Scenario.example(name).with_("duration", 1.0)
+    with pytest.raises(ScenarioError):
+        flexsc.evaluate(scenario, [key], [[0.1], [0.2]], "pointing_error_end_rad")
+    with pytest.raises((KeyError, ScenarioError)):
+        scenario.get(key)
+
+
+def test_a_law_of_ones_own_has_no_keys(fixed: Scenario) -> None:
+    class Off(flexsc.Law):
+        period = 1.0
+
+        def decide(self, event: flexsc.parts.Event) -> flexsc.Hold:
+            return flexsc.Hold(0.0)
+
+    own = fixed.with_("duration", 5.0).with_parts(law=Off())
+    with pytest.raises(ScenarioError):
+        flexsc.evaluate(own, ["law.bandwidth"], [[0.1]], "angle_error_peak_rad")
+
+
+def test_values_of_a_known_key_that_none_accepts_are_missing(fixed: Scenario) -> None:
+    short = fixed.with_("duration", 10.0)
+    # The first is written, the other has its default.
+    for key in (GAIN, "log.period"):
+        assert (short.get(key) is None) == (key != GAIN)
+        assert np.isnan(flexsc.evaluate(short, [key], [[-1.0], [-2.0]], "duty")).all()
+
+
 def test_own_parts_are_evaluated(fixed: Scenario) -> None:
     class Damper(flexsc.Law):
         period = 1.0

@@ -158,7 +158,7 @@ def test_words_flags_and_arrays_are_values(tmp_path: Path) -> None:
     words = flexsc.sweep(observer, key, ["pseudo_inverse", "least_largest"], out=tmp_path / "words")
     assert words[key].tolist() == ["pseudo_inverse", "least_largest"]
     for place, word in enumerate(words[key]):
-        alone = observer.with_(key, word.item()).simulate(run=place, log="none")
+        alone = observer.with_(key, word.item()).simulate(log="none")
         assert alone.metrics["pointing_error_end_rad"] == words["pointing_error_end_rad"][place]
         assert words.row(place).scenario.get(key) == word
     read = flexsc.read_campaign(tmp_path / "words")
@@ -178,7 +178,7 @@ def test_arrays_and_tables_are_values(fixed: Scenario) -> None:
     for place, inertia in enumerate(inertias):
         alone = hold.with_("body.spatial.inertia", inertia)
         assert table.row(place).scenario == alone
-        metrics = alone.simulate(run=place, log="none").metrics
+        metrics = alone.simulate(log="none").metrics
         assert table["pointing_error_end_rad"][place] == metrics["pointing_error_end_rad"]
     rates = np.array([[0.0, 0.0, 1e-3], [1e-3, 0.0, 0.0]])
     rated = flexsc.sweep(hold, "body.spatial.rate", rates)

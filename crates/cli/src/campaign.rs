@@ -157,10 +157,11 @@ fn table(
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         let design = campaign.design();
         if !campaign.scenario().uncertain.is_empty()
-            && (design.replicas > 1 || design.draws != Sampling::Random)
+            && (design.replicas > 1 || design.draws != Sampling::Random || design.noise_run.is_some())
         {
             // The `scenario.toml` could not repeat a run.
-            let why = "--sample and --replicas of a scenario with [uncertain] keys need --table parquet";
+            let why =
+                "--sample, --replicas and --noise same need --table parquet where [uncertain] keys are drawn";
             return Err(CliError::Arguments(format!("{why}, or no -o")));
         }
         if Directory::is_campaign_directory(dir) && !job.force {

@@ -106,6 +106,8 @@ pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let Some(topic) = &args.topic else {
         return write_output(args, |out| writeln!(out, "{}", for_terminal(&log.topics().join("\n"))));
     };
+    // Programs and pages write topics without their slash, too.
+    let topic = &if topic.starts_with('/') { topic.clone() } else { format!("/{topic}") };
     let columns = log.columns(topic)?;
     if topic == metrics::TOPIC
         && let Some(table) = metrics::table(&columns, format == ExportFormat::Jsonl)

@@ -4,6 +4,8 @@ use std::str::FromStr;
 
 use flexsc_core::analysis::sampled_loop::Gains;
 
+use crate::quantity::in_unit;
+
 /// LO:HI:COUNT: `COUNT` evenly spaced numbers from the first to the last, each above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositiveGrid(pub Vec<f64>);
@@ -28,21 +30,17 @@ fn three(text: &str) -> Option<[&str; 3]> {
     parts.next().is_none().then_some(three)
 }
 
-impl FromStr for PositiveGrid {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parsed = three(text).and_then(|[low, high, n]| {
-            Some((low.parse::<f64>().ok()?, high.parse::<f64>().ok()?, n.parse().ok()?))
-        });
-        match parsed {
-            Some((low, high, count))
-                if 0.0 < low && low <= high && high.is_finite() && (1..=MOST).contains(&count) =>
-            {
-                Ok(Self::new(low, high, count))
-            }
-            _ => Err(format!("must be LO:HI:COUNT with 0 < LO <= HI and COUNT from 1 to {MOST}, got {text}")),
-        }
+/// Returns the parser of a grid whose numbers have this unit.
+pub fn grid_in(
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<PositiveGrid, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let form = || format!("must be LO:HI:COUNT with 0 < LO <= HI and COUNT from 1 to {MOST}, got {text}");
+        let [low, high, count] = three(text).ok_or_else(form)?;
+        let (low, high) = (in_unit(unit)(low)?, in_unit(unit)(high)?);
+        let count = count.trim().parse::<u32>().ok().filter(|count| (1..=MOST).contains(count));
+        let count = count.filter(|_| 0.0 < low && low <= high).ok_or_else(form)?;
+        Ok(PositiveGrid::new(low, high, count))
     }
 }
 

@@ -1,11 +1,13 @@
 //! Additions to `--help`: the verbs in groups, and two examples of each verb.
 
+mod synonyms;
 mod verb_groups;
 
 use std::fmt::Write as _;
 
 use clap::Command;
 
+pub use synonyms::suggest;
 use verb_groups::GROUPS;
 
 /// Adds the groups of verbs, and the examples of each, to the help of the command.
@@ -19,7 +21,8 @@ pub fn completed(command: Command) -> Command {
             let _ = writeln!(verbs, "  {name:<12} {summary}");
         }
     }
-    let hint = "Run `flexsc VERB --help` for the options of a verb and two examples.";
+    let hint = "Numbers of options are in SI units, or have their own: --window 0.01, --window \"10 ms\".\n\
+                Run `flexsc VERB --help` for the options of a verb and two examples.";
     let template =
         format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
     command.help_template(template).mut_subcommands(|verb| {
@@ -47,6 +50,15 @@ mod tests {
         let verbs: BTreeSet<&str> = command.get_subcommands().map(Command::get_name).collect();
         assert_eq!(grouped.iter().copied().collect::<BTreeSet<_>>(), verbs);
         assert_eq!(grouped.len(), verbs.len());
+    }
+
+    #[test]
+    fn synonyms_are_of_verbs_and_none_is_one() {
+        let command = Cli::command();
+        for (other, meant) in synonyms::SYNONYMS {
+            assert!(command.find_subcommand(meant).is_some(), "{meant}");
+            assert!(command.find_subcommand(other).is_none(), "{other}");
+        }
     }
 
     #[test]

@@ -37,6 +37,7 @@ mod out;
 mod plan;
 mod plot;
 mod progress;
+mod quantity;
 mod report;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
@@ -74,6 +75,7 @@ use std::io::Write;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use budget::budget_json;
+pub use campaign::file::{encode_table, table_ending};
 pub use campaign::logs::simulate_to_log;
 pub use campaign::part_files::write_statistics_of;
 use error::CliError;
@@ -201,7 +203,8 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     let parsed = command().try_get_matches_from(args);
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
-        Err(error) => {
+        Err(mut error) => {
+            help::suggest(&mut error);
             // A failure to write to stderr cannot be reported.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);

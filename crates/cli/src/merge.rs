@@ -13,8 +13,6 @@ use crate::human::Units;
 use crate::out::Out;
 use crate::{files, say, stop};
 
-/// Largest number of cells in a file, by the memory that it needs.
-const MOST_CELLS: u64 = 1 << 29;
 /// Largest number of missing ranges that are printed.
 const MAX_LISTED: usize = 8;
 
@@ -32,7 +30,7 @@ pub struct MergeArgs {
 }
 
 pub fn run(args: &MergeArgs) -> Result<(), CliError> {
-    let out = Out::new(&args.out, &["csv", "parquet"], &[])?;
+    let out = Out::new(&args.out, &TableFormat::ENDINGS, &[])?;
     let open = |path: &Path| Directory::open(path).map_err(part_files::failure);
     let mut all = args.directories.iter().map(|path| open(path)).collect::<Result<Vec<_>, _>>()?;
     // The existing target comes first, unless it is another campaign that is replaced.
@@ -61,14 +59,9 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
                 return Err(incomplete(&missing, "an incomplete campaign has no file"));
             }
             files::refuse_existing(path, args.force)?;
-            let runs = merge.manifest().runs();
-            if (runs.end - runs.start).saturating_mul(merge.work().fields().len() as u64) > MOST_CELLS {
-                let why = "has too many rows for one file\n\nhint: give a directory";
-                return Err(CliError::Arguments(format!("{}: {why}", path.display())));
-            }
-            let kind = if *ending == "csv" { TableFormat::Csv } else { TableFormat::Parquet };
+            file::validate_size(path, &merge)?;
             let rows = merge.rows().map_err(part_files::failure)?;
-            file::write(path, kind, merge.work(), &rows)?;
+            file::write(path, TableFormat::for_ending(ending), merge.work(), &rows)?;
             report_taken();
             say!("{}: {}", path.display(), counted(rows.len(), "run"));
         }

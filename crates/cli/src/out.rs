@@ -55,6 +55,15 @@ fn for_path(
         let (path, input) = (path.display(), input.display());
         return Err(CliError::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
     }
+    accepted_ending(path, accepted)
+        .map_err(|why| CliError::Arguments(format!("-o {}: {why}", path.display())))
+}
+
+/// Returns the extension of a path among the accepted ones; `None` for a directory.
+///
+/// # Errors
+/// Another extension of a file.
+pub fn accepted_ending(path: &Path, accepted: &[&'static str]) -> Result<Option<&'static str>, String> {
     if path.is_dir() {
         return Ok(None);
     }
@@ -63,13 +72,13 @@ fn for_path(
         return Ok(accepted.first().copied());
     }
     let Some(ending) = ending(path) else { return Ok(None) };
-    if let Some(accepted) = accepted.iter().find(|accepted| **accepted == ending) {
-        return Ok(Some(accepted));
+    match accepted.iter().find(|accepted| **accepted == ending) {
+        Some(accepted) => Ok(Some(accepted)),
+        None => Err(format!(
+            "cannot be written as .{ending}\n\nhint: give a file that ends in {}, or a directory",
+            listed(accepted)
+        )),
     }
-    let (path, accepted) = (path.display(), listed(accepted));
-    Err(CliError::Arguments(format!(
-        "-o {path}: cannot be written as .{ending}\n\nhint: give a file that ends in {accepted}, or a directory"
-    )))
 }
 
 /// Returns the file extension of a path, or `None` for a directory.

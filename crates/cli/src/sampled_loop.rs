@@ -7,16 +7,17 @@ use flexsc_core::{Scenario, ScenarioError};
 
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
+use crate::quantity::in_unit;
 
 /// Criteria of settling, and the modes that follow.
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct SettlingArgs {
     /// Half width of the band in which the angle has settled (rad); left out, 5 % of the angle at the start
-    #[arg(long, value_name = "ANGLE")]
+    #[arg(long, value_name = "ANGLE", value_parser = in_unit("rad"))]
     band: Option<f64>,
     /// Simulated time of each loop (s)
-    #[arg(long, value_name = "TIME", default_value_t = 2000.0)]
+    #[arg(long, value_name = "TIME", default_value_t = 2000.0, value_parser = in_unit("s"))]
     horizon: f64,
     /// Change only the frequency of the dominant mode [default: scale all modes]
     #[arg(long)]

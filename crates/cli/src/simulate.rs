@@ -292,7 +292,7 @@ fn several(
 
 /// Returns the run of the scenario itself, without drawn keys.
 pub fn scenario_run(campaign: &Campaign) -> CampaignRun {
-    CampaignRun { number: 0, scenario: campaign.scenario().clone(), drawn: Vec::new() }
+    CampaignRun::new(campaign.scenario().clone(), 0)
 }
 
 /// Simulates a single run, with its log.

@@ -7,9 +7,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::ValueEnum;
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Design, DesignBlock, KeyRange};
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::document::is_number;
 use flexsc_core::record::Detail;
 
 use crate::campaign::logs::{self, LogDetail};
@@ -52,6 +54,9 @@ pub struct SweepArgs {
     /// Draw the [uncertain] keys too, anew for each point; without it they keep their values
     #[arg(long)]
     uncertain: bool,
+    /// Noise of the points [default: same; new with --uncertain]
+    #[arg(long, value_name = "NOISE")]
+    noise: Option<PointNoise>,
     /// Replace logs of other settings, tables of other campaigns, and a FILE that exists
     #[arg(long)]
     force: bool,
@@ -76,11 +81,21 @@ struct VariedKey {
     values: KeyValues,
 }
 
+/// Values as they are written, with their units.
 #[derive(Clone)]
 enum KeyValues {
-    Even { first: f64, last: f64, count: u32 },
-    List(Vec<f64>),
-    Range { from: f64, to: f64 },
+    Even { first: String, last: String, count: u32 },
+    List(Vec<String>),
+    Range { from: String, to: String },
+}
+
+/// Noise of the points of a sweep.
+#[derive(Copy, Clone, PartialEq, ValueEnum)]
+enum PointNoise {
+    /// Noise of one run at all points, which then differ by their keys alone
+    Same,
+    /// New noise at each point
+    New,
 }
 
 fn varied(text: &str) -> Result<VariedKey, String> {
@@ -88,14 +103,14 @@ fn varied(text: &str) -> Result<VariedKey, String> {
         format!("`{text}` is not KEY=LO:HI:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=LO:HI")
     };
     let (key, values) = text.split_once('=').ok_or_else(form)?;
-    let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
+    let number = |text: &str| Some(text.to_owned()).filter(|text| is_number(text)).ok_or_else(form);
     let values = if values.contains(',') {
         KeyValues::List(values.split(',').map(number).collect::<Result<_, _>>()?)
     } else {
         match values.split(':').collect::<Vec<_>>()[..] {
             [start, end] => KeyValues::Range { from: number(start)?, to: number(end)? },
             [start, end, count] => {
-                let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
+                let count: u64 = count.trim().parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
                 if count > u64::from(MOST_VALUES) {
                     return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
                 }
@@ -120,21 +135,29 @@ impl SweepArgs {
         self.options.place(self.out.as_deref(), &inputs, self.detail().is_some())
     }
 
-    /// Returns the points, and their number.
-    fn design(&self, uncertain: bool) -> Result<(Design, u64), CliError> {
+    /// Returns the points over a scenario, and their number.
+    fn design(&self, scenario: &Scenario) -> Result<(Design, u64), CliError> {
+        let uncertain = !scenario.uncertain.is_empty();
         let mut blocks = Vec::new();
         if let Some(path) = &self.points {
             blocks.push(points::read(path)?);
         }
         let mut ranges = Vec::new();
         for VariedKey { key, values } in &self.vary {
+            let number = |text: &String| scenario.number_of(key, text);
             let key = key.clone();
-            match *values {
+            match values {
                 KeyValues::Even { first, last, count } => {
-                    blocks.push(DesignBlock::Even { key, first, last, count });
+                    let (first, last) = (number(first)?, number(last)?);
+                    blocks.push(DesignBlock::Even { key, first, last, count: *count });
                 }
-                KeyValues::List(ref values) => blocks.push(DesignBlock::List { key, values: values.clone() }),
-                KeyValues::Range { from, to } => ranges.push(KeyRange { key, from, to }),
+                KeyValues::List(values) => {
+                    let values = values.iter().map(number).collect::<Result<_, _>>()?;
+                    blocks.push(DesignBlock::List { key, values });
+                }
+                KeyValues::Range { from, to } => {
+                    ranges.push(KeyRange { from: number(from)?, to: number(to)?, key });
+                }
             }
         }
         if let Some(range) = ranges.first() {
@@ -150,7 +173,10 @@ impl SweepArgs {
         };
         let points = blocks.iter().try_fold(1_u64, |points, block| points.checked_mul(block.count()));
         let points = points.ok_or_else(too_many)?;
-        let design = self.options.complete(Design::from_blocks(blocks), uncertain, Some(points))?;
+        let default = if uncertain { PointNoise::New } else { PointNoise::Same };
+        let noise_run = (self.noise.unwrap_or(default) == PointNoise::Same).then_some(0);
+        let design = Design { noise_run, ..Design::from_blocks(blocks) };
+        let design = self.options.complete(design, uncertain, Some(points))?;
         let runs = points.checked_mul(self.options.replicas).filter(|runs| *runs <= u64::from(MOST_VALUES));
         let runs = runs.ok_or_else(too_many)?;
         if let Some(problem) = design.validate(usize::from(uncertain)) {
@@ -162,7 +188,7 @@ impl SweepArgs {
     /// Returns the sweep over a scenario of this origin, and the range of its runs.
     pub fn campaign(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), CliError> {
         let scenario = if self.uncertain { scenario } else { Campaign::undrawn(scenario) };
-        let (design, all) = self.design(!scenario.uncertain.is_empty())?;
+        let (design, all) = self.design(&scenario)?;
         let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
         if range.end > all {
             return Err(CliError::Arguments(format!("--runs: the sweep has {}", counted(all, "run"))));

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use crate::campaign::{MAIN, RunningMean, part_files, table_so_far};
 use crate::error::CliError;
+use crate::quantity::in_unit;
 use crate::terminal::is_plain;
 use crate::{print, stop};
 
@@ -30,7 +31,7 @@ pub struct TopArgs {
     #[arg(value_name = "DIR")]
     directory: PathBuf,
     /// Refresh interval (s)
-    #[arg(long, value_name = "S", default_value_t = 1.0)]
+    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = in_unit("s"))]
     every: f64,
     /// Print once and exit, as when the output is not a terminal
     #[arg(long)]

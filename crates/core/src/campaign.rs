@@ -89,12 +89,21 @@ impl Grid {
 /// Run of a campaign: its scenario with the drawn keys set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignRun {
-    /// Number of the run whose noise it has: its own, unless the design gives another.
+    /// Number of the run.
     pub number: u64,
+    /// Number of the run whose noise it has: its own, unless the design gives another.
+    pub noise_run: u64,
     /// Scenario of the run.
     pub scenario: Scenario,
     /// Value of each key that varies.
     pub drawn: Vec<Value>,
+}
+
+impl CampaignRun {
+    /// Returns a run of a scenario as it is, with the noise of this number.
+    pub fn new(scenario: Scenario, number: u64) -> Self {
+        Self { number, noise_run: number, scenario, drawn: Vec::new() }
+    }
 }
 
 /// Outcome of a run.
@@ -213,10 +222,10 @@ impl Campaign {
     /// Returns a run with its keys drawn. The result does not depend on other runs.
     pub fn run(&self, number: u64) -> Result<CampaignRun, ScenarioError> {
         let drawn = self.draw(number);
-        let number = self.design.noise_run.unwrap_or(number);
+        let noise_run = self.design.noise_run(number);
         if drawn.is_empty() {
             let scenario = Self::undrawn(self.scenario.clone());
-            return Ok(CampaignRun { number, scenario, drawn });
+            return Ok(CampaignRun { number, noise_run, scenario, drawn });
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
@@ -224,7 +233,7 @@ impl Campaign {
             keys.push(("manoeuvre.model", Self::planned_model(&written)?));
         }
         let scenario = self.scenario_with(&keys)?;
-        Ok(CampaignRun { number, scenario, drawn })
+        Ok(CampaignRun { number, noise_run, scenario, drawn })
     }
 
     /// Returns a run for the selected metrics, without a monitor of the envelope that only other metrics need.
@@ -278,7 +287,7 @@ impl Campaign {
         record: &mut dyn Record,
     ) -> Result<Metrics, SimulationError> {
         let mut both = (MetricsCollector::for_selection(&run.scenario, selection), record);
-        let mut simulation = Simulation::new(&run.scenario, run.number);
+        let mut simulation = Simulation::new(&run.scenario, run.noise_run);
         simulation.run(&mut both)?;
         Ok(selection.select(both.0.finish(&run.scenario)))
     }
@@ -312,7 +321,7 @@ impl Campaign {
             scenario: run.scenario.name.clone(),
             toml: run.scenario.self_contained().to_toml(),
             seed: run.scenario.seed,
-            run: run.number,
+            run: run.noise_run,
             epoch_ns: run.scenario.epoch_ns(),
             outputs: run
                 .scenario

@@ -40,9 +40,11 @@ fn failed(error: DirectoryError) -> PyErr {
         DirectoryError::Busy { .. } => PyOSError::new_err(error.to_string()),
         DirectoryError::Scenario(error) => scenario_error(error),
         DirectoryError::Interrupted => PyKeyboardInterrupt::new_err(()),
-        DirectoryError::Other { .. } | DirectoryError::Wrong { .. } => {
-            PyValueError::new_err(error.to_string())
+        DirectoryError::Other { .. } | DirectoryError::More { .. } => {
+            let hint = "hint: give another directory as `out`, or `force=True` to replace what is there";
+            PyValueError::new_err(format!("{error}\n\n{hint}"))
         }
+        DirectoryError::Wrong { .. } => PyValueError::new_err(error.to_string()),
     }
 }
 
@@ -210,7 +212,7 @@ impl Work {
     /// The scenario of a run, and the number of the run whose noise it has.
     fn run(&self, number: u64) -> PyResult<(Scenario, u64)> {
         let run = self.0.campaign.run(number).map_err(scenario_error)?;
-        Ok((Scenario { origin: run.scenario.name.clone(), inner: run.scenario }, run.number))
+        Ok((Scenario { origin: run.scenario.name.clone(), inner: run.scenario }, run.noise_run))
     }
 
     /// Returns this campaign with the runs of another manifest of it too.
@@ -326,11 +328,13 @@ pub struct Directory(Arc<Parts>);
 
 #[pymethods]
 impl Directory {
-    /// Begins a directory, or continues one; it is locked as long as this lives.
+    /// Begins a directory, or continues one, which has no other runs unless these are a part; it is locked as long as
+    /// this lives.
     #[staticmethod]
-    fn create(py: Python<'_>, path: PathBuf, work: &Work, force: bool) -> PyResult<Self> {
+    fn create(py: Python<'_>, path: PathBuf, work: &Work, part: bool, force: bool) -> PyResult<Self> {
         let manifest = work.on_file()?.manifest.clone();
-        let made = aside(py, move |_| Parts::create(&path, manifest, force))?;
+        let create = if part { Parts::create } else { Parts::create_whole };
+        let made = aside(py, move |_| create(&path, manifest, force))?;
         Ok(Self(Arc::new(made.map_err(failed)?)))
     }
 
@@ -370,6 +374,15 @@ impl Directory {
             flexsc_cli::write_statistics_of(&directory).map_err(|error| error.to_string())
         })?;
         written.map_err(PyOSError::new_err)
+    }
+
+    /// The bytes of one file with all rows, of this ending.
+    fn table<'py>(&self, py: Python<'py>, ending: String) -> PyResult<Bound<'py, PyBytes>> {
+        let directory = self.0.clone();
+        let encoded = aside(py, move |_| {
+            flexsc_cli::encode_table(&directory, &ending).map_err(|error| error.to_string())
+        })?;
+        Ok(PyBytes::new(py, &encoded.map_err(PyValueError::new_err)?))
     }
 
     /// A column of all rows.

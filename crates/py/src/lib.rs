@@ -15,6 +15,7 @@ mod damping;
 mod design;
 mod error;
 mod figures;
+mod files;
 mod handover;
 mod instants;
 mod linear;
@@ -44,7 +45,7 @@ use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
 };
-use flexsc_core::{Document, ScenarioError, record::atomic_file};
+use flexsc_core::{Document, ScenarioError};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -53,7 +54,7 @@ use serde_json::json;
 
 use aside::aside;
 use commands::Commands;
-use error::{allowed, no_file, scenario_error, simulation_error};
+use error::{allowed, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
@@ -77,6 +78,8 @@ mod _native {
     use super::figures::{
         Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
     };
+    #[pymodule_export]
+    use super::files::{table_ending, write};
     #[pymodule_export]
     use super::handover::{ExportOptions, export_fmu, export_log, export_run};
     #[pymodule_export]
@@ -104,7 +107,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         Scenario, estimate_json, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
-        rigid_cycles_json, rivals_json, schema_json, simulate, topics_json, write,
+        rigid_cycles_json, rivals_json, schema_json, simulate, topics_json,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -141,7 +144,7 @@ impl Scenario {
 
     /// The scenario as it is, as this run.
     fn run(&self, number: u64) -> CampaignRun {
-        CampaignRun { number, scenario: self.inner.clone(), drawn: Vec::new() }
+        CampaignRun::new(self.inner.clone(), number)
     }
 }
 
@@ -181,6 +184,11 @@ impl Scenario {
             document.set_text(&key, &value).map_err(scenario_error)?;
         }
         Self::new(&self.origin, flexsc_core::Scenario::from_document_reusing(&document, &self.inner))
+    }
+
+    /// Returns true if a scenario of these kinds has a key, also one that has its default.
+    fn has_key(&self, key: &str) -> bool {
+        self.inner.has_key(key)
     }
 
     fn in_mode(&self, name: &str) -> PyResult<Self> {
@@ -353,12 +361,6 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).into_owned());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
-}
-
-/// Writes a text file, which is whole or not there.
-#[pyfunction]
-fn write(path: PathBuf, text: &str) -> PyResult<()> {
-    atomic_file::write(&path, text.as_bytes()).map_err(no_file(&path))
 }
 
 /// Names and texts of the shipped scenarios.

@@ -266,6 +266,40 @@ impl Scenario {
         schemars::schema_for!(ScenarioSpec).to_value()
     }
 
+    /// Returns true if a scenario of these kinds has a key, also one that is not written and has its default.
+    pub fn has_key(&self, key: &str) -> bool {
+        Document::from_table(&self.name, self.table_without_custom_parts()).knows::<ScenarioSpec>(key)
+    }
+
+    /// Checks that a scenario of these kinds has a key.
+    ///
+    /// # Errors
+    /// A key that does not exist, with the near ones.
+    pub fn validate_key(&self, key: &str) -> Result<(), ScenarioError> {
+        if self.has_key(key) {
+            return Ok(());
+        }
+        let mut document = Document::from_table(&self.name, self.table_without_custom_parts());
+        document.set(key, toml::Value::Float(1.0))?;
+        document.read::<ScenarioSpec>().map(drop)
+    }
+
+    /// Returns the number that a text is as the value of a key, in the unit of the key: `2 deg` of an angle, or `0.02`.
+    ///
+    /// # Errors
+    /// A unit that does not fit the key, and a text that is no number. Whether there is such a key is not checked.
+    pub fn number_of(&self, key: &str, text: &str) -> Result<f64, ScenarioError> {
+        if let Some(number) = text.trim().parse::<f64>().ok().filter(|number| number.is_finite()) {
+            return Ok(number);
+        }
+        let mut document = Document::from_table(&self.name, self.table_without_custom_parts());
+        document.set(key, text.trim().into())?;
+        let document = document.in_si(units)?;
+        let value = flexsc_formats::document::key::get(document.table(), key).and_then(toml::Value::as_float);
+        let why = || format!("must be a number, or a number with a unit, got `{text}`");
+        value.ok_or_else(|| document.at_key(&ConfigError::new(key, why())))
+    }
+
     /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.
     pub fn unit_of(&self, key: &str) -> Option<&'static str> {
         let unit = flexsc_formats::document::unit_at(units(), key)?;

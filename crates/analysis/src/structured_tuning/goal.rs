@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use flexsc_formats::document::number_in;
+
 /// Quantity that a tuning improves.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TuningObjective {
@@ -48,21 +50,17 @@ impl FromStr for TuningLimit {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
-            format!(
-                "must be `margin>=VALUE`, `settling<=SECONDS`, or the name of a [[requirement]], got {text}"
-            )
+            format!("must be `margin>=VALUE`, `settling<=TIME`, or the name of a [[requirement]], got {text}")
         };
-        let positive = |number: &str| {
-            number
-                .trim()
-                .parse::<f64>()
-                .ok()
-                .filter(|value| *value > 0.0 && value.is_finite())
-                .ok_or_else(wrong)
+        let positive = |number: &str, unit: &str| {
+            let value = number_in(number, unit)?;
+            if value > 0.0 { Ok(value) } else { Err(wrong()) }
         };
         match (text.split_once(">="), text.split_once("<=")) {
-            (Some((name, value)), None) if name.trim() == "margin" => Ok(Self::Margin(positive(value)?)),
-            (None, Some((name, value))) if name.trim() == "settling" => Ok(Self::Settling(positive(value)?)),
+            (Some((name, value)), None) if name.trim() == "margin" => Ok(Self::Margin(positive(value, "")?)),
+            (None, Some((name, value))) if name.trim() == "settling" => {
+                Ok(Self::Settling(positive(value, "s")?))
+            }
             (None, None) if !matches!(text.trim(), "" | "margin" | "settling") => {
                 Ok(Self::Index(text.trim().to_owned()))
             }

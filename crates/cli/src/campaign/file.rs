@@ -2,21 +2,57 @@
 
 use std::path::Path;
 
-use flexsc_core::campaign::{ColumnCells, RUN, RowMaker, RunRows, SECONDS, SEED};
+use flexsc_core::campaign::{ColumnCells, Directory, Merge, RUN, RowMaker, RunRows, SECONDS, SEED};
 use serde_json::json;
 
-use super::TableFormat;
+use super::{TableFormat, part_files};
 use crate::error::CliError;
-use crate::files;
+use crate::{files, out};
+
+/// Largest number of cells in a file, by the memory that it needs.
+const MOST_CELLS: u64 = 1 << 29;
 
 /// Writes rows as one file.
 pub fn write(path: &Path, kind: TableFormat, work: &RowMaker, rows: &RunRows) -> Result<(), CliError> {
-    let bytes = match kind {
-        TableFormat::Parquet => work.encode(rows).map_err(CliError::write(path))?,
-        TableFormat::Csv => csv(work, rows).map_err(|error| CliError::write(path)(error.into()))?,
-    };
     // The target was checked before the runs were made.
-    files::write(path, &bytes, true)
+    files::write(path, &encode(path, kind, work, rows)?, true)
+}
+
+/// Returns the ending of the one file at a path that is to hold the rows of a campaign; `None` for a directory.
+///
+/// # Errors
+/// An ending that no such file has.
+pub fn table_ending(path: &Path) -> Result<Option<&'static str>, String> {
+    out::accepted_ending(path, &TableFormat::ENDINGS)
+}
+
+/// Returns the rows of a directory as the bytes of one file with this ending, `csv` or `parquet`.
+///
+/// # Errors
+/// An incomplete campaign, or one that is too large for a file.
+pub fn encode_table(directory: &Directory, ending: &str) -> Result<Vec<u8>, CliError> {
+    let kind = TableFormat::for_ending(ending);
+    let merge = Merge::new(std::slice::from_ref(directory)).map_err(part_files::failure)?;
+    validate_size(directory.path(), &merge)?;
+    let rows = merge.rows().map_err(part_files::failure)?;
+    encode(directory.path(), kind, merge.work(), &rows)
+}
+
+/// Refuses more rows than one file can hold.
+pub fn validate_size(path: &Path, merge: &Merge<'_>) -> Result<(), CliError> {
+    let runs = merge.manifest().runs();
+    if (runs.end - runs.start).saturating_mul(merge.work().fields().len() as u64) > MOST_CELLS {
+        let why = "has too many rows for one file\n\nhint: give a directory";
+        return Err(CliError::Arguments(format!("{}: {why}", path.display())));
+    }
+    Ok(())
+}
+
+fn encode(path: &Path, kind: TableFormat, work: &RowMaker, rows: &RunRows) -> Result<Vec<u8>, CliError> {
+    match kind {
+        TableFormat::Parquet => work.encode(rows).map_err(CliError::write(path)),
+        TableFormat::Csv => csv(work, rows).map_err(|error| CliError::write(path)(error.into())),
+    }
 }
 
 fn csv(work: &RowMaker, rows: &RunRows) -> Result<Vec<u8>, csv::Error> {

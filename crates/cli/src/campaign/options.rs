@@ -49,6 +49,16 @@ pub enum TableFormat {
     Csv,
 }
 
+impl TableFormat {
+    /// Endings of the files that hold the rows of a campaign.
+    pub const ENDINGS: [&str; 2] = ["csv", "parquet"];
+
+    /// Returns the format of a file with one of these endings.
+    pub fn for_ending(ending: &str) -> Self {
+        if ending == Self::ENDINGS[0] { Self::Csv } else { Self::Parquet }
+    }
+}
+
 /// Value of `--sample`: the sampling method and, if given, the number of points.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct SamplePlan {
@@ -131,9 +141,9 @@ impl CampaignOptions {
         inputs: &[&Path],
         log: bool,
     ) -> Result<(TableFormat, bool), CliError> {
-        let out = out.map(|out| Out::new(out, &["csv", "parquet"], inputs)).transpose()?;
+        let out = out.map(|out| Out::new(out, &TableFormat::ENDINGS, inputs)).transpose()?;
         let Some(Out::File(path, ending)) = out else { return Ok((self.table(), false)) };
-        let kind = if ending == "csv" { TableFormat::Csv } else { TableFormat::Parquet };
+        let kind = TableFormat::for_ending(ending);
         let refused = |why: &str| {
             Err(CliError::Arguments(format!("-o {}: {why}\n\nhint: give a directory", path.display())))
         };

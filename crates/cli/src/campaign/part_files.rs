@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, CampaignSummary, ColumnCells, Directory, DirectoryError, MANIFEST, Manifest,
-    RunError, RunOutcome, RunRows, STATISTICS,
+    Campaign, CampaignRun, CampaignSummary, ColumnCells, Directory, DirectoryError, Manifest, RunError,
+    RunOutcome, RunRows, STATISTICS,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::Metrics;
@@ -28,7 +28,9 @@ const REQUIREMENTS: &str = "requirements.csv";
 /// Converts an error of a campaign's directory to a failure of the command.
 pub fn failure(error: DirectoryError) -> CliError {
     match error {
-        DirectoryError::Other { .. } => CliError::Arguments(format!("{error}\n\n{HINT}")),
+        DirectoryError::Other { .. } | DirectoryError::More { .. } => {
+            CliError::Arguments(format!("{error}\n\n{HINT}"))
+        }
         DirectoryError::Wrong { .. } => CliError::Arguments(error.to_string()),
         DirectoryError::Busy { path } => CliError::Busy { path },
         DirectoryError::Io { path, source } => CliError::write(&path)(source),
@@ -39,19 +41,8 @@ pub fn failure(error: DirectoryError) -> CliError {
 
 /// Creates a campaign's directory, or opens it to continue.
 pub fn create(path: &Path, manifest: Manifest, job: &CampaignJob<'_>) -> Result<Directory, CliError> {
-    let runs = manifest.runs();
-    let mut directory = Directory::create(path, manifest, job.force).map_err(failure)?;
-    let present = directory.work().manifest.runs();
-    if !job.part && present != runs {
-        if !job.force {
-            let (before, now) = (present.end - present.start, runs.end - runs.start);
-            let why =
-                format!("holds {} of this campaign, and {now} would replace them", counted(before, "run"));
-            return Err(CliError::Arguments(format!("{}: {why}\n\n{HINT}", path.join(MANIFEST).display())));
-        }
-        directory.shrink(runs).map_err(failure)?;
-    }
-    Ok(directory)
+    let create = if job.part { Directory::create } else { Directory::create_whole };
+    create(path, manifest, job.force).map_err(failure)
 }
 
 /// Makes the missing runs of a job.

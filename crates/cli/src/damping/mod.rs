@@ -10,10 +10,11 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::grid::PositiveGrid;
+use crate::grid::{PositiveGrid, grid_in};
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::number_or_none;
 use crate::number_table::NumberTable;
+use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show};
 use crate::say;
@@ -22,28 +23,28 @@ use crate::say;
 #[command(allow_negative_numbers = true)]
 pub struct DampingArgs {
     /// Natural frequencies of the modes (rad/s)
-    #[arg(long, value_name = "LO:HI:COUNT")]
+    #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     frequency: PositiveGrid,
     /// Elastic acceleration of a push: the thrusters' rigid one times their influence on the mode (rad/s²)
-    #[arg(long, value_name = "ACCELERATION")]
+    #[arg(long, value_name = "ACCELERATION", value_parser = in_unit("rad/s²"))]
     acceleration: f64,
     /// Sampling period (s); 0 for a continuous relay
-    #[arg(long, value_name = "TIME", default_value_t = 0.2)]
+    #[arg(long, value_name = "TIME", default_value_t = 0.2, value_parser = in_unit("s"))]
     period: f64,
     /// Delay from a sample to its push (s)
-    #[arg(long, value_name = "TIME", default_value_t = 0.0)]
+    #[arg(long, value_name = "TIME", default_value_t = 0.0, value_parser = in_unit("s"))]
     delay: f64,
     /// Duration of a push (s) [default: the whole period]
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     on_time: Option<f64>,
     /// Damping ratio of the modes
-    #[arg(long, value_name = "RATIO", default_value_t = 0.005)]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.005, value_parser = in_unit(""))]
     damping: f64,
     /// Amplitude of the elastic rate at the start, for the time of its decay (rad/s)
-    #[arg(long, value_name = "RATE")]
+    #[arg(long, value_name = "RATE", value_parser = in_unit("rad/s"))]
     amplitude: Option<f64>,
     /// Amplitude below which no thruster fires (rad/s)
-    #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude")]
+    #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude", value_parser = in_unit("rad/s"))]
     threshold: f64,
     #[command(flatten)]
     units: UnitsArgs,

@@ -1,6 +1,7 @@
 //! Options of the export of a whole run in a format of other programs.
 
 use crate::error::CliError;
+use crate::quantity::in_unit;
 
 #[derive(clap::Args)]
 pub struct HandoverArgs {
@@ -18,7 +19,7 @@ pub struct HandoverArgs {
     #[arg(long, value_name = "ID")]
     pub(super) object_id: Option<String>,
     /// Speed of the animation in glb relative to real time [default: such that it lasts at most a minute]
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, value_name = "FACTOR", value_parser = in_unit(""))]
     pub(super) speed: Option<f64>,
     /// Add an animation of each mode's shape to glb
     #[arg(long)]

@@ -17,6 +17,7 @@ use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::human::{Units, UnitsArgs};
 use crate::number::{fixed, number_or_none};
+use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::{progress, say};
 
@@ -38,16 +39,16 @@ pub struct IdentifyArgs {
     #[arg(long, value_name = "W:MU,...")]
     modes: Vec<ModeSet>,
     /// Relative errors of the frequencies at the start
-    #[arg(long, value_delimiter = ',', default_value = "0.05,0.1,0.2,0.3", value_name = "PARTS")]
+    #[arg(long, value_delimiter = ',', default_value = "0.05,0.1,0.2,0.3", value_name = "PARTS", value_parser = in_unit(""))]
     off: Vec<f64>,
     /// Relative error of the influences at the start
-    #[arg(long, default_value_t = 0.4, value_name = "PART")]
+    #[arg(long, default_value_t = 0.4, value_name = "PART", value_parser = in_unit(""))]
     influence_off: f64,
     /// Runs of each row
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     runs: u64,
     /// Rate of the identification of the given modes
-    #[arg(long, default_value = "0.02", requires = "modes")]
+    #[arg(long, default_value = "0.02", requires = "modes", value_parser = in_unit(""))]
     rate: f64,
     /// Cycles of a run, of 0.2 s
     #[arg(long, default_value_t = 1500, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -102,11 +103,11 @@ impl FromStr for ModeSet {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mode = |part: &str| {
-            let (w, mu) = part.split_once(':')?;
-            Some((w.trim().parse().ok()?, mu.trim().parse().ok()?))
+            let form = || format!("must be W:MU,W:MU,... with numbers, got {text}");
+            let (w, mu) = part.split_once(':').ok_or_else(form)?;
+            Ok((in_unit("rad/s")(w)?, in_unit("")(mu)?))
         };
-        let modes: Option<Vec<_>> = text.split(',').map(mode).collect();
-        modes.map(Self).ok_or_else(|| format!("must be W:MU,W:MU,... with numbers, got {text}"))
+        text.split(',').map(mode).collect::<Result<_, String>>().map(Self)
     }
 }
 

@@ -16,7 +16,7 @@ pub fn expected(run: &CampaignRun, from: &Provenance, scene: &Scene) -> BTreeSet
     let mut topics = TopicCollector::default();
     if let Ok(mut messages) = MessageEncoder::new(&mut topics, from, Detail::Scene) {
         // A run that fails at its start reports the error when it is made.
-        let mut simulation = Simulation::new(&run.scenario, run.number);
+        let mut simulation = Simulation::new(&run.scenario, run.noise_run);
         let _ = simulation.run_until(Instant::START, &mut (&mut messages, scene.clone()));
     }
     let late_topics = later(&run.scenario);
@@ -80,7 +80,7 @@ mod tests {
                 continue;
             }
             let scenario = Scenario::load(&file.path()).expect("a scenario");
-            let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
+            let run = CampaignRun::new(scenario, 0);
             let (from, scene) = (Campaign::provenance(&run), Scene::new(&run.scenario));
             let (expected, mut topics) = (expected(&run, &from, &scene), TopicCollector::default());
             let messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");

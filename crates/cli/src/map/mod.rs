@@ -14,9 +14,10 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureOutput};
-use crate::grid::PositiveGrid;
+use crate::grid::{PositiveGrid, grid_in};
 use crate::human::{Units, UnitsArgs, digits};
 use crate::out::Out;
+use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::sampled_loop::{SettlingArgs, sampled};
 use crate::{files, print, say, scenario};
@@ -28,13 +29,13 @@ pub struct MapArgs {
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s)
-    #[arg(long, value_name = "LO:HI:COUNT")]
+    #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     frequency: PositiveGrid,
     /// Sampling periods (s); the delay of the wheel scales with the period
-    #[arg(long, value_name = "LO:HI:COUNT")]
+    #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("s"))]
     period: PositiveGrid,
     /// Gain of the extra loop [default: the scenario's]
-    #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
+    #[arg(long, value_name = "GAIN", allow_hyphen_values = true, value_parser = in_unit(""))]
     gain: Option<f64>,
     /// Table as FILE.csv, or the map as FILE.svg, .png or .pdf, or in a directory, created if missing [default: print the table]
     #[arg(short, long, alias = "output", value_name = "FILE|DIR", conflicts_with = "json")]

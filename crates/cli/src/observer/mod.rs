@@ -12,6 +12,7 @@ use serde_json::{Value as Json, json};
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::human::{Units, UnitsArgs};
+use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::say;
 
@@ -19,13 +20,13 @@ use crate::say;
 #[command(allow_negative_numbers = true)]
 pub struct ObserverArgs {
     /// Natural frequency of the mode (rad/s)
-    #[arg(long, value_name = "FREQUENCY")]
+    #[arg(long, value_name = "FREQUENCY", value_parser = in_unit("rad/s"))]
     frequency: f64,
     /// Damping ratio of the mode
-    #[arg(long, value_name = "RATIO", default_value_t = 0.005)]
+    #[arg(long, value_name = "RATIO", default_value_t = 0.005, value_parser = in_unit(""))]
     damping: f64,
     /// Time from one sample to the next (s)
-    #[arg(long, value_name = "TIME", default_value_t = 0.2)]
+    #[arg(long, value_name = "TIME", default_value_t = 0.2, value_parser = in_unit("s"))]
     period: f64,
     /// Weights of an innovation: on the rigid rate, on the elastic rate, and on the next elastic rate (W1, W2, W3)
     #[arg(
@@ -33,11 +34,12 @@ pub struct ObserverArgs {
         value_name = "W1,W2,W3",
         value_delimiter = ',',
         num_args = 1,
-        default_value = "0.05,0.2,0.15"
+        default_value = "0.05,0.2,0.15",
+        value_parser = in_unit("")
     )]
     weights: Vec<f64>,
     /// Gains of the identification times the elastic rate, W4 |g|, for the regions in which the frozen observer converges
-    #[arg(long, value_name = "KAPPA,...", value_delimiter = ',', default_value = "0,1.5,4")]
+    #[arg(long, value_name = "KAPPA,...", value_delimiter = ',', default_value = "0,1.5,4", value_parser = in_unit(""))]
     kappa: Vec<f64>,
     #[command(flatten)]
     drawing: FigureOutput,

@@ -17,6 +17,7 @@ use flexsc_core::{Scenario, ScenarioError};
 use crate::error::CliError;
 use crate::figure_files::FigureFormat;
 use crate::human::UnitsArgs;
+use crate::quantity::in_unit;
 use crate::result_files::{ResultOutput, ResultTarget};
 use crate::results::{Results, show};
 use crate::scenario;
@@ -31,10 +32,10 @@ pub struct PlanArgs {
     #[arg(long, group = "views")]
     compare: bool,
     /// Largest relative error of the frequencies to allow for
-    #[arg(long, default_value_t = 0.1, value_name = "PART")]
+    #[arg(long, default_value_t = 0.1, value_name = "PART", value_parser = in_unit(""))]
     band: f64,
     /// Plan for this peak torque (N m) instead of the scenario's time
-    #[arg(long, value_name = "TORQUE")]
+    #[arg(long, value_name = "TORQUE", value_parser = in_unit("N m"))]
     peak_torque: Option<f64>,
     /// Plot the command with those that suppress fewer modes, or with the rigid bang-bang: directory, created if missing, or
     /// one FILE.svg, .png or .pdf. FILE.csv: write the planned trajectory as a table

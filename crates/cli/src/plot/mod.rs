@@ -55,6 +55,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
+use crate::quantity::in_unit;
 pub use campaign::{column_figures, directory_figures};
 use cycle_data::CycleData;
 pub use figure_kind::FigureKind;
@@ -87,16 +88,16 @@ pub struct PlotArgs {
     #[arg(long, requires = "out")]
     force: bool,
     /// Width of each figure on paper, such as 85 for one column [default: 800 px]
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", value_parser = in_unit("mm"))]
     width: Option<f64>,
     /// Font size of the axis labels on paper [default: 8 with --width]
-    #[arg(long, value_name = "PT")]
+    #[arg(long, value_name = "PT", value_parser = in_unit(""))]
     font: Option<f64>,
     /// Start of the time range to show (s) [default: chosen by the figure]
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     from: Option<f64>,
     /// End of the time range to show (s) [default: the end of the run]
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     to: Option<f64>,
     /// Campaigns: metrics to plot and to list the worst runs of [default: the main ones that vary]
     #[arg(long, value_delimiter = ',', value_name = "METRICS")]

@@ -64,7 +64,7 @@ pub fn serve(
     period: Span,
     (mut log, scene): (Option<LogFile>, Option<Scene>),
 ) -> Result<Served, RecordError> {
-    let (simulation, commands) = (Simulation::new(&run.scenario, run.number), CommandLog::default());
+    let (simulation, commands) = (Simulation::new(&run.scenario, run.noise_run), CommandLog::default());
     let mut lockstep = Lockstep { simulation, commands, session, period, cycles: 0 };
     let mut record = (MetricsCollector::new(&run.scenario), (log.as_mut(), scene));
     let stopped = lockstep.step(&mut (&mut record, stop_flag())).err();

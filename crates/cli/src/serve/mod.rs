@@ -29,6 +29,7 @@ use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::UnitsArgs;
 use crate::out::Out;
+use crate::quantity::in_unit;
 use crate::{files, print, requirements, say, scenario, simulate, stop, summary};
 use layout::PacketLayout;
 use link::{Link, Transport};
@@ -111,8 +112,8 @@ fn address(text: &str) -> Result<SocketAddr, String> {
 }
 
 fn period(text: &str) -> Result<Span, String> {
-    let seconds: f64 = text.parse().map_err(|_| format!("must be a time in s, got `{text}`"))?;
-    if seconds.is_finite() && (1e-9..=1e9).contains(&seconds) {
+    let seconds = in_unit("s")(text)?;
+    if (1e-9..=1e9).contains(&seconds) {
         Ok(Span::from_seconds(seconds))
     } else {
         Err(format!("must be a time of 1e-9 to 1e9 s, got {seconds}"))
@@ -120,7 +121,7 @@ fn period(text: &str) -> Result<Span, String> {
 }
 
 fn timeout(text: &str) -> Result<f64, String> {
-    let seconds: f64 = text.parse().map_err(|_| format!("must be a time in s, got `{text}`"))?;
+    let seconds = in_unit("s")(text)?;
     if (0.0..=LONGEST_TIMEOUT).contains(&seconds) {
         Ok(seconds)
     } else {
@@ -133,7 +134,7 @@ pub fn run(args: &ServeArgs) -> Result<(), CliError> {
     let campaign = Campaign::new(scenario, &args.scenario.display().to_string(), None)?;
     let run = simulate::scenario_run(&campaign);
     let period = args.cycle_period(&run.scenario)?;
-    let telemetry = Simulation::new(&run.scenario, run.number).telemetry_layout(&run.scenario);
+    let telemetry = Simulation::new(&run.scenario, run.noise_run).telemetry_layout(&run.scenario);
     let (axes, epoch_ns) = (run.scenario.axis_count(), run.scenario.epoch_ns());
     let layout = PacketLayout::new(telemetry, axes, period, epoch_ns)
         .map_err(|why| CliError::Arguments(format!("{}: {why}", args.scenario.display())))?;

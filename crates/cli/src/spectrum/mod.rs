@@ -16,9 +16,10 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::grid::PositiveGrid;
+use crate::grid::{PositiveGrid, grid_in};
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number_table::NumberTable;
+use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::{say, scenario};
@@ -33,19 +34,19 @@ pub struct SpectrumArgs {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     signal: Vec<String>,
     /// Length of the windows of pointing indices (s), such as an exposure time
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     window: Option<f64>,
     /// Time from the start of a window to that of the next (s), for differences of their means
-    #[arg(long, value_name = "TIME", requires = "window")]
+    #[arg(long, value_name = "TIME", requires = "window", value_parser = in_unit("s"))]
     separation: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: up to their largest, 48 speeds]
-    #[arg(long, value_name = "LO:HI:COUNT")]
+    #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     speeds: Option<PositiveGrid>,
     /// Full log of a run of the scenario, whose densities by Welch's method are compared
     #[arg(long, value_name = "LOG")]
     log: Option<PathBuf>,
     /// Start of the part of the log that is used (s), after the transient
-    #[arg(long, value_name = "TIME", requires = "log", default_value_t = 0.0)]
+    #[arg(long, value_name = "TIME", requires = "log", default_value_t = 0.0, value_parser = in_unit("s"))]
     from: f64,
     /// Samples of a segment of the log [default: an eighth of the log]
     #[arg(long, value_name = "COUNT", requires = "log")]

@@ -12,8 +12,9 @@ use flexsc_core::analysis::sampled_loop::{ModelUncertainty, RobustGoal, RobustSe
 
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::grid::{PositiveGrid, SignedGrid};
+use crate::grid::{PositiveGrid, SignedGrid, grid_in};
 use crate::human::UnitsArgs;
+use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::sampled_loop::{SettlingArgs, positive, sampled};
 use crate::{print, scenario};
@@ -29,26 +30,26 @@ pub struct TuneArgs {
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
-    #[arg(long, value_name = "LO:HI:COUNT")]
+    #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     frequency: Option<PositiveGrid>,
     /// Gains to try
     #[arg(long, value_name = "LO:HI:COUNT", default_value = "-2:6:161", allow_hyphen_values = true)]
     gain: SignedGrid,
     /// Longest settling time to accept (s)
-    #[arg(long, value_name = "TIME", default_value_t = 200.0)]
+    #[arg(long, value_name = "TIME", default_value_t = 200.0, value_parser = in_unit("s"))]
     limit: f64,
     /// Find robust gains instead: those that settle fastest with frequencies, modal gains and the actuator gain off by up to
     /// this fraction, such as 0.1
-    #[arg(long, value_name = "PART")]
+    #[arg(long, value_name = "PART", value_parser = in_unit(""))]
     robust: Option<f64>,
     /// Additional command delay to allow for (s)
-    #[arg(long, value_name = "TIME", default_value_t = 0.0, requires = "robust")]
+    #[arg(long, value_name = "TIME", default_value_t = 0.0, requires = "robust", value_parser = in_unit("s"))]
     delay: f64,
     /// Margin of every spectral radius below 1
-    #[arg(long, value_name = "PART", default_value_t = 0.0, requires = "robust")]
+    #[arg(long, value_name = "PART", default_value_t = 0.0, requires = "robust", value_parser = in_unit(""))]
     margin: f64,
     /// Quantile of the perturbed loops to optimise; 1 is the worst case
-    #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "robust")]
+    #[arg(long, value_name = "PART", default_value_t = 1.0, requires = "robust", value_parser = in_unit(""))]
     quantile: f64,
     /// Minimise the integral of time times absolute error instead of the settling time
     #[arg(long, requires = "robust")]

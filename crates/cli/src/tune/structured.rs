@@ -9,7 +9,7 @@ use flexsc_core::analysis::structured_tuning::{
     TuningObjective, TuningPoint,
 };
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::document::ConfigError;
+use flexsc_core::formats::document::{ConfigError, is_number};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
 use serde_json::Value as Json;
@@ -17,6 +17,7 @@ use serde_json::Value as Json;
 use crate::error::CliError;
 use crate::human::{Units, digits};
 use crate::margins::{BreakPoint, print_table, texts};
+use crate::quantity::in_unit;
 use crate::results::{Results, with_scenario_name};
 use crate::{files, out, say};
 
@@ -42,7 +43,7 @@ pub struct StructuredArgs {
     /// under the noise of the loop
     #[arg(long, value_name = "QUANTITY", default_value = "margin", requires = "vary")]
     objective: TuningObjective,
-    /// Limit that all plants keep: `margin>=VALUE`, `settling<=SECONDS`, or the name of a [[requirement]] with its own
+    /// Limit that all plants keep: `margin>=VALUE`, `settling<=TIME`, or the name of a [[requirement]] with its own
     /// limit; repeat it for several
     #[arg(long, value_name = "LIMIT", requires = "vary")]
     keep: Vec<TuningLimit>,
@@ -50,7 +51,7 @@ pub struct StructuredArgs {
     #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "vary")]
     opened: BreakPoint,
     /// Frequency (rad/s) at which the loop gain stays 1 or more with the nominal plant
-    #[arg(long, value_name = "FREQUENCY", requires = "vary")]
+    #[arg(long, value_name = "FREQUENCY", requires = "vary", value_parser = in_unit("rad/s"))]
     bandwidth: Option<f64>,
     /// Leave out the corners of `[uncertain]`: the nominal plant alone
     #[arg(long, requires = "vary")]
@@ -64,7 +65,8 @@ pub struct StructuredArgs {
 #[derive(Clone, Debug)]
 pub struct VariedKey {
     key: String,
-    range: [f64; 2],
+    /// Bounds as they are written, with their units.
+    range: [String; 2],
 }
 
 impl FromStr for VariedKey {
@@ -73,15 +75,24 @@ impl FromStr for VariedKey {
     fn from_str(text: &str) -> Result<Self, String> {
         let parsed = text.split_once('=').and_then(|(key, range)| {
             let (low, high) = range.split_once(':')?;
-            Some((key.trim(), low.trim().parse::<f64>().ok()?, high.trim().parse::<f64>().ok()?))
+            let is_range = !key.trim().is_empty() && is_number(low) && is_number(high);
+            is_range.then(|| Self { key: key.trim().to_owned(), range: [low, high].map(str::to_owned) })
         });
-        match parsed {
-            Some((key, low, high))
-                if !key.is_empty() && low < high && low.is_finite() && high.is_finite() =>
-            {
-                Ok(Self { key: key.to_owned(), range: [low, high] })
-            }
-            _ => Err(format!("must be KEY=LO:HI with LO < HI, got {text}")),
+        parsed.ok_or_else(|| format!("must be KEY=LO:HI with LO < HI, got {text}"))
+    }
+}
+
+impl VariedKey {
+    /// Returns the key with its bounds in the unit of the key.
+    fn range_in(&self, scenario: &Scenario) -> Result<(String, [f64; 2]), CliError> {
+        let Self { key, range: [low, high] } = self;
+        scenario.validate_key(key)?;
+        let range = [scenario.number_of(key, low)?, scenario.number_of(key, high)?];
+        if range[0] < range[1] {
+            Ok((key.clone(), range))
+        } else {
+            let why = format!("must be KEY=LO:HI with LO < HI, got {low}:{high}");
+            Err(CliError::Arguments(format!("--vary {key}: {why}")))
         }
     }
 }
@@ -107,7 +118,7 @@ impl StructuredArgs {
             return Err(CliError::Arguments(format!("--save {}: must end in .toml", path.display())));
         }
         let tuning = ScenarioTuning {
-            keys: self.vary.iter().map(|varied| (varied.key.clone(), varied.range)).collect(),
+            keys: self.vary.iter().map(|varied| varied.range_in(scenario)).collect::<Result<_, _>>()?,
             opened: self.opened.loop_break(),
             objective: self.objective.clone(),
             limits: self.keep.clone(),

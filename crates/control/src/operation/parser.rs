@@ -18,6 +18,10 @@ const COMPARISONS: [(&str, Comparison); 4] = [
     (">", Comparison::Above),
 ];
 
+/// Signs by which programming languages join and negate conditions, the longer ones first, with the words for them.
+const FOREIGN_SIGNS: [(&str, &str); 5] =
+    [("&&", "and"), ("&", "and"), ("||", "or"), ("|", "or"), ("!", "not")];
+
 /// Reads a condition.
 pub(super) fn parse(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
     if text.len() > LONGEST {
@@ -86,15 +90,28 @@ impl<'a> Parser<'a> {
 
     fn all(&mut self) -> Result<Expression, ConditionFault> {
         let mut all = vec![self.one()?];
+        self.refuse_foreign_signs()?;
         while self.take("and") {
             all.push(self.one()?);
+            self.refuse_foreign_signs()?;
         }
         Ok(if all.len() == 1 { all.remove(0) } else { Expression::All(all) })
     }
 
+    /// Refuses signs of programming languages with the word that conditions have for them.
+    fn refuse_foreign_signs(&mut self) -> Result<(), ConditionFault> {
+        self.skip_spaces();
+        match FOREIGN_SIGNS.into_iter().find(|(sign, _)| self.rest().starts_with(sign)) {
+            Some((sign, word)) => {
+                Err(fault(self.at..self.at + sign.len(), format!("must have `{word}` in place of `{sign}`")))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Reads a comparison, a flag, a negation, or a condition in brackets.
     fn one(&mut self) -> Result<Expression, ConditionFault> {
-        self.skip_spaces();
+        self.refuse_foreign_signs()?;
         let start = self.at;
         self.depth += 1;
         if self.depth > DEEPEST {
@@ -227,7 +244,7 @@ impl<'a> Parser<'a> {
                 '(' => depth += 1,
                 ')' if depth > 0 => depth -= 1,
                 ')' => end = self.at + index,
-                _ if joins => end = self.at + index,
+                _ if joins || "&|".contains(sign) => end = self.at + index,
                 _ => {}
             }
             if end < self.text.len() {
@@ -290,6 +307,22 @@ mod tests {
             ]),
         ]);
         assert_eq!(read, Ok(expected));
+    }
+
+    #[test]
+    fn signs_of_programming_languages_have_words_here() {
+        for (text, sign, word) in [
+            ("rate < 2e-3 && time > 1 min", "&&", "and"),
+            ("(rate < 2e-3 || lock_lost)", "||", "or"),
+            ("lock_lost & time > 3", "&", "and"),
+            ("time > 5 s|lock_lost", "|", "or"),
+            ("!lock_lost", "!", "not"),
+            ("time > 3 and !(lock_lost)", "!", "not"),
+        ] {
+            let fault = parse(text, &known()).expect_err(text);
+            assert_eq!(fault.why, format!("must have `{word}` in place of `{sign}`"), "{text}");
+            assert_eq!(&text[fault.part], sign, "{text}");
+        }
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl CommandLog {
         });
         let judged = remaining.as_ref().unwrap_or(&run.scenario);
         let mut both = (MetricsCollector::new(judged), record);
-        let mut simulation = Simulation::new(&run.scenario, run.number);
+        let mut simulation = Simulation::new(&run.scenario, run.noise_run);
         self.run_until(&mut simulation, until, &mut both)?;
         simulation.record_interruption(&mut both)?;
         Ok(both.0.finish(judged))

@@ -11,6 +11,10 @@ use super::sampling::{Dimension, MOST_DIMENSIONS, Sampling};
 
 /// Largest number of points of a design.
 pub const MOST_POINTS: u64 = 100_000_000;
+/// Words of a description behind the number of replicas, and before the number of the run whose noise the points have.
+const REPLICAS: &str = " runs of each point";
+const NOISE: &str = "# each point with the noise from run ";
+
 /// Largest number of values in a list or a table, which are held in memory.
 pub const MOST_NUMBERS: usize = 10_000_000;
 
@@ -27,7 +31,8 @@ pub struct Design {
     pub hypercube: u64,
     /// Number of runs of each point, which differ only in their noise.
     pub replicas: u64,
-    /// Number of the run whose noise every run has; if not given, each has that of its own number.
+    /// Number of the run whose noise the first run of every point has, and its replicas that of the numbers that follow; if
+    /// not given, each run has the noise of its own number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise_run: Option<u64>,
     /// Blocks whose points are combined.
@@ -280,6 +285,23 @@ impl Design {
         run / self.replicas.max(1)
     }
 
+    /// Returns the number of the run whose noise a run has.
+    pub fn noise_run(&self, run: u64) -> u64 {
+        self.noise_run.map_or(run, |first| first.saturating_add(run % self.replicas.max(1)))
+    }
+
+    /// Returns the number of the run whose noise a run has, of a design with this description.
+    pub fn described_noise_run(description: &str, run: u64) -> u64 {
+        let number = |before: &str, after: &str| {
+            let lines = description.lines().take_while(|line| line.starts_with('#'));
+            let mut numbers =
+                lines.filter_map(|line| line.strip_prefix(before)?.strip_suffix(after)?.parse().ok());
+            numbers.next()
+        };
+        let replicas = number("# ", REPLICAS).unwrap_or(1);
+        Self { replicas, noise_run: number(NOISE, ""), ..Self::default() }.noise_run(run)
+    }
+
     /// Returns the values of the keys of a point.
     pub(super) fn values(&self, point: u64, seed: u64) -> Vec<Value> {
         let mut rest = point;
@@ -350,10 +372,10 @@ impl Design {
             let _ = writeln!(text, "# drawn by {}{design_of}", self.draws.name());
         }
         if self.replicas > 1 {
-            let _ = writeln!(text, "# {} runs of each point", self.replicas);
+            let _ = writeln!(text, "# {}{REPLICAS}", self.replicas);
         }
         if let Some(run) = self.noise_run {
-            let _ = writeln!(text, "# each with the noise of run {run}");
+            let _ = writeln!(text, "{NOISE}{run}");
         }
         text
     }

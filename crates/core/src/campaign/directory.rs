@@ -122,8 +122,35 @@ impl Directory {
         Ok(directory)
     }
 
+    /// Creates or continues a directory as [`Directory::create`] does, with these runs and no others: with `force`, parts
+    /// with other runs are removed.
+    ///
+    /// # Errors
+    /// Those of [`Directory::create`], and runs of this campaign that are not among these.
+    pub fn create_whole(path: &Path, manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
+        let place = path.join(MANIFEST);
+        let runs = manifest.runs();
+        let only_these = |existing: &Manifest| {
+            let held = existing.runs();
+            let is_same = existing.first_difference(&manifest).is_none();
+            if force || !is_same || (runs.start <= held.start && held.end <= runs.end) {
+                return Ok(());
+            }
+            let (held, asked) = (held.end - held.start, runs.end - runs.start);
+            Err(DirectoryError::More { path: place.clone(), held, asked })
+        };
+        // Checked before the manifest changes.
+        read(&place)?.as_ref().map_or(Ok(()), only_these)?;
+        let mut directory = Self::create(path, manifest.clone(), force)?;
+        only_these(&directory.work.manifest)?;
+        if directory.work.manifest.runs() != runs {
+            directory.shrink(runs.clone())?;
+        }
+        Ok(directory)
+    }
+
     /// Removes the parts of all runs but these.
-    pub fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
+    fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
         for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {
             let file = self.file(part);
             fs::remove_file(&file).map_err(io_error(&file))?;

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use flexsc_formats::count::counted;
 use flexsc_formats::document::ScenarioError;
 use thiserror::Error;
 
@@ -24,6 +25,16 @@ pub enum DirectoryError {
         path: PathBuf,
         /// First difference of the campaigns.
         difference: String,
+    },
+    /// Directory with runs of this campaign that are not asked for.
+    #[error("{}: holds {} of this campaign, and {asked} would replace them", path.display(), counted(*held, "run"))]
+    More {
+        /// Path of its manifest.
+        path: PathBuf,
+        /// Number of its runs.
+        held: u64,
+        /// Number of the runs that are asked for.
+        asked: u64,
     },
     /// Directory that another process is writing.
     #[error("{}: another process is working in it", path.display())]

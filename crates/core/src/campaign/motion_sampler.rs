@@ -88,7 +88,7 @@ impl MotionSampler {
             return last;
         }
         kept.cloned().unwrap_or_else(|| Snapshot {
-            simulation: Simulation::new(&self.run.scenario, self.run.number),
+            simulation: Simulation::new(&self.run.scenario, self.run.noise_run),
             given: 0,
         })
     }

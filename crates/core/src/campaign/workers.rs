@@ -179,8 +179,9 @@ impl Campaign {
         let began = Instant::now();
         let runs: Vec<_> = numbers.map(|number| (number, self.run_for(number, selection))).collect();
         let whole = || runs.iter().filter_map(|(_, run)| run.as_ref().ok());
-        let jobs: Vec<BatchJob<'_>> =
-            whole().map(|run| BatchJob { number: run.number, scenario: &run.scenario, selection }).collect();
+        let jobs: Vec<BatchJob<'_>> = whole()
+            .map(|run| BatchJob { number: run.noise_run, scenario: &run.scenario, selection })
+            .collect();
         let mut found = batch::simulate(&jobs).into_iter();
         // The time of the batch is divided equally among its runs.
         let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;

@@ -68,6 +68,35 @@ pub fn bare_or_quoted(key: &str) -> String {
     if !key.is_empty() && key.chars().all(bare) { key.to_owned() } else { format!("\"{key}\"") }
 }
 
+/// Returns the paths of the tables of this name within a table, in the order of the document.
+pub fn tables_named(table: &Table, name: &str) -> Vec<String> {
+    fn search(value: &Value, path: &str, name: &str, found: &mut Vec<String>) {
+        match value {
+            Value::Table(table) => {
+                for (key, value) in table {
+                    let path =
+                        format!("{path}{}{}", if path.is_empty() { "" } else { "." }, bare_or_quoted(key));
+                    if value.is_table() && key == name {
+                        found.push(path.clone());
+                    }
+                    search(value, &path, name, found);
+                }
+            }
+            Value::Array(values) => {
+                for (index, value) in values.iter().enumerate() {
+                    search(value, &format!("{path}[{index}]"), name, found);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    for (key, value) in table {
+        search(value, &bare_or_quoted(key), name, &mut found);
+    }
+    found
+}
+
 /// Returns the value at a path.
 pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
     let mut steps = steps(path)?.into_iter();

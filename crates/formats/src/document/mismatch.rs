@@ -21,11 +21,13 @@ pub struct Mismatch {
     meant: Option<&'static str>,
     /// Missing key.
     missing: Option<&'static str>,
+    /// True if names are wrong: an unknown one, or several kinds in the place of one.
+    of_names: bool,
 }
 
 impl Mismatch {
     fn because(why: impl Into<String>) -> Self {
-        Self { steps: Vec::new(), key: None, why: why.into(), meant: None, missing: None }
+        Self { steps: Vec::new(), key: None, why: why.into(), meant: None, missing: None, of_names: false }
     }
 
     /// Returns the mismatch of a value that is not a kind.
@@ -49,7 +51,8 @@ impl Mismatch {
         }
         let accepted: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
         let accepted = accepted.join(", ");
-        Self::because(format!("exactly one kind is accepted here, and more than one is given: {accepted}"))
+        let why = format!("exactly one kind is accepted here, and more than one is given: {accepted}");
+        Self { of_names: true, ..Self::because(why) }
     }
 
     /// Returns the mismatch of an array with more values than are read.
@@ -66,7 +69,7 @@ impl Mismatch {
     fn unknown(name: &str, accepted: &str, known: &'static [&'static str], none: &str) -> Self {
         let hint = hint(accepted, known).map_or_else(String::new, |hint| format!("; {hint}"));
         let why = format!("{name}, {}{hint}", accepted_names(known, none));
-        Self { meant: nearest_name(accepted, known), ..Self::because(why) }
+        Self { meant: nearest_name(accepted, known), of_names: true, ..Self::because(why) }
     }
 
     /// Sets the key that is itself wrong.
@@ -104,6 +107,11 @@ impl Mismatch {
     /// Returns the missing key, if that is the mismatch.
     pub fn missing(&self) -> Option<&'static str> {
         self.missing
+    }
+
+    /// Returns true if names are wrong, and not a value.
+    pub fn is_of_names(&self) -> bool {
+        self.of_names
     }
 
     /// Returns the name that was probably meant.

@@ -52,8 +52,8 @@ fn replace(table: &mut Table, wrong: &Mismatch) -> Option<String> {
     if let Some(key) = wrong.key() {
         let mut inner = if path.is_empty() { table.clone() } else { get(table, &path)?.as_table()?.clone() };
         let value = inner.remove(key)?;
-        // A synonym of a kind may have other keys: they do not help to explain the error.
-        let other_kind = wrong.meant().filter(|_| value.is_table() && is_other_word(key)).map(bare_or_quoted);
+        // The value of a synonym may be of another form: that does not help to explain the error.
+        let synonym = wrong.meant().filter(|_| is_other_word(key)).map(bare_or_quoted);
         match wrong.meant() {
             Some(meant) if !inner.contains_key(meant) => {
                 inner.insert(meant.to_owned(), value);
@@ -68,7 +68,7 @@ fn replace(table: &mut Table, wrong: &Mismatch) -> Option<String> {
             set(table, &path, Value::Table(inner)).ok()?;
         }
         // The value of the renamed key is still to be read.
-        return Some(within(other_kind.as_deref().unwrap_or("\n")));
+        return Some(within(synonym.as_deref().unwrap_or("\n")));
     }
     let (place, value) = match (wrong.missing(), wrong.meant()) {
         (Some(key), _) => (within(key), Value::Float(FITS)),

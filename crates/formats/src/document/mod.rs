@@ -23,13 +23,16 @@ use toml::{Table, Value};
 pub use fault::ConfigError;
 pub use mismatch::Mismatch;
 pub use mistake::{Diagnostic, TextPlace};
-pub use quantity::{number_in, unit_at};
+pub use quantity::{is_number, number_in, unit_at};
 pub use reader::{DATE, read_value};
 pub use suggestions::nearest_name as nearest;
 
 use key::{bare_or_quoted, span_of};
 use messages::{diagnostic, mismatch, mismatch_at, parse_error};
 use mistake::shortened;
+
+/// Depth of an array that no key accepts.
+const UNFIT_DEPTH: usize = 4;
 
 /// Largest length of a scenario (bytes).
 pub const LONGEST: u64 = 4 << 20;
@@ -216,12 +219,21 @@ impl Document {
         Err(ScenarioError::Invalid(all.iter().map(|wrong| self.unfit(wrong)).collect()))
     }
 
+    /// Returns true if type `T` has a key beside the kinds that the document names: of a value that no key accepts,
+    /// the type is then the only error.
+    pub fn knows<T: serde::de::DeserializeOwned>(&self, key: &str) -> bool {
+        let mut table = self.table.clone();
+        let unfit = (0..UNFIT_DEPTH).fold(Value::Array(Vec::new()), |inner, _| Value::Array(vec![inner]));
+        key::set(&mut table, key, unfit).is_ok()
+            && reader::read::<T>(&table).err().is_none_or(|wrong| !wrong.is_of_names())
+    }
+
     /// Returns the error of a mismatch, with its place if the text has it.
     fn unfit(&self, wrong: &Mismatch) -> Diagnostic {
         let message = match (&self.text, self.changed.as_slice()) {
             (Some(text), []) => return mismatch(&self.origin, text, wrong),
             (_, []) => mismatch_at(wrong),
-            (_, changed) => match meant_of(wrong, changed) {
+            (_, changed) => match meant_of(wrong, changed, &self.table) {
                 Some((key, meant)) => {
                     return diagnostic(
                         &self.origin,
@@ -253,13 +265,16 @@ impl Document {
     }
 }
 
-/// Key that was set within a table of a wrong name, and the name that was probably meant.
-fn meant_of(wrong: &Mismatch, changed: &[String]) -> Option<(String, String)> {
-    let (path, name, meant) = (wrong.path(), bare_or_quoted(wrong.key()?), wrong.meant()?);
+/// Key that was set within a table of a wrong name, and the one that was probably meant: in a table of nearly this name,
+/// or in a table of this name elsewhere in the document.
+fn meant_of(wrong: &Mismatch, changed: &[String], table: &Table) -> Option<(String, String)> {
+    let (path, name) = (wrong.path(), bare_or_quoted(wrong.key()?));
     let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
-    let wrong = within(&name);
-    let (key, rest) = changed.iter().find_map(|key| Some((key, key.strip_prefix(&wrong)?)))?;
-    rest.starts_with(['.', '[']).then(|| (shortened(key), shortened(&format!("{}{rest}", within(meant)))))
+    let wrong_path = within(&name);
+    let (key, rest) = changed.iter().find_map(|key| Some((key, key.strip_prefix(&wrong_path)?)))?;
+    let elsewhere = || key::tables_named(table, &name).into_iter().find(|place| *place != wrong_path);
+    let place = wrong.meant().map(within).or_else(elsewhere)?;
+    rest.starts_with(['.', '[']).then(|| (shortened(key), shortened(&format!("{place}{rest}"))))
 }
 
 fn too_long(length: u64) -> String {

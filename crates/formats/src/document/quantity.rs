@@ -7,6 +7,7 @@ use toml::{Table, Value};
 
 use super::ConfigError;
 use super::key::bare_or_quoted;
+use super::suggestions::nearest_name;
 use super::units::{KNOWN, Unit, meant};
 
 /// A hundredth, where a number has no unit.
@@ -29,17 +30,10 @@ pub fn any(table: &Table) -> bool {
 }
 
 /// Converts numbers with units to SI in place, and returns a fault for each unit that is unknown or does not fit its
-/// key.
+/// key. A number of a misspelt key has the unit of the key that was probably meant, and no fault but the name.
 pub fn to_si(table: &mut Table, schema: &Json) -> Vec<ConfigError> {
     let mut faults = Vec::new();
-    let root = [Node { schema, unit: None }];
-    for (key, value) in table.iter_mut() {
-        if key == UNCERTAIN {
-            distributions(value, schema, &mut faults);
-            continue;
-        }
-        convert(value, &bare_or_quoted(key), &within(schema, &root, Some(key)), schema, &mut faults);
-    }
+    convert_table(table, "", &[Node { schema, unit: None }], schema, &mut faults);
     faults
 }
 
@@ -51,9 +45,9 @@ fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<ConfigEr
     for (key, value) in uncertain.iter_mut() {
         let (ends, Value::Table(kinds)) = (ends_at(schema, key), value) else { continue };
         // Of a key that there is not, that is the mistake.
-        if !ends.iter().any(|node| has_type(node.schema, "number")) {
-            continue;
-        }
+        let mut unreported = Vec::new();
+        let is_number = ends.iter().any(|node| has_type(node.schema, "number"));
+        let faults = if is_number { &mut *faults } else { &mut unreported };
         for (kind, numbers) in kinds.iter_mut() {
             let path = format!("{UNCERTAIN}.{}.{}", bare_or_quoted(key), bare_or_quoted(kind));
             // A relative one has factors.
@@ -77,10 +71,7 @@ fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec
         }
         Value::String(text) => {
             if let Some((number, unit)) = split(text) {
-                match in_si(number, unit, ends) {
-                    Ok(number) => *value = Value::Float(number),
-                    Err(why) => faults.push(ConfigError::new(path, why)),
-                }
+                *value = Value::Float(in_si(number, unit, ends, path, faults));
             }
         }
         _ => {}
@@ -116,12 +107,7 @@ struct Node<'a> {
 
 fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, faults: &mut Vec<ConfigError>) {
     match value {
-        Value::Table(table) => {
-            for (key, value) in table.iter_mut() {
-                let path = format!("{path}.{}", bare_or_quoted(key));
-                convert(value, &path, &within(schema, nodes, Some(key)), schema, faults);
-            }
-        }
+        Value::Table(table) => convert_table(table, &format!("{path}."), nodes, schema, faults),
         Value::Array(values) => {
             let elements = within(schema, nodes, None);
             for (index, value) in values.iter_mut().enumerate() {
@@ -132,22 +118,53 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
             let Some((number, unit)) = split(text) else { return };
             let ends = flat(schema, nodes);
             let is = |name: &str| ends.iter().any(|node| has_type(node.schema, name));
-            if is("string") || !is("number") {
-                return;
-            }
-            match in_si(number, unit, &ends) {
-                Ok(number) => *value = Value::Float(number),
-                Err(why) => faults.push(ConfigError::new(path, why)),
+            if !is("string") && is("number") {
+                *value = Value::Float(in_si(number, unit, &ends, path, faults));
             }
         }
         _ => {}
     }
 }
 
-/// Converts a number to the unit of its key.
-fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
+/// Converts the values of a table; `path` is that of its keys up to their names.
+fn convert_table(
+    table: &mut Table,
+    path: &str,
+    nodes: &[Node<'_>],
+    schema: &Json,
+    faults: &mut Vec<ConfigError>,
+) {
+    for (key, value) in table.iter_mut() {
+        let path = format!("{path}{}", bare_or_quoted(key));
+        if path == UNCERTAIN {
+            distributions(value, schema, faults);
+            continue;
+        }
+        let known = within(schema, nodes, Some(key));
+        if known.is_empty() {
+            let meant = within(schema, nodes, Some(meant_key(schema, nodes, key)));
+            convert(value, &path, &meant, schema, &mut Vec::new());
+        } else {
+            convert(value, &path, &known, schema, faults);
+        }
+    }
+}
+
+/// Returns the key of a table that was probably meant by an unknown one; without one, a name that no key has.
+fn meant_key<'a>(schema: &'a Json, nodes: &[Node<'a>], key: &str) -> &'a str {
+    let tables = flat(schema, nodes);
+    let keys = tables.iter().filter_map(|node| node.schema.get("properties")?.as_object());
+    let keys: Vec<&str> = keys.flat_map(|keys| keys.keys().map(String::as_str)).collect();
+    nearest_name(key, &keys).unwrap_or("")
+}
+
+/// Returns a number in the unit of its key, or as it is if its unit is at fault.
+fn in_si(number: f64, unit: &str, ends: &[Node<'_>], path: &str, faults: &mut Vec<ConfigError>) -> f64 {
     let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
-    converted(number, unit, &wanted)
+    converted(number, unit, &wanted).unwrap_or_else(|why| {
+        faults.push(ConfigError::new(path, why));
+        number
+    })
 }
 
 /// Returns the number of a text with a unit, such as `2 arcsec`, converted to `wanted`, or as it is without a unit.
@@ -165,6 +182,11 @@ pub fn number_in(text: &str, wanted: &str) -> Result<f64, String> {
             Err(format!("must be a number, or a number with a unit{example}, got `{text}`"))
         }
     }
+}
+
+/// Returns true if a text is a finite number, or one with a unit.
+pub fn is_number(text: &str) -> bool {
+    text.trim().parse::<f64>().is_ok_and(f64::is_finite) || split(text).is_some()
 }
 
 /// Converts a number to the first of some units that measures the same; without any, a percentage to a fraction.
@@ -200,7 +222,8 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let ends = text.char_indices().map(|(index, _)| index).filter(|index| *index > 0);
     let longest = ends.rev().find_map(|end| Some((text[..end].parse::<f64>().ok()?, end)))?;
     let unit = text[longest.1..].trim();
-    let named = unit.starts_with(|c: char| c.is_alphabetic() || "%\u{b0}\u{221a}1(/".contains(c));
+    let named =
+        unit.starts_with(|c: char| c.is_alphabetic() || "%\u{b0}\u{221a}1(/\"'\u{2032}\u{2033}".contains(c));
     (longest.0.is_finite() && named).then_some((longest.0, unit))
 }
 
@@ -215,7 +238,8 @@ fn within<'a>(schema: &'a Json, nodes: &[Node<'a>], key: Option<&str>) -> Vec<No
             ],
             None => [node.schema.get("items"), None],
         };
-        for schema in found.into_iter().flatten() {
+        // A schema that accepts nothing, or all, is no object.
+        for schema in found.into_iter().flatten().filter(|schema| schema.is_object()) {
             let unit = if key.is_some() { None } else { node.unit };
             inner.push(Node { schema, unit: unit_of(schema).or(unit) });
         }

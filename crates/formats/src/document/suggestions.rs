@@ -23,6 +23,8 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("deadband", &["dead_zone"]),
     ("dampingratio", &["damping"]),
     ("dt", &["period"]),
+    ("earth", &["limb"]),
+    ("earthlimb", &["limb"]),
     ("ekf", &["extended_kalman"]),
     ("filter", &["estimator", "filters", "kalman"]),
     ("flywheel", &["wheel"]),

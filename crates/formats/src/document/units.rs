@@ -77,12 +77,25 @@ const ALIASES: &[(&str, &str)] = &[
     ("tesla", "T"),
 ];
 
+/// Signs of minutes and seconds of arc, which stand for feet and inches too.
+const ARC_SIGNS: [(&str, &str); 6] = [
+    ("\"", "arcsec"),
+    ("''", "arcsec"),
+    ("\u{2033}", "arcsec"),
+    ("\u{2032}\u{2032}", "arcsec"),
+    ("'", "arcmin"),
+    ("\u{2032}", "arcmin"),
+];
+
 /// Accepted parts of a unit, for error messages.
 pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
                          rpm, joined as in `N m s/rad` or `deg/sqrt(h)`";
 
 /// The unit that was probably meant by a text that is none.
 pub fn meant(text: &str) -> Option<String> {
+    if let Some((_, unit)) = ARC_SIGNS.iter().find(|(sign, _)| *sign == text.trim()) {
+        return Some((*unit).to_owned());
+    }
     let mut rest = text.trim();
     let mut meant = String::new();
     while let Some(first) = rest.chars().next() {
@@ -282,6 +295,9 @@ mod tests {
             ("kg m2", "kg m^2"),
             ("seconds", "s"),
             ("Newton meters", "N m"),
+            ("\"", "arcsec"),
+            ("''", "arcsec"),
+            ("'", "arcmin"),
         ] {
             assert_eq!(meant(written).as_deref(), Some(accepted), "{written}");
         }

@@ -39,7 +39,8 @@ def _given(name: str, unit: str, array: npt.NDArray[Any]) -> _Given:
             lists.append(offsets)
             array = _joined(parts)
         else:
-            lists.append(array.shape[1])
+            # Polars reads no lists of the fixed length 0.
+            lists.append(array.shape[1] or [0] * (len(array) + 1))
             array = array.reshape(array.shape[0] * array.shape[1], *array.shape[2:])
     # A text has no NumPy type that the engine reads.
     return name, unit, rows, lists, array.tolist() if array.dtype.kind == "U" else array

@@ -8,7 +8,7 @@ from operator import index
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
-from flexsc._design import Points, Sample, design
+from flexsc._design import Noise, Points, Sample, design
 from flexsc._missing import reading
 from flexsc._progress import Progress, callback
 from flexsc._result import Detail
@@ -58,8 +58,10 @@ def campaign(
             A Latin hypercube has as many points as runs of these end with; `("latin-hypercube", 1000)` gives
             their number, so that `range(0, 500)` is a part of it.
         replicas: Number of runs per drawn point, which differ only in their noise.
-        out: The directory for the rows, as Parquet files; it is created if missing. A location that `fsspec`
-            supports, such as `s3://bucket/study`, is accepted. The same call continues a stopped campaign.
+        out: The directory for the rows, as Parquet files; it is created if missing. The same call continues a
+            stopped campaign, more runs extend it, and a range of runs adds to those that are there. A path
+            that ends in `.csv` or `.parquet` is one file for the rows, written at the end. A location that
+            `fsspec` supports, such as `s3://bucket/study`, is accepted for both.
         log: The detail of a log of each run, `NAME-RUN.mcap` in the directory `out`: `events`, `full` or
             `scene`, as in `Scenario.simulate`. Runs with logs are simulated one by one, and not in batches.
         executor: The executor of the runs, such as a `concurrent.futures.ProcessPoolExecutor`, or Dask's
@@ -67,15 +69,16 @@ def campaign(
             to reach; without `out` the rows return through this process. Parts written in Python travel with
             the tasks, if they can be pickled.
         task_s: Approximate duration of a task of the executor (s).
-        force: Replace another campaign in `out`, and logs of other runs.
+        force: Replace another campaign in `out`, one with more runs, a file, and logs of other runs.
         progress: True to print a line with the finished runs and the remaining time to standard error, or a
             function that is called after each task with the number of finished runs and the total number.
 
     Raises:
         ScenarioError: The scenario does not allow this variation.
         SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
-        ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign or
-            a log of another run, `log` has no directory, or parts written in Python cannot be pickled.
+        ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign,
+            more runs of this one or a log of another run, or is a file that exists, `log` has no directory,
+            or parts written in Python cannot be pickled.
         OSError: `out` cannot be written, or another process is using it.
 
     >>> import flexsc
@@ -94,7 +97,8 @@ def campaign(
     drawn = engine.Design()
     drawn.draw(method, index(points))
     drawn.repeat(replicas)
-    return _Study(scenario, span, drawn, metrics, seed, yes, True, log).table(
+    part = isinstance(runs, range)
+    return _Study(scenario, span, drawn, metrics, seed, yes, True, log, part).table(
         jobs, out, executor, task_s, force, progress
     )
 
@@ -112,6 +116,7 @@ def sweep(
     metrics: Sequence[str] | None = None,
     replicas: int = 1,
     uncertain: bool = False,
+    noise: Noise | None = None,
     runs: range | None = None,
     out: str | os.PathLike[str] | None = None,
     log: Detail = "none",
@@ -145,8 +150,11 @@ def sweep(
         metrics: The metrics in the table; if omitted, all that the scenario itself has.
         replicas: Number of runs per point, in sequence, which differ only in their noise.
         uncertain: Draw the `[uncertain]` keys too, anew for each point; otherwise they keep their values.
+        noise: The noise of the points: `same`, that of run 0 at all of them (replica i has that of run i), so
+            that they differ by their keys alone, or `new`; if omitted, `same`, and `new` with drawn keys.
         runs: A part of the runs, such as `range(500, 1000)`; if omitted, all of them.
-        out: The directory for the rows, as in `campaign`. The same call continues a stopped sweep.
+        out: The directory or the file for the rows, as in `campaign`. The same call continues a stopped
+            sweep.
         log: The detail of a log of each run in the directory `out`, as in `campaign`.
         executor: The executor of the runs, as in `campaign`.
         task_s: Approximate duration of a task of the executor (s).
@@ -182,10 +190,13 @@ def sweep(
     varied = {} if key is None else {key: values} if isinstance(key, str) else key
     if points is None and not varied:
         raise ValueError("a sweep needs a key")
+    if isinstance(points, (str, os.PathLike)) and out is not None and _is_same_file(points, out):
+        raise ValueError(f"out: {os.fspath(out)} is the table of the points, which would be lost")
     draws = uncertain and bool(scenario.to_dict().get("uncertain"))
-    made = design(scenario.name, varied, points, sample, _replicas(replicas), draws)
+    made = design(scenario.name, varied, points, sample, _replicas(replicas), draws, noise)
     span = _span(runs, made.runs)
-    return _Study(scenario, span, made, metrics, seed, yes, uncertain, log).table(
+    part = runs is not None
+    return _Study(scenario, span, made, metrics, seed, yes, uncertain, log, part).table(
         jobs, out, executor, task_s, force, progress
     )
 
@@ -227,6 +238,8 @@ class _Study(NamedTuple):
     yes: bool
     draws: bool
     log: Detail
+    # Whether the runs are a part of those of the directory.
+    part: bool
 
     def table(
         self,
@@ -267,7 +280,11 @@ class _Study(NamedTuple):
             return _checked(_own_parts_campaign.run(scenario, study, work, executor, threads, task_s, report))
         from flexsc._executor import run
 
-        return _checked(run(work, out, executor, threads, task_s, force, report, self.log))
+        return _checked(run(work, out, executor, threads, task_s, force, report, self.log, self.part))
+
+
+def _is_same_file(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:
+    return os.path.exists(one) and os.path.exists(other) and os.path.samefile(one, other)
 
 
 def _checked(table: Table) -> Table:

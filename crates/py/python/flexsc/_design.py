@@ -14,6 +14,8 @@ from flexsc._values import toml
 
 Method = Literal["random", "latin-hypercube", "sobol"]
 """A method by which points are spread over ranges, and `[uncertain]` keys are drawn."""
+Noise = Literal["same", "new"]
+"""The noise of the points of a sweep: that of one run at all of them, or new noise at each."""
 Sample = Method | tuple[Method, int]
 """A method, or a method with its number of points."""
 Points = Any
@@ -74,6 +76,7 @@ def design(
     sample: Sample | None,
     replicas: int,
     draws: bool,
+    noise: Noise | None,
 ) -> engine.Design:
     """Return the design of a sweep: all combinations of the points, the values of each key and the sample.
 
@@ -84,6 +87,7 @@ def design(
         sample: The method of the sample of the ranges and of the draws.
         replicas: The number of runs of each point.
         draws: Whether `[uncertain]` keys are drawn.
+        noise: The noise of the points; if omitted, new with draws.
     """
     method, count = sample if isinstance(sample, tuple) else (sample, None)
     if count is not None and index(count) < 1:
@@ -105,6 +109,10 @@ def design(
     if draws and method is not None:
         made.native.draw(method, made.points)
     made.native.repeat(replicas)
+    if noise not in ("same", "new", None):
+        raise ValueError(f"noise must be 'same' or 'new', got {noise!r}")
+    if noise == "same" or (noise is None and not draws):
+        made.native.share_noise(0)
     return made.native
 
 

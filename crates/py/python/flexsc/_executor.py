@@ -12,7 +12,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from flexsc import _native as engine
 from flexsc._table import Table, of_directory
@@ -40,9 +40,9 @@ class Local:
         self.name = os.path.abspath(path)
         self._directory: engine.Directory | None = None
 
-    def begin(self, work: engine.Work, force: bool) -> engine.Work:
+    def begin(self, work: engine.Work, part: bool, force: bool) -> engine.Work:
         """Create the directory or continue in an existing one; it is locked until `end`."""
-        self._directory = engine.Directory.create(self.name, work, force)
+        self._directory = engine.Directory.create(self.name, work, part, force)
         return self._directory.work
 
     def missing(self, work: engine.Work) -> list[Span]:
@@ -72,7 +72,7 @@ class Remote:
     def _files(self) -> tuple[Any, str]:
         return _file_system(self.name)
 
-    def begin(self, work: engine.Work, force: bool) -> engine.Work:
+    def begin(self, work: engine.Work, part: bool, force: bool) -> engine.Work:
         """Write the manifest, or continue an existing campaign."""
         files, root = self._files()
         files.makedirs(f"{root}/{_RUNS}", exist_ok=True)
@@ -83,6 +83,9 @@ class Remote:
             if difference is not None:
                 raise ValueError(f"{self.name}: contains another campaign ({difference})")
             whole = work.joined(there)
+            if not part and whole.runs != work.runs:
+                held, asked = (end - start for start, end in (there.runs, work.runs))
+                raise ValueError(f"{at}: holds {held} runs of this campaign, and {asked} would replace them")
             if whole.runs != there.runs:
                 _put(files, at, whole.manifest.encode())
             return whole
@@ -142,11 +145,16 @@ def run(
     force: bool,
     progress: Callable[[int, int], None] | None,
     log: str = "none",
+    is_part: bool = False,
 ) -> Table:
-    """Run the missing parts of a campaign, and return all of its rows."""
-    kept = _Temporary() if out is None else None
+    """Run the missing parts of a campaign, and return all of its rows.
+
+    A location that has the ending of a table is one file, which is written at the end.
+    """
+    file = None if out is None else _File.of(out, log, force)
+    kept = _Temporary() if out is None or file is not None else None
     store = Local(str(kept.path)) if kept is not None else place(out or "")
-    work = store.begin(work, force)
+    work = store.begin(work, is_part, force)
     total = work.runs[1] - work.runs[0]
     missing = store.missing(work)
     left = sum(end - start for start, end in missing)
@@ -185,7 +193,39 @@ def run(
         store.end()
     if kept is None:
         return store.table()
+    if file is not None:
+        file.write(engine.Directory.open(str(kept.path)))
     return of_directory(kept.path, kept)
+
+
+class _File(NamedTuple):
+    """One file for all rows, on this machine or where fsspec reaches."""
+
+    name: str
+    ending: str
+
+    @classmethod
+    def of(cls, out: str | os.PathLike[str], log: str, force: bool) -> _File | None:
+        """Return the file that `out` names, which must not exist unless `force`; None for a directory."""
+        name = os.fspath(out)
+        ending = engine.table_ending(name)
+        if ending is None:
+            return None
+        if log != "none":
+            raise ValueError(f"out: {name} cannot contain the logs of `log`: give a directory")
+        if not force and (_exists(name) if "://" in name else os.path.lexists(name)):
+            raise ValueError(f"out: {name} already exists\n\nhint: `force=True` replaces it")
+        return cls(name, ending)
+
+    def write(self, rows: engine.Directory) -> None:
+        """Write the rows."""
+        data = rows.table(self.ending)
+        if "://" in self.name:
+            files, path = _file_system(self.name)
+            _put(files, path, data)
+        else:
+            os.makedirs(os.path.dirname(self.name) or ".", exist_ok=True)
+            engine.write(self.name, data)
 
 
 def distribute(
@@ -289,6 +329,11 @@ def _file_system(name: str) -> tuple[Any, str]:
         raise ImportError(f"{name}: places other than directories need fsspec: pip install fsspec") from None
     files, root = core.url_to_fs(name)
     return files, str(root).rstrip("/")
+
+
+def _exists(name: str) -> bool:
+    files, path = _file_system(name)
+    return bool(files.exists(path))
 
 
 def _names(files: Any, root: str) -> list[str]:

@@ -79,14 +79,8 @@ def evaluate(
     design.share_noise(run_number(run))
     work = engine.Work.for_points(scenario._native, design, names, yes)
     values, error = work.numbers(work.runs, threads(jobs, scenario), names)
-    if error is not None:
-        _check_keys(scenario, keys)
+    if error is not None and np.isnan(values).all() and not all(is_known(scenario, key) for key in keys):
+        # The error of a key for which no value would be accepted.
+        scenario.with_(dict(zip(keys, points[0].tolist(), strict=True)))
     values[np.isnan(values)] = missing
     return values[:, 0] if isinstance(metrics, str) else values
-
-
-def _check_keys(scenario: Scenario, keys: Sequence[str]) -> None:
-    """Raise the error of a key that no value would be accepted for."""
-    for key in keys:
-        if not is_known(scenario, key):
-            scenario.with_(key, 0.0)

@@ -67,7 +67,7 @@ pub fn seeds(seeds: &Seeds) -> io::Result<Vec<Vec<u8>>> {
 fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>> {
     let scenario = Scenario::parse("s.toml", text)?;
     let study = Campaign::new(scenario, "s.toml", None)?;
-    let run = CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(study.scenario().clone(), 0);
     let from = with_layout(Campaign::provenance(&run), &run.scenario, detail);
     let mut log = LogBytes::new(&from, detail)?;
     let metrics = Campaign::simulate(&run, (&mut log, Scene::for_detail(&run.scenario, detail)))?;

@@ -6,7 +6,8 @@ use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice};
 
 use super::super::readable;
-use super::table::{CampaignRuns, MetricColumn};
+use super::metric_column::MetricColumn;
+use super::table::CampaignRuns;
 
 /// Least and largest number of bars of a histogram.
 const BARS: [f64; 2] = [5.0, 60.0];

@@ -3,10 +3,12 @@
 mod curve;
 mod distribution;
 mod fan;
+mod metric_column;
 mod parts;
 mod region;
 mod scatter;
 mod table;
+mod text_cells;
 mod worst;
 
 use std::collections::BTreeMap;
@@ -23,7 +25,8 @@ use crate::campaign::MAIN;
 use crate::error::CliError;
 use crate::figure_files::FigureTarget;
 use crate::{print, say};
-use table::{CampaignRuns, MetricColumn};
+use metric_column::MetricColumn;
+use table::CampaignRuns;
 
 /// Largest number of metrics that are drawn if none is named.
 const MOST: usize = 4;
@@ -189,25 +192,27 @@ fn metrics<'a>(
     path: &Path,
     runs: &'a CampaignRuns,
 ) -> Result<Vec<&'a MetricColumn>, CliError> {
-    let named = |name: &str| runs.metrics.iter().find(|metric| metric.name == name);
+    let named = |name: &str| runs.metrics.iter().find(|metric| metric.is_named(name));
     if requested.is_empty() {
         // A metric that only repeats a key is left out.
         let is_informative = |metric: &&MetricColumn| {
             metric.varies() && runs.keys.iter().all(|key| key.values != metric.values)
         };
-        // A required metric comes first.
-        let required = runs.requirement();
-        let required = required.as_deref();
-        let others = MAIN.into_iter().filter(|name| Some(*name) != required);
+        // Requirements come first.
+        let (columns, limited) = runs.requirements();
+        let column = |name: &String| runs.metrics.iter().find(|metric| metric.name == *name);
+        let required: Vec<_> = columns.iter().filter_map(column).filter(is_informative).collect();
+        let most = MOST.max(required.len());
+        let others = MAIN.into_iter().filter(|name| !limited.iter().any(|limited| limited == name));
         let main: Vec<_> =
-            required.into_iter().chain(others).filter_map(named).filter(is_informative).collect();
+            required.into_iter().chain(others.filter_map(named).filter(is_informative)).collect();
         let any = runs.metrics.iter().filter(is_informative);
         let found: Vec<_> = if main.is_empty() { any.collect() } else { main };
-        return Ok(found.into_iter().take(MOST).collect());
+        return Ok(found.into_iter().take(most).collect());
     }
     let metric = |name: &String| {
         named(name).ok_or_else(|| {
-            let names: Vec<_> = runs.metrics.iter().map(|metric| metric.name.as_str()).collect();
+            let names: Vec<_> = runs.metrics.iter().map(MetricColumn::title).collect();
             let (path, names) = (path.display(), names.join(", "));
             CliError::Arguments(format!(
                 "{path}: there is no metric `{name}` that is a number\n\nhint: it has {names}"
@@ -219,7 +224,7 @@ fn metrics<'a>(
 
 /// Returns the figures of a kind, with their names.
 fn drawn(kind: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Vec<(String, Figure)> {
-    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, kind.name(), metric.name);
+    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, kind.name(), metric.file_name());
     let each = |figure: &dyn Fn(&MetricColumn) -> Option<Figure>| {
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };

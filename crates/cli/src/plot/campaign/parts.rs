@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker};
 use flexsc_core::metrics::{self, goal, list_element};
 
-use super::table::{CampaignKey, CampaignRuns, MetricColumn, ScenarioSource, TextCells};
+use super::metric_column::{MetricColumn, elements, requirement_label};
+use super::table::{CampaignKey, CampaignRuns, ScenarioSource};
+use super::text_cells::TextCells;
 use crate::campaign::{MAIN, part_files};
 use crate::error::CliError;
 
@@ -63,17 +65,18 @@ pub fn campaign_runs(
     // Words and lists have no place on an axis.
     let numeric = |key: &&str| work.fields().iter().any(|field| field.name == *key && is_number(&field));
     let drawn: Vec<&str> = keys.iter().copied().filter(numeric).collect();
-    let element = |name: &String| {
-        let (list, _) = list_element(name)?;
+    let element = |name: String| {
+        let (list, _) = list_element(&name)?;
         let is_list = |field: &&ColumnHeading| field.name == list && field.kind == ColumnKind::Lists;
         work.fields().iter().find(is_list)?;
-        Some((name.clone(), metrics::meaning(list, Some(scenario))?))
+        let meaning = metrics::meaning(list, Some(scenario))?;
+        Some((name, meaning))
     };
     let fields: Vec<(String, _)> = all
         .into_iter()
         .filter(|field| wanted(&field.name))
         .filter_map(|field| Some((field.name.clone(), metrics::meaning(&field.name, Some(scenario))?)))
-        .chain(named.iter().filter_map(element))
+        .chain(elements(Some(scenario), named).into_iter().filter_map(element))
         .collect();
     let names: Vec<&str> =
         drawn.iter().copied().chain(fields.iter().map(|(name, _)| name.as_str())).collect();
@@ -93,7 +96,10 @@ pub fn campaign_runs(
         swept: varied.contains(name),
     };
     let keys = drawn.iter().zip(columns.by_ref()).map(key).collect();
-    let metric = |((name, meaning), (texts, values))| MetricColumn { meaning, name, texts, values };
+    let metric = |((name, meaning), (texts, values)): ((String, _), _)| {
+        let requirement = requirement_label(scenario, &name);
+        MetricColumn { meaning, name, requirement, texts, values }
+    };
     let metrics = fields.into_iter().zip(columns).map(metric).collect();
     Ok(CampaignRuns {
         name: scenario.name.clone(),

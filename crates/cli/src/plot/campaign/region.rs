@@ -5,7 +5,8 @@ use flexsc_figure::palette::viridis;
 use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::super::readable;
-use super::table::{CampaignRuns, MetricColumn};
+use super::metric_column::MetricColumn;
+use super::table::CampaignRuns;
 
 /// Number of shades.
 const SHADES: usize = 48;

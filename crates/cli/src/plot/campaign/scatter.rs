@@ -4,7 +4,8 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::super::readable;
-use super::table::{CampaignKey, CampaignRuns, MetricColumn};
+use super::metric_column::MetricColumn;
+use super::table::{CampaignKey, CampaignRuns};
 
 /// Largest number of keys with a panel each.
 const PANELS: usize = 4;

@@ -4,10 +4,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::metrics::{self, MetricDescription, list_element};
+use flexsc_core::metrics::{self, list_element};
 use flexsc_core::record::atomic_file;
-use flexsc_core::scenario::{AssessedRequirement, RequirementSource};
+use flexsc_core::scenario::AssessedRequirement;
 
+use super::metric_column::{
+    MetricColumn, elements, required_metric, requirement_label, value_of_requirement,
+};
+use super::text_cells::TextCells;
 use crate::campaign::SCENARIO;
 use crate::error::CliError;
 
@@ -35,32 +39,6 @@ pub enum ScenarioSource {
     Directory(PathBuf),
 }
 
-/// Source of the cells' texts in a column.
-pub enum TextCells {
-    /// Texts of a table.
-    Cells(Vec<String>),
-    /// Integers, formatted from the values.
-    Integers,
-    /// Numbers, formatted from the values.
-    Numbers,
-    /// Goals, formatted as met or not.
-    Goals,
-}
-
-impl TextCells {
-    /// Returns the text of a cell with this value; empty without a value.
-    fn formatted(&self, index: usize, value: f64) -> String {
-        match self {
-            Self::Cells(cells) => cells[index].clone(),
-            Self::Goals if value > 0.0 => "met".to_owned(),
-            Self::Goals if value == 0.0 => "missed".to_owned(),
-            _ if value.is_nan() => String::new(),
-            Self::Integers => format!("{value}"),
-            Self::Numbers | Self::Goals => format!("{value:e}"),
-        }
-    }
-}
-
 /// Key that varies.
 pub struct CampaignKey {
     pub name: String,
@@ -69,16 +47,6 @@ pub struct CampaignKey {
     pub values: Vec<f64>,
     /// True if a sweep varies the key; otherwise it is drawn.
     pub swept: bool,
-}
-
-/// Metric of the runs.
-pub struct MetricColumn {
-    pub meaning: &'static MetricDescription,
-    /// Name of the metric, or of an element of it.
-    pub name: String,
-    /// Values of the metric as in the table, and as numbers; NaN for a run without a value.
-    pub texts: TextCells,
-    pub values: Vec<f64>,
 }
 
 /// Cells of a row by their columns.
@@ -196,6 +164,7 @@ impl TextTable {
                     all.push(MetricColumn {
                         meaning,
                         name: meaning.name.to_owned(),
+                        requirement: None,
                         texts: TextCells::Cells(texts),
                         values,
                     });
@@ -212,8 +181,8 @@ impl TextTable {
             }
         }
         let known = scenario.as_ref().map(|(scenario, _)| scenario);
-        all.extend(named.iter().filter_map(|name| {
-            let (list, index) = list_element(name)?;
+        all.extend(elements(known, named).into_iter().filter_map(|name| {
+            let (list, index) = list_element(&name)?;
             let meaning = metrics::meaning(list, known)?;
             let element = |text: &String| -> Option<f64> {
                 let values: Vec<Option<f64>> = serde_json::from_str(text).ok()?;
@@ -222,7 +191,8 @@ impl TextTable {
             let found: Vec<Option<f64>> = column(list).iter().map(element).collect();
             found.iter().find(|value| value.is_some())?;
             let values = found.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect();
-            Some(MetricColumn { meaning, name: name.clone(), texts: TextCells::Numbers, values })
+            let requirement = known.and_then(|scenario| requirement_label(scenario, &name));
+            Some(MetricColumn { meaning, name, requirement, texts: TextCells::Numbers, values })
         }));
         let errors = column("error");
         Ok(CampaignRuns {
@@ -241,25 +211,23 @@ fn is_about(column: &str) -> bool {
     ["run", "seed", "error"].contains(&column)
 }
 
-/// Returns the name of the metric that a requirement limits; `None` for a pointing index.
-fn required_metric(requirement: &AssessedRequirement) -> Option<String> {
-    match &requirement.source {
-        RequirementSource::Metric(name, None) => Some(name.clone()),
-        RequirementSource::Metric(name, Some(index)) => Some(format!("{name}[{index}]")),
-        RequirementSource::Error(_) => None,
-    }
-}
-
 impl CampaignRuns {
     /// Returns the keys that a sweep varies.
     pub fn swept(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
-    /// Returns the first metric on which the scenario has a requirement.
-    pub fn requirement(&self) -> Option<String> {
-        let (scenario, _) = self.scenario.as_ref()?;
-        scenario.study.requirements.iter().find_map(required_metric)
+    /// Returns the columns of the requirements by their names: the values of each `[[requirement]]`, and the metric that
+    /// `[reference]` limits; and the names of all limited metrics.
+    pub fn requirements(&self) -> (Vec<String>, Vec<String>) {
+        let Some((scenario, _)) = &self.scenario else { return Default::default() };
+        let all = &scenario.study.requirements;
+        let of_reference = all.len() - scenario.requirement.len();
+        let column = |(index, requirement): (usize, &AssessedRequirement)| {
+            let metric = required_metric(requirement).filter(|_| index < of_reference);
+            metric.unwrap_or_else(|| value_of_requirement(index))
+        };
+        (all.iter().enumerate().map(column).collect(), all.iter().filter_map(required_metric).collect())
     }
 
     /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
@@ -268,7 +236,7 @@ impl CampaignRuns {
         let (scenario, _) = self.scenario.as_ref()?;
         let requirements = &scenario.study.requirements;
         let of_metric = |(index, requirement): (usize, &AssessedRequirement)| {
-            let name = format!("requirement_values[{index}]");
+            let name = value_of_requirement(index);
             let is_it =
                 metric.name == name || required_metric(requirement).is_some_and(|name| name == metric.name);
             is_it.then_some(requirement.limit)
@@ -296,49 +264,6 @@ impl CampaignKey {
     /// Returns the key's value in a run, as TOML.
     pub fn text(&self, index: usize) -> String {
         self.texts.formatted(index, self.values[index])
-    }
-}
-
-impl MetricColumn {
-    /// Returns the metric's value in a run as text; empty without a value.
-    pub fn text(&self, index: usize) -> String {
-        self.texts.formatted(index, self.values[index])
-    }
-
-    /// Returns the metric's existing values, sorted.
-    pub fn sorted(&self) -> Vec<f64> {
-        let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
-        values.sort_by(f64::total_cmp);
-        values
-    }
-
-    /// Returns true if the metric differs between runs.
-    pub fn varies(&self) -> bool {
-        let sorted = self.sorted();
-        sorted.first() != sorted.last()
-    }
-
-    /// Returns the metric's name in words, without the unit, and the unit.
-    pub fn label(&self) -> (String, &'static str) {
-        let unit = self.meaning.unit;
-        let suffix = match unit {
-            "rad" => "_rad",
-            "rad/s" => "_rad_s",
-            "s" => "_s",
-            "J" => "_j",
-            "kg" => "_kg",
-            "N m" => "_nm",
-            "N m s" => "_nm_s",
-            _ => "",
-        };
-        let name = self.name.as_str();
-        let named = name.strip_suffix(suffix).unwrap_or(name);
-        // A body without inertia has accelerations as torques.
-        let bare = named.strip_suffix("_nm").or_else(|| named.strip_suffix("_nm_s"));
-        let name = bare.map_or_else(|| named.to_owned(), |bare| bare.replace("torque", "acceleration"));
-        let name = name.replace('_', " ");
-        // SI prefixes are only for simple units.
-        if unit.contains('²') { (format!("{name} ({unit})"), "") } else { (name, unit) }
     }
 }
 

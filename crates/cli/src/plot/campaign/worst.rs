@@ -3,11 +3,13 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::campaign::Design;
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::goal;
 use serde_json::json;
 
-use super::table::{CampaignRuns, MetricColumn, ScenarioSource};
+use super::metric_column::MetricColumn;
+use super::table::{CampaignRuns, ScenarioSource};
 use crate::number::short;
 
 /// Metrics whose larger values are better.
@@ -28,7 +30,7 @@ fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
         _ if neutral => f64::NAN,
         _ if MORE.contains(&name) => -value,
         _ if ONE.contains(&name) => value.ln().abs(),
-        _ if NEVER.contains(&name) && value.is_nan() => f64::INFINITY,
+        _ if (NEVER.contains(&name) || metric.requirement.is_some()) && value.is_nan() => f64::INFINITY,
         _ => value.abs(),
     };
     (!bad.is_nan()).then_some(bad)
@@ -69,7 +71,7 @@ fn worst<'a>(
         for (_, index) in bad.into_iter().take(most) {
             let text = metric.text(index);
             let value = if text.is_empty() { "never".to_owned() } else { text };
-            worst.push(reported(&metric.name, index, value));
+            worst.push(reported(metric.title(), index, value));
         }
     }
     worst
@@ -78,6 +80,8 @@ fn worst<'a>(
 /// Returns the command that repeats a run, with its log and a table of its own.
 fn command(runs: &CampaignRuns, directory: &Path, scenario: &Path, index: usize) -> String {
     let number = runs.numbers[index];
+    let description = std::fs::read_to_string(scenario).unwrap_or_default();
+    let noise_run = Design::described_noise_run(&description, number);
     let mut command = format!("flexsc simulate {}", quoted(&scenario.display().to_string()));
     for key in runs.swept() {
         let _ = write!(command, " --set {}", quoted(&format!("{}={}", key.name, key.text(index))));
@@ -85,8 +89,8 @@ fn command(runs: &CampaignRuns, directory: &Path, scenario: &Path, index: usize)
     let own: PathBuf = directory.join(format!("run-{number}"));
     let _ = write!(
         command,
-        " --runs {number}:{} --log full --table csv -o {}",
-        number + 1,
+        " --runs {noise_run}:{} --log full --table csv -o {}",
+        noise_run + 1,
         quoted(&own.display().to_string())
     );
     command

@@ -26,7 +26,7 @@ fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
 
 /// Returns the metrics of a single run as text, with digits for all bits.
 fn single(number: u64, scenario: &Scenario) -> String {
-    let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(scenario.clone(), number);
     Campaign::simulate(&run, ()).expect("a run").to_json().to_string()
 }
 

@@ -120,5 +120,5 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     text = Scenario.parse(document(scenario.name, values), scenario.name).to_toml()
     beside = f"modes = {toml(scenario.name, 'modes', table.name)}"
     text = re.sub(r"^modes = .*$", lambda _: beside, text, count=1, flags=re.MULTILINE)
-    engine.write(file, text)
+    engine.write(file, text.encode())
     return table

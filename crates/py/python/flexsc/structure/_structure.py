@@ -229,7 +229,7 @@ def write_modes(path: str | os.PathLike[str], modes: Sequence[Mapping[str, Any]]
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(kept)
     writer.writerows(map(repr, row) for row in zip(*kept.values(), strict=True))
-    engine.write(path, text.getvalue())
+    engine.write(path, text.getvalue().encode())
 
 
 Structure.__module__ = "flexsc.structure"
