@@ -218,8 +218,49 @@ fn what_does_not_fit_is_refused_with_its_key() {
     for (keys, key) in [
         ("static = [1e-6, 2e-6]", "imbalance.static"),
         ("dynamic = [1e-6]", "imbalance.dynamic"),
+        ("angle = [0, 1]", "imbalance.angle"),
         ("positions = [[0, 0, 1]]", "imbalance.positions"),
     ] {
         assert_eq!(wheels(keys).allocation().expect_err("refused").key, key);
     }
+}
+
+/// A rotor that starts half a turn ahead pushes the other way once per turn, and alike twice per turn; a quarter ahead, its
+/// cosine is the sine of one that starts at 0.
+#[test]
+fn loads_begin_at_the_angle_of_the_rotor() {
+    let scenario = Scenario::parse("craft", CRAFT).expect("valid");
+    let model = &scenario.model.spacecraft().expect("valid").model;
+    let harmonics = "static = 7.2e-6, dynamic = 3e-7, phase = 0.4, \
+                     harmonics = [{ order = 2.0, force = 1e-6, axial = 2e-6, phase = 0.7 }]";
+    let lines = |angle: f64| {
+        let found = wheels(&format!("{harmonics}, angle = [0, {angle}, 0, 0]")).bearings(model);
+        found.expect("valid")[1].lines.clone()
+    };
+    let [at_rest, half, quarter] = [0.0, std::f64::consts::PI, std::f64::consts::FRAC_PI_2].map(lines);
+    let near = |one: &Vector, other: &Vector| (one - other).norm() < 1e-15 * other.norm().max(1e-9);
+    for part in 0..2 {
+        assert!(near(&half[0].force[part], &-at_rest[0].force[part]));
+        assert!(near(&half[0].torque[part], &-at_rest[0].torque[part]));
+        assert!(near(&half[1].force[part], &at_rest[1].force[part]));
+    }
+    assert!(
+        near(&quarter[0].force[0], &at_rest[0].force[1]) && near(&quarter[0].force[1], &-at_rest[0].force[0])
+    );
+}
+
+/// Equal wheels that turn against each other cancel where they start at one angle: `check` says so.
+#[test]
+fn loads_that_cancel_are_remarked() {
+    let dir = crate::util::Dir::with(&["wheel-run-up"]);
+    let remark = "starts equal wheels of opposite speeds at the same angle";
+    let check = |more: &str| {
+        let equal =
+            "--set actuator.wheels.imbalance.static=1e-6 --set actuator.wheels.imbalance.dynamic=1e-7";
+        dir.run(&format!("check wheel-run-up.toml {equal} {more}")).exits(0).err
+    };
+    let told = check("");
+    assert!(told.contains(remark), "{told}");
+    assert!(!check("--set actuator.wheels.imbalance.angle=[0,1,2,3]").contains(remark));
+    assert!(!dir.run("check wheel-run-up.toml").exits(0).err.contains(remark));
 }

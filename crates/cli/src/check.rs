@@ -80,10 +80,28 @@ fn costly_imbalance(scenario: &Scenario) -> Option<ConfigError> {
     let [whole, rest] = [scenario.cost(None, false).seconds, balanced.ok()?.cost(None, false).seconds];
     (whole - rest > COSTLY * whole).then(|| {
         let why = format!(
-            "takes most of the time of a run, about {} of {}: steps resolve each turn of the wheels",
-            seconds(whole - rest),
+            "multiplies the time of a run by {}, to about {}, since steps resolve each turn of the wheels: leave it out unless you study \
+             vibration",
+            digits((whole / rest).round()),
             seconds(whole)
         );
+        ConfigError::new(format!("{key}.imbalance"), why)
+    })
+}
+
+/// Returns the remark that the loads of unbalanced wheels cancel, because their rotors start at the same angle and turn
+/// against each other.
+fn cancelling_imbalance(scenario: &Scenario) -> Option<ConfigError> {
+    let (wheels, key) = scenario.actuator.wheels()?;
+    let imbalance = wheels.imbalance.as_ref()?;
+    let speeds = wheels.speeds(wheels.count());
+    let mut pairs = (0..speeds.len()).flat_map(|one| (0..one).map(move |other| (one, other)));
+    let cancels = |(one, other): (usize, usize)| {
+        speeds[one] != 0.0 && speeds[one] == -speeds[other] && imbalance.is_in_step(one, other)
+    };
+    pairs.any(cancels).then(|| {
+        let why = "starts equal wheels of opposite speeds at the same angle: their loads cancel in part until noise drives them \
+                   apart; give `angle` for each wheel, or draw it in `[uncertain]`";
         ConfigError::new(format!("{key}.imbalance"), why)
     })
 }
@@ -112,6 +130,7 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError
         .into_iter()
         .chain(scenario.aliased_modes())
         .chain(costly_imbalance(scenario))
+        .chain(cancelling_imbalance(scenario))
         .chain(predicted_cycle(scenario))
         .chain(refused_draws(path, scenario))
         .collect();

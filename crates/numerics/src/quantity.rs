@@ -95,6 +95,12 @@ quantity!(
 );
 
 quantity!(
+    /// A factor of the density of the air, whose models err by less.
+    DensityFactor, |v| (1e-3..=1e3).contains(&v), "a factor of 0.001 to 1000",
+    {"type": "number", "minimum": 1e-3, "maximum": 1e3}
+);
+
+quantity!(
     /// The error that an integration may make in each step, relative to 1 or to the largest angle.
     Tolerance, |v| (1e-14..=1e-3).contains(&v), "a tolerance of 1e-14 to 1e-3",
     {"type": "number", "minimum": 1e-14, "maximum": 1e-3}

@@ -1,23 +1,19 @@
 //! Estimate of time, memory and disk space before a computation: infeasible scenarios are rejected, expensive ones need
 //! a confirmation.
 
-use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
+use flexsc_control::actuator::{ActuatorTask, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::{AttitudeTarget, Relay};
+use flexsc_control::law::Relay;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::flow::LONGEST_TURN;
-use flexsc_dynamics::periodic_torque::PeriodicTorque;
-use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
-use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::NonNegative;
 use flexsc_numerics::time::Span;
 use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 
 use super::Scenario;
-use super::pace::{QUIET_RATE, QUIET_STEPS, STEP, SWITCHES, TURNS};
+use super::pace::{PUSHES, QUIET_STEPS, STEP, SWITCHES, TURNS};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;
@@ -41,6 +37,8 @@ const MUCH_DISK: f64 = 2e10;
 
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
+/// Step (s) below which the torques of the environment are the reason for its length.
+const PUSHED_STEP: f64 = 0.01;
 /// Number of runs about one axis that take the time of one in SIMD lanes.
 const LANES: f64 = 4.5;
 /// Memory kept for each run of a campaign (bytes).
@@ -299,9 +297,11 @@ impl Scenario {
         }
         if let Some(body) = self.model.three_axis().filter(|body| body.small_angles.is_none()) {
             let rate = self.largest_expected_rate(body);
-            let turn = LONGEST_TURN / rate;
+            let turns = LONGEST_TURN / rate;
+            let pushed = libm::sqrt(LONGEST_TURN / self.largest_acceleration(body));
+            let turn = turns.min(pushed);
             let step = body.flexible().map_or(turn, |flexible| flexible.step(rate));
-            let step = step.min(self.rotor_step());
+            let step = step.min(self.rotor_step(body)).min(pushed);
             if step.is_finite() {
                 let count = if self.is_quiet(rate) {
                     // Applied forces shorten steps to those that resolve the modes.
@@ -310,7 +310,8 @@ impl Scenario {
                 } else {
                     duration / step
                 };
-                steps.push((TURNS.to_owned(), count));
+                let key = if pushed < PUSHED_STEP { PUSHES } else { TURNS };
+                steps.push((key.to_owned(), count));
             }
         }
         steps
@@ -320,58 +321,6 @@ impl Scenario {
     fn closed_form_axes(&self) -> &[AxisModel] {
         let has_closed_form = self.model.three_axis().is_none_or(|body| body.small_angles.is_some());
         if has_closed_form { &self.study.axes } else { &[] }
-    }
-
-    /// Returns true if a three-axis body of this rate (rad/s) holds its attitude in surroundings, and its steps need not resolve
-    /// its modes.
-    fn is_quiet(&self, rate: f64) -> bool {
-        let study = &self.study;
-        rate < QUIET_RATE
-            && study.surroundings.as_ref().is_some_and(|around| around.thermal_forces().is_empty())
-            && study.drives.is_none()
-            && study.hinges() == 0
-            && study.bearings.is_empty()
-            && self.actuator.control_moment_gyros().is_none()
-    }
-
-    /// Returns the time in which forces act at points of the body (s).
-    fn forced_time(&self) -> f64 {
-        let duration = self.duration.seconds();
-        let forces = self.disturbance.iter().filter(|disturbance| disturbance.force.is_some());
-        let times = forces.map(|disturbance| {
-            let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
-            let part = disturbance.pulse.map_or(1.0, |pulse| pulse.on.seconds() / pulse.period.seconds());
-            part * (until - disturbance.from.get()).max(0.0)
-        });
-        times.sum::<f64>().min(duration)
-    }
-
-    /// Returns the largest frequency of the sinusoidal torques of disturbances and failures (rad/s); 0 without.
-    pub(super) fn largest_sine_frequency(&self) -> f64 {
-        let members = self.actuator.members();
-        let failures = members.iter().flat_map(|member| member.kind.failures()).flat_map(Failure::sines);
-        let disturbances = self.disturbance.iter().flat_map(|disturbance| &disturbance.sines);
-        failures.chain(disturbances).map(|sine| sine.frequency.get()).fold(0.0, f64::max)
-    }
-
-    /// Returns the expected largest frequency (rad/s) of the rotation and loads of a three-axis body.
-    fn largest_expected_rate(&self, body: &ThreeAxisModel) -> f64 {
-        let start = vector(&body.rate).norm();
-        let limits = self.targets().iter().filter_map(AttitudeTarget::fastest).map(|(_, rate)| rate);
-        let around = self.study.surroundings.as_ref().map_or(0.0, Surroundings::frequency);
-        let own = body.disturbance.as_ref().map_or(0.0, PeriodicTorque::frequency);
-        let gimbals =
-            self.actuator.control_moment_gyros().map_or(0.0, |(gyros, _)| gyros.largest_gimbal_rate());
-        limits.fold(start, f64::max) + around + own + gimbals + self.largest_sine_frequency()
-    }
-
-    /// Returns the length of steps that resolve viscous friction and the imbalance of wheels at their initial or bias
-    /// speed (s); infinite without wheels.
-    fn rotor_step(&self) -> f64 {
-        let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
-        let highest = self.study.bearings.iter().map(Bearing::highest_order).fold(0.0, f64::max);
-        let slowing = self.study.bearings.iter().map(Bearing::viscous_rate).fold(0.0, f64::max);
-        IMBALANCE_PHASE / (highest * wheels.largest_initial_speed()).max(slowing)
     }
 
     /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.

@@ -26,7 +26,8 @@ pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Dateti
 
 /// Returns the error of a scenario's `epoch` that is no date and time from 1970 to 2500.
 pub fn fault(epoch: Option<&Datetime>) -> Option<ConfigError> {
-    let why = "must be a date and time from 1970 to 2500, such as 2026-03-20T14:46:00Z";
+    let why = "must be a date and time from 1970 to 2500, such as 2026-03-20T14:46:00Z; a second 60 is a leap second, at the \
+               end of June or December, UTC";
     epoch.filter(|epoch| nanoseconds_since_1970(epoch).is_none()).map(|_| ConfigError::new("epoch", why))
 }
 
@@ -37,7 +38,7 @@ pub fn date_from_text(text: &str) -> Option<u64> {
 }
 
 /// Returns the nanoseconds since 1970 of a date and time, which is UTC unless it has an offset; `None` outside 1970 to
-/// 2500.
+/// 2500, and for a second 60 that cannot be a leap second. A leap second has the count of the second after it.
 pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {
     let (date, time) = (epoch.date?, epoch.time?);
     // Days in the civil calendar, with years that begin in March, so that a leap day comes last.
@@ -56,7 +57,14 @@ pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {
         i64::from(time.hour) * 3600 + i64::from(time.minute) * 60 + i64::from(time.second.unwrap_or(0));
     let seconds = u64::try_from(days * 86_400 + clock - offset).ok()?;
     let nanoseconds = u64::from(time.nanosecond.unwrap_or(0));
-    (date.year < 2500).then(|| seconds * 1_000_000_000 + nanoseconds)
+    let count = (date.year < 2500).then(|| seconds * 1_000_000_000 + nanoseconds)?;
+    (time.second != Some(60) || follows_leap_second(count)).then_some(count)
+}
+
+/// Returns true if a leap second may be inserted before a count of nanoseconds since 1970: at the end of June or December, UTC.
+fn follows_leap_second(nanoseconds: u64) -> bool {
+    let Some(Datetime { date: Some(day), time: Some(time), .. }) = date(nanoseconds) else { return false };
+    matches!((day.month, day.day), (1 | 7, 1)) && time.hour == 0 && time.minute == 0 && time.second == Some(0)
 }
 
 /// Returns the date and time, UTC, of a count of nanoseconds since 1970; `None` after 2500.
@@ -105,5 +113,21 @@ mod tests {
         assert_eq!(at("2024-02-29T23:59:59.5+01:00"), Some(1_709_247_599_500_000_000));
         assert_eq!(at("1969-12-31T23:00:00Z"), None);
         assert_eq!(at("2026-03-20"), None);
+    }
+
+    /// A leap second ends the UTC day at the end of June or December; no other minute has a second 60.
+    #[test]
+    fn leap_seconds_end_half_years() {
+        let at = |text: &str| nanoseconds_since_1970(&text.parse().expect("a date"));
+        assert_eq!(at("2016-12-31T23:59:60Z"), at("2017-01-01T00:00:00Z"));
+        assert_eq!(at("2015-07-01T01:59:60.5+02:00"), at("2015-07-01T00:00:00.5Z"));
+        for text in [
+            "2027-03-21T00:00:60Z",
+            "2016-12-31T23:58:60Z",
+            "2016-12-30T23:59:60Z",
+            "2017-01-01T23:59:60+02:00",
+        ] {
+            assert_eq!(at(text), None, "{text}");
+        }
     }
 }

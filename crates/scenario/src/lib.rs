@@ -16,6 +16,7 @@ mod drift_checks;
 mod environment_checks;
 mod epoch;
 mod estimator_context;
+mod expected_motion;
 mod failures;
 mod fast_path;
 mod file_name;

@@ -9,6 +9,8 @@ use super::Scenario;
 
 /// The key of the steps of a rotation.
 pub const TURNS: &str = "duration";
+/// Key of the steps of a rotation that torques of the environment shorten.
+pub(super) const PUSHES: &str = "environment";
 /// Key to which the switchings of a relay law are attributed.
 pub(super) const SWITCHES: &str = "law.relay.hysteresis";
 
@@ -66,7 +68,7 @@ impl Scenario {
         let (mut turns, mut looks, mut events, mut windows, mut switchings) = (0.0, 0.0, 0.0_f64, 0.0, 0.0);
         for (key, count) in acts {
             match key {
-                _ if *key == TURNS => turns += count,
+                _ if *key == TURNS || *key == PUSHES => turns += count,
                 _ if *key == SWITCHES => switchings += count,
                 _ if key.ends_with(".exposure") => looks += count,
                 _ if key.ends_with(".window") => windows += count,
@@ -137,9 +139,8 @@ impl Scenario {
             let is_driven = self.study.drives.is_some() || !around.thermal_forces().is_empty();
             return Some(if is_driven { DRIVEN } else { SURROUNDED });
         }
-        if !self.study.bearings.is_empty() {
-            return Some(BEARINGS);
-        }
-        (self.largest_sine_frequency() > 0.0).then_some(SINES)
+        let bearings = (!self.study.bearings.is_empty()).then_some(BEARINGS);
+        let sines = (self.largest_sine_frequency() > 0.0).then_some(SINES);
+        bearings.into_iter().chain(sines).reduce(|one, other| (one.0 + other.0, one.1 + other.1))
     }
 }

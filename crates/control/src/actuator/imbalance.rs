@@ -15,7 +15,7 @@ use super::per_wheel::PerWheel;
 /// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
 ///
 /// Each force and torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1 is z x a of the
-/// wheel's axis a, or x of one along z, and e2 is a x e1.
+/// wheel's axis a, or x of one along z, and e2 is a x e1. The angle th begins at `angle`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Imbalance {
@@ -28,6 +28,9 @@ pub struct Imbalance {
     /// Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
     #[serde(default)]
     pub phase: PerWheel<Finite>,
+    /// Angle of the rotor at the start (rad); one number for all wheels, or one for each.
+    #[serde(default, skip_serializing_if = "PerWheel::is_default")]
+    pub angle: PerWheel<Finite>,
     /// Further harmonics of the speed, the same for all wheels.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub harmonics: Vec<Harmonic>,
@@ -68,12 +71,21 @@ impl Imbalance {
         self.static_.validate_count("static", wheels)?;
         self.dynamic.validate_count("dynamic", wheels)?;
         self.phase.validate_count("phase", wheels)?;
+        self.angle.validate_count("angle", wheels)?;
         if !self.positions.is_empty() && self.positions.len() != wheels {
             let why =
                 format!("must be one for each of {}, got {}", counted(wheels, "wheel"), self.positions.len());
             return Err(ConfigError::new("positions", why));
         }
         Ok(())
+    }
+
+    /// Returns true if two wheels shake the body alike, but for their axes, from the start on at equal or opposite speeds.
+    pub fn is_in_step(&self, one: usize, other: usize) -> bool {
+        self.static_.for_wheel(one) == self.static_.for_wheel(other)
+            && self.dynamic.for_wheel(one) == self.dynamic.for_wheel(other)
+            && self.phase.for_wheel(one) == self.phase.for_wheel(other)
+            && self.angle.for_wheel(one) == self.angle.for_wheel(other)
     }
 
     /// Returns the harmonic lines of a wheel that is mounted at its point of a body.
@@ -119,14 +131,15 @@ impl Imbalance {
         let times = |vectors: [Vector; 2], by: f64| vectors.map(|part| part * by);
         let plus = |a: [Vector; 2], b: [Vector; 2]| [a[0] + b[0], a[1] + b[1]];
         let (force, torque) = (self.static_.for_wheel(wheel).get(), self.dynamic.for_wheel(wheel).get());
+        let (phase, angle) = (self.phase.for_wheel(wheel).get(), self.angle.for_wheel(wheel).get());
         let mut lines = Vec::new();
         if force > 0.0 || torque > 0.0 {
-            let ahead = force_at(self.phase.for_wheel(wheel).get());
-            lines.push(line(1.0, times(force_at(0.0), force), times(ahead, torque)));
+            lines.push(line(1.0, times(force_at(angle), force), times(force_at(angle + phase), torque)));
         }
         for harmonic in &self.harmonics {
-            let (sin, cos) = libm::sincos(harmonic.phase.get());
-            let across = force_at(harmonic.phase.get());
+            let phase = harmonic.order.get() * angle + harmonic.phase.get();
+            let (sin, cos) = libm::sincos(phase);
+            let across = force_at(phase);
             let along = times([rotor.axis * cos, rotor.axis * -sin], harmonic.axial.get());
             let force = plus(times(across, harmonic.force.get()), along);
             lines.push(line(harmonic.order.get(), force, times(across, harmonic.torque.get())));

@@ -45,6 +45,13 @@ impl<T: Copy + Default> PerWheel<T> {
     }
 }
 
+impl<T: Default + PartialEq> PerWheel<T> {
+    /// Returns true if the value of all wheels is the default.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 impl<T: Default> Default for PerWheel<T> {
     fn default() -> Self {
         Self::All(T::default())

@@ -156,7 +156,8 @@ impl Wheels {
         ActiveFailures::new(&self.faults, own)
     }
 
-    pub(super) fn speeds(&self, count: usize) -> Vec<f64> {
+    /// Returns the initial speed (rad/s) of each of `count` wheels.
+    pub fn speeds(&self, count: usize) -> Vec<f64> {
         (0..count).map(|wheel| self.speeds.get(wheel).map_or(0.0, |speed| speed.get())).collect()
     }
 
@@ -230,6 +231,13 @@ impl Wheels {
     pub fn largest_initial_speed(&self) -> f64 {
         let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());
         self.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::max)
+    }
+
+    /// Returns the largest speed (rad/s) of a wheel on a body at rest, by the limits of its speed and its momentum; `None` without
+    /// a limit.
+    pub fn speed_bound(&self) -> Option<f64> {
+        let full = self.momentum.map(|momentum| momentum.get() / self.inertia.get());
+        self.speed_limit.map(Positive::get).into_iter().chain(full).reduce(f64::min)
     }
 
     /// Returns the bearings of the wheels on a body.

@@ -1774,7 +1774,8 @@ class Ideal(Part):
 class Imbalance(Part):
     """Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th. Each force and
     torque is its coefficient times Omega², along e1 cos(k th + phase) + e2 sin(k th + phase), where e1
-    is z x a of the wheel's axis a, or x of one along z, and e2 is a x e1.
+    is z x a of the wheel's axis a, or x of one along z, and e2 is a x e1. The angle th begins at
+    `angle`.
 
     Args:
         static: Static imbalance (kg m): the force once per turn; one number for all wheels, or one for
@@ -1783,6 +1784,7 @@ class Imbalance(Part):
             each. Default: 0.0.
         phase: Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
             Default: 0.0.
+        angle: Angle of the rotor at the start (rad); one number for all wheels, or one for each.
         harmonics: Further harmonics of the speed, the same for all wheels.
         point: Point of the structure at which the wheels are mounted; default: the first of the body's
             points.
@@ -1801,6 +1803,8 @@ class Imbalance(Part):
     """Phase lead of the torque over the force (rad); one number for all wheels, or one for each. Default:
     0.0.
     """
+    angle: float | Vector | None = None
+    """Angle of the rotor at the start (rad); one number for all wheels, or one for each."""
     harmonics: Sequence[Harmonic] | None = None
     """Further harmonics of the speed, the same for all wheels."""
     point: str | None = None

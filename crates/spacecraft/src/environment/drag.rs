@@ -8,7 +8,7 @@ use std::path::Path;
 use flexsc_formats::density_table::DensityTable;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::quantity::{DensityFactor, Finite, Positive};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ pub struct Drag {
     pub bulge_exponent: Option<Positive>,
     /// Factor of the density, of every model; default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub scale: Option<Positive>,
+    pub scale: Option<DensityFactor>,
     /// Drag coefficient.
     #[serde(default = "coefficient")]
     pub coefficient: Positive,
@@ -189,7 +189,7 @@ impl Drag {
             }
             _ => self.exponential(place.position.norm(), orbit),
         };
-        density * self.scale.map_or(1.0, Positive::get)
+        density * self.scale.map_or(1.0, DensityFactor::get)
     }
 
     /// Returns an upper bound of the density on an orbit (kg/m³).
@@ -204,7 +204,7 @@ impl Drag {
             }
             _ => self.exponential(orbit.nearest(), orbit),
         };
-        density * self.scale.map_or(1.0, Positive::get)
+        density * self.scale.map_or(1.0, DensityFactor::get)
     }
 
     /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude in air of a density (kg/m³), in
