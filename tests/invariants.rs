@@ -242,7 +242,7 @@ pub fn metrics_are_numbers(run: &Flown) -> Result<(), String> {
         let numbers = match value {
             MetricValue::Number(number) => vec![*number],
             MetricValue::Numbers(_) | MetricValue::Quantities(_) => value.numbers(),
-            MetricValue::Count(_) | MetricValue::Word(_) => Vec::new(),
+            MetricValue::Count(_) | MetricValue::Word(_) | MetricValue::Words(_) => Vec::new(),
         };
         let may_be_missing = meaning.doc.contains("null") || MISSING.contains(&meaning.name);
         let wrong = numbers.iter().find(|number| !(number.is_finite() || may_be_missing && number.is_nan()));

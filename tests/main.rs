@@ -60,6 +60,7 @@ mod earth_observer;
 mod envelopes;
 mod exposure;
 mod filters;
+mod goals;
 mod jets;
 mod linear_budgets;
 mod loops;
@@ -87,6 +88,7 @@ mod state_space;
 mod station;
 mod structured_tuning;
 mod swinging;
+mod target_losses;
 mod tuning;
 mod unloading;
 

@@ -128,7 +128,7 @@ fn magnetorquers_at_their_limit_are_counted() {
         [environment]\norbit = { semi_major_axis = 6.928e6, inclination = 1.7 }\nmagnetic_field = {}\n";
     let (metrics, trace) = flown(&Scenario::parse("tumble.toml", text).expect("valid"), 0, Detail::Full);
     let moments = within(&trace, "/magnetorquers", "axes", "moment_am2");
-    let at_limit = |axes: &[f64]| axes.iter().any(|moment| moment.abs() >= 0.3 * (1.0 - 1e-9));
+    let at_limit = |axes: &[f64]| axes.iter().any(|moment| moment.abs() >= 0.3 * 0.999);
     let limited = moments.chunks(3).filter(|axes| at_limit(axes)).count();
     let share = metrics.number("moment_limit_share").expect("a share");
     let logged = limited as f64 / (moments.len() / 3) as f64;

@@ -21,6 +21,40 @@ def test_metrics_are_the_commands(name: str, command: Command) -> None:
     assert {key: plain(value) for key, value in metrics.items()} == told["metrics"]
 
 
+FULL_WHEEL = """duration = 220.0
+law.attitude = { period = 0.25, bandwidth = 0.3 }
+[spacecraft]
+mass = 100.0
+inertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]
+[[sensor]]
+gyro = { period = 0.25 }
+[actuator.wheels]
+arrangement = "orthogonal"
+inertia = 0.02
+torque = 0.2
+momentum = 0.3
+[[target]]
+from = 100.0
+yaw = 1.0
+acceleration = 1e-3
+rate_limit = 1e-2
+"""
+
+
+def test_warnings_are_the_commands(tmp_path: Path, command: Command) -> None:
+    path = tmp_path / "full.toml"
+    path.write_text(FULL_WHEEL, encoding="utf-8")
+    [told] = json_lines(command("simulate", path, "--log", "none", "--json"))
+    run = Scenario.load(path).simulate(log="none")
+    assert list(run.warnings) == told["warnings"]
+    assert run.warnings[0].startswith("the target is lost: wheel 3 at its momentum limit for ")
+    assert run.metrics["target_loss_limits"] == ["wheel 3 at its momentum limit"]
+    # A limit that is never reached has a first time of NaN.
+    assert np.isnan(run.metrics["wheel_torque_limit_starts_s"]).all()
+    assert run.metrics == Scenario.load(path).simulate(log="none").metrics
+    assert shipped("relay-fixed").with_("duration", 10.0).simulate(log="none").warnings == ()
+
+
 @pytest.mark.parametrize(("log", "duration"), [("events", 20000.0), ("full", 2000.0)])
 def test_log_files_are_the_commands(
     log: Literal["events", "full"], duration: float, tmp_path: Path, command: Command

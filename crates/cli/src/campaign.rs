@@ -32,7 +32,7 @@ use crate::error::CliError;
 use crate::human::Units;
 use crate::results::print_lines;
 use crate::runs_table::RunsTable;
-use crate::{files, requirements, say, stop, summary};
+use crate::{files, requirements, run_warnings, say, stop, summary};
 use campaign_record::CampaignRecord;
 pub use campaign_record::SCENARIO;
 pub use options::{CampaignOptions, TableFormat};
@@ -42,8 +42,9 @@ pub use progress_table::{RunningMean, table as table_so_far};
 use report::{CampaignReport, are_alike, verdict, write_statistics};
 
 /// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
-pub const MAIN: [&str; 23] = [
+pub const MAIN: [&str; 24] = [
     "goal",
+    "target_losses",
     "envelope_late_mean_rad",
     "gain_final",
     "cycle_period_s",
@@ -348,7 +349,7 @@ pub fn object(
             if !verdicts.is_empty() {
                 object["requirements"] = requirements::json(&verdicts);
             }
-            let warnings = summary::warnings(campaign.scenario(), metrics);
+            let warnings = run_warnings::warnings(campaign.scenario(), metrics, Units::Engineering);
             if !warnings.is_empty() {
                 object["warnings"] = json!(warnings);
             }

@@ -44,6 +44,7 @@ mod reproduce;
 mod requirements;
 mod result_files;
 mod results;
+mod run_warnings;
 mod runs_table;
 mod sampled_loop;
 mod scenario;
@@ -81,6 +82,8 @@ pub use campaign::part_files::write_statistics_of;
 use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
+pub use human::Units;
+pub use run_warnings::warnings;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft
 #[derive(Parser)]

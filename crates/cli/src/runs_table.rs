@@ -5,7 +5,7 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use flexsc_core::campaign::{Campaign, RunOutcome};
+use flexsc_core::campaign::{Campaign, RunOutcome, WORD_SEPARATOR};
 use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::atomic_file::{self, AtomicFile};
 
@@ -166,6 +166,7 @@ fn cell(value: &MetricValue) -> String {
         MetricValue::Number(number) if number.is_nan() => String::new(),
         MetricValue::Number(number) => format!("{number:e}"),
         MetricValue::Word(word) => (*word).to_owned(),
+        MetricValue::Words(words) => words.join(WORD_SEPARATOR),
         MetricValue::Count(_) | MetricValue::Numbers(_) | MetricValue::Quantities(_) => {
             value.to_json().to_string()
         }

@@ -8,17 +8,13 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use flexsc_core::Scenario;
-use flexsc_core::control::actuator::{EndState, Saturation};
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::requirement_verdict::{self, Decision, RequirementVerdict};
 
 use crate::human::{Units, digits};
-use crate::{requirements, say};
-
-/// Share of a run with a wheel at its largest momentum or speed above which a warning says so.
-const FULL: f64 = 0.05;
+use crate::{requirements, run_warnings, say};
 
 /// Data of a summary and its units.
 struct Summary<'a> {
@@ -50,30 +46,9 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
     }
     summary.operation();
     requirements::print(&summary.requirements, units);
-    for warning in warnings(scenario, metrics) {
+    for warning in run_warnings::warnings(scenario, metrics, units) {
         say!("  warning        {warning}");
     }
-}
-
-/// Returns warnings about a run.
-pub fn warnings(scenario: &Scenario, metrics: &Metrics) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Some(share) = metrics.number("wheel_momentum_limit_share").filter(|share| *share > FULL) {
-        warnings.push(format!(
-            "a wheel is at its limit of momentum or speed in {:.0} % of the run, where it gives no torque one way",
-            100.0 * share
-        ));
-    }
-    if let (Some(MetricValue::Word(word)), Some(share)) =
-        (metrics.get("actuator_end"), metrics.number("actuator_limit_late_share"))
-    {
-        let seconds = Saturation::late_seconds(scenario.duration.seconds());
-        warnings.extend(EndState::warning(word, share, seconds));
-    }
-    if metrics.number("spectral_radius").is_some_and(|radius| radius >= 1.0) {
-        warnings.push("the sampled loop is unstable: its spectral radius is not below 1".to_owned());
-    }
-    warnings
 }
 
 impl Summary<'_> {
@@ -89,7 +64,10 @@ impl Summary<'_> {
 
     /// Prints the goal; `bands` are those about each of three axes (rad), if there are several.
     fn goal(&self, bands: &[f64]) {
-        let Some(MetricValue::Word(word)) = self.metrics.get("goal") else { return };
+        let Some(MetricValue::Word(word)) = self.metrics.get("goal").filter(|_| self.scenario.has_goal())
+        else {
+            return;
+        };
         let unmet = self.requirements.iter().filter(|verdict| verdict.decision != Decision::Met).count();
         let all = counted(self.requirements.len(), "requirement");
         let others = match unmet {

@@ -44,7 +44,7 @@ pub use merge::Merge;
 pub use motion_sampler::MotionSampler;
 pub use parquet::parquet_is_built_in;
 pub use row_maker::RowMaker;
-pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED};
+pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED, WORD_SEPARATOR};
 pub use sampling::Sampling;
 pub(crate) use sampling::{Dimension, MOST_DIMENSIONS};
 pub use summary::CampaignSummary;

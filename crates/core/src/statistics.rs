@@ -1,6 +1,6 @@
 //! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
 
-use crate::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, goal};
+use crate::metrics::{self, MetricDescription, MetricValue, Metrics, NamedMetric, goal};
 
 /// Quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -69,7 +69,9 @@ fn columns_of((meaning, value): &NamedMetric) -> Vec<(&'static MetricDescription
     let elements: Vec<Option<usize>> = match value {
         MetricValue::Count(_) | MetricValue::Number(_) => vec![None],
         MetricValue::Word(_) if goal::NAMES.contains(&meaning.name) => vec![None],
-        MetricValue::Word(_) => Vec::new(),
+        MetricValue::Word(_) | MetricValue::Words(_) => Vec::new(),
+        // The elements of one run are those of no other.
+        MetricValue::Numbers(_) if metrics::is_event_list(meaning.name) => Vec::new(),
         MetricValue::Numbers(_) | MetricValue::Quantities(_) => {
             (0..value.numbers().len()).map(Some).collect()
         }

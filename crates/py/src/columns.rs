@@ -45,6 +45,7 @@ pub fn metrics_to_dict<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Boun
                 dict.set_item(meaning.name, value.numbers().into_pyarray(py))?;
             }
             MetricValue::Word(word) => dict.set_item(meaning.name, word)?,
+            MetricValue::Words(words) => dict.set_item(meaning.name, words)?,
         }
     }
     Ok(dict)

@@ -269,7 +269,7 @@ fn simulate<'py>(
     log: &str,
     yes: bool,
     stepped: Option<&Commands>,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<String>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
     let Commands { commands, until } = Commands::from_stepped(stepped);
@@ -283,7 +283,8 @@ fn simulate<'py>(
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
         topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
-    Ok((columns::metrics_to_dict(py, &metrics)?, topics))
+    let warnings = flexsc_cli::warnings(&scenario.inner, &metrics, flexsc_cli::Units::Engineering);
+    Ok((columns::metrics_to_dict(py, &metrics)?, topics, warnings))
 }
 
 /// The estimated work of runs as a campaign has them, or of one run whose log of this detail stays in memory.

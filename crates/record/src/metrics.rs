@@ -28,6 +28,8 @@ pub enum MetricValue {
     Quantities(Vec<NumberWithUnit>),
     /// Word.
     Word(&'static str),
+    /// List of words or descriptions.
+    Words(Vec<String>),
 }
 
 /// Number with its unit.
@@ -89,6 +91,10 @@ impl Metrics {
                 MetricValue::Count(count) => push(0, *count as f64, "", meaning.unit),
                 MetricValue::Number(number) => push(0, *number, "", meaning.unit),
                 MetricValue::Word(word) => push(0, f64::NAN, word, meaning.unit),
+                MetricValue::Words(words) => {
+                    let each = words.iter().enumerate();
+                    each.for_each(|(index, word)| push(index, f64::NAN, word, meaning.unit));
+                }
                 MetricValue::Numbers(numbers) => {
                     let each = numbers.iter().enumerate();
                     each.for_each(|(index, number)| push(index, *number, "", meaning.unit));
@@ -127,8 +133,13 @@ impl MetricValue {
         match self {
             Self::Numbers(numbers) => numbers.clone(),
             Self::Quantities(quantities) => quantities.iter().map(|quantity| quantity.value).collect(),
-            Self::Count(_) | Self::Number(_) | Self::Word(_) => Vec::new(),
+            Self::Count(_) | Self::Number(_) | Self::Word(_) | Self::Words(_) => Vec::new(),
         }
+    }
+
+    /// Returns the words of a metric that has several; empty for others.
+    pub fn words(&self) -> &[String] {
+        if let Self::Words(words) = self { words } else { &[] }
     }
 
     /// Returns the value as JSON, with null for NaN.
@@ -139,6 +150,7 @@ impl MetricValue {
             Self::Numbers(numbers) => json!(numbers),
             Self::Quantities(_) => json!(self.numbers()),
             Self::Word(word) => json!(word),
+            Self::Words(words) => json!(words),
         }
     }
 }

@@ -22,6 +22,7 @@ fn line((meaning, value): &NamedMetric) -> MetricLine {
         MetricValue::Count(count) => count.to_string(),
         MetricValue::Number(value) => number(*value),
         MetricValue::Word(word) => (*word).to_owned(),
+        MetricValue::Words(words) => list(words, String::clone),
         MetricValue::Numbers(numbers) => list(numbers, |value| number(*value)),
         MetricValue::Quantities(quantities) => list(quantities, |quantity| {
             format!("{} {}", number(quantity.value), quantity.unit).trim_end().to_owned()

@@ -18,9 +18,22 @@ pub struct ModeTargetStart {
     pub distance: f64,
 }
 
+/// Stay in a mode of operation with one target.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct TargetVisit {
+    /// Index of the mode; 0 without modes.
+    pub mode: usize,
+    /// Number of changes of the mode before.
+    pub changes: u64,
+    /// Number of the target in the sequence.
+    pub target: usize,
+}
+
 /// Motion of a three-axis body at the start of a cycle, after its law has decided.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ThreeAxisCycle {
+    /// Mode of operation and target of the cycle.
+    pub visit: TargetVisit,
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,
     /// Energy of the elastic modes visible to the gyro (J).
@@ -42,6 +55,8 @@ pub struct ThreeAxisCycle {
 /// Extreme values of control moment gyros since the start, at the instants at which their gimbal rates change.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SteeringRecord {
+    /// Largest gimbal rate from the last change on (rad/s).
+    pub rate_rad_s: f64,
     /// Largest gimbal rate (rad/s).
     pub largest_rate_rad_s: f64,
     /// Smallest singularity measure.
@@ -53,6 +68,11 @@ pub struct SteeringRecord {
 impl SteeringRecord {
     /// Creates the values before the first command, all NaN.
     pub fn unknown() -> Self {
-        Self { largest_rate_rad_s: f64::NAN, least_measure: f64::NAN, largest_error_nm: f64::NAN }
+        Self {
+            rate_rad_s: f64::NAN,
+            largest_rate_rad_s: f64::NAN,
+            least_measure: f64::NAN,
+            largest_error_nm: f64::NAN,
+        }
     }
 }

@@ -4,7 +4,7 @@ use flexsc_control::actuator::{
     ActuatorAuthority, ActuatorKind, ActuatorPlacement, AssignedMember, GroupEffect, PulseWidth,
 };
 use flexsc_control::estimator::adaptive;
-use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, PlacedLaw, Stage};
+use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, LawKind, PlacedLaw, Stage};
 use flexsc_control::sensor::Tachometer;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
@@ -126,7 +126,7 @@ impl ResolvedScenario {
         match law.expected_band() {
             ErrorBand::None => None,
             ErrorBand::Absolute(band) => Some(band),
-            ErrorBand::Fraction(part) => {
+            band @ ErrorBand::Fraction(_) => {
                 // Relative to the whole rotation to the last target.
                 let end = Instant::START + written.duration;
                 let goal = self.profile.target(written.last_target_start(end));
@@ -134,7 +134,7 @@ impl ResolvedScenario {
                 let from =
                     before.map_or_else(|| body.attitude.get(), |target| self.profile.target(target.starts()));
                 let distance = rotation_vector(&goal, &from).norm();
-                (distance > 0.0).then_some(part * distance)
+                Some(band.band(distance)).filter(|band| band.is_finite())
             }
         }
     }
@@ -144,8 +144,7 @@ impl ResolvedScenario {
         let about = |mode: usize, axis: usize| {
             let law = written.mode[mode].law.about(axis);
             let authority = self.stage_authorities.get(axis).and_then(|modes| modes.get(mode));
-            let own = authority.and_then(|authority| law.band_with(authority));
-            own.map_or_else(|| law.expected_band(), ErrorBand::Absolute)
+            promised_band(law, authority)
         };
         let axes = self.axes.len();
         (0..written.mode.len()).map(|mode| (0..axes).map(|axis| about(mode, axis)).collect()).collect()
@@ -159,6 +158,12 @@ impl ResolvedScenario {
         }
         zones
     }
+}
+
+/// Returns the band about the target that a law promises, with its authority about an axis.
+pub(super) fn promised_band(law: &LawKind, authority: Option<&Authority>) -> ErrorBand {
+    let own = authority.and_then(|authority| law.band_with(authority));
+    own.map_or_else(|| law.expected_band(), ErrorBand::Absolute)
 }
 
 /// Returns the threshold of active damping about an axis (rad/s), for the modes of the observer's design.

@@ -16,7 +16,6 @@ mod drift_checks;
 mod environment_checks;
 mod epoch;
 mod estimator_context;
-mod expected_motion;
 mod failures;
 mod fast_path;
 mod file_name;
@@ -26,6 +25,7 @@ mod logged_scenario;
 mod meant;
 pub mod metric_descriptions;
 mod mode_checks;
+mod motion_estimate;
 mod one_mode;
 mod pace;
 mod plate_mounts;
@@ -34,6 +34,7 @@ mod remarks;
 mod requirement;
 mod requirement_checks;
 mod resolved;
+mod saturation;
 mod sensor_checks;
 mod small_angle_checks;
 mod spec;
@@ -239,6 +240,18 @@ impl Scenario {
                 _ => self.law.expected_band(),
             },
         }
+    }
+
+    /// Returns true if runs are judged by a goal: the scenario gives its band, or no requirement takes its place. A requirement
+    /// on a metric that depends on the band of the goal leaves it there.
+    pub fn has_goal(&self) -> bool {
+        let limits_goal = |requirement: &AssessedRequirement| match &requirement.source {
+            RequirementSource::Metric(name, _) => metric_descriptions::needs_goal(name),
+            RequirementSource::Error(_) => false,
+        };
+        self.reference.band.is_some()
+            || self.requirement.is_empty()
+            || self.study.requirements.iter().any(limits_goal)
     }
 
     /// Returns the keys without references to files: matrices of a structure are replaced by their modes, paths of mode

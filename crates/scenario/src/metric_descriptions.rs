@@ -60,6 +60,7 @@ metrics! {
     MODE_TIMES = "mode_times_s", "s", "Time in each mode of operation, in the order of the scenario";
     MODE_STARTS = "mode_starts_s", "s",
         "First time at which each mode of operation begins, in the order of the scenario; null for a mode that never does";
+    MODE_VISITS = "mode_visits", "", "Number of times that each mode of operation begins, in the order of the scenario";
     MODE_CHANGES = "mode_changes", "", "Number of changes of the mode of operation";
     ARRIVAL_ANGLE = "arrival_angle_error_rad", "rad", "Error of the hub angle at the end of the manoeuvre";
     ARRIVAL_RATE = "arrival_rate_error_rad_s", "rad/s", "Error of the hub rate at the end of the manoeuvre";
@@ -77,7 +78,7 @@ metrics! {
     ANGLE_ERROR_PEAK = "angle_error_peak_rad", "rad",
         "Largest distance of the hub's angle from the goal after the manoeuvre, to rounding; null if the run ends before";
     SETTLING_TIME = "settling_time_s", "s",
-        "Last time at which the hub angle is further than goal_band_rad from the goal, to rounding; the start of the goal if it never is; null if it still is at the end of the run, or without a band";
+        "Last time at which the hub angle is further from the goal than reference.band, or the band specified by the law or the manoeuvre, to rounding; the start of the goal if it never is; null if it still is at the end of the run, or without a band";
     SPECTRAL_RADIUS = "spectral_radius", "",
         "Spectral radius of the sampled loop at constant frequencies, with the dominant mode known and the command fully executed; with a drift, the largest over its frequencies; below 1 the loop is stable; null without a sampled PD loop";
     ITAE = "itae", "rad s²", "Integral of time times the distance from the goal, since the start of the goal, to rounding";
@@ -88,10 +89,10 @@ metrics! {
     OUTPUT_SWINGS_LATE = "output_swings_late", "",
         "Half the peak-to-peak value of each observed coordinate over the last 5 s of the run";
     GOAL = "goal", "",
-        "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band";
+        "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band, and in a scenario with a [[requirement]] and without reference.band";
     GOAL_BAND = "goal_band_rad", "rad",
-        "Half width of the band about the goal: reference.band, or the one specified by the law or the manoeuvre; null without one";
-    TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal; null without a band";
+        "Half width of the band about the goal: reference.band, or the one specified by the law or the manoeuvre; null without a goal";
+    TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal; null without a goal";
     RATE_END = "rate_end_rad_s", "rad/s",
         "Rigid rate of a body with magnetorquers at the end of the run";
     MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s", "Largest total momentum of the wheels, at the control cycles";
@@ -109,6 +110,36 @@ metrics! {
         "Wheels and magnetorquers in the last tenth of the run: cycling if a wheel alternates between its torque limits at least four times, is at each in over 2.5 % of the cycles, and in the second half over half as often as in the first; saturated if one is at the same limit in over half of the cycles; else free";
     LATE_SHARE = "actuator_limit_late_share", "",
         "Fraction of the control cycles in the last tenth of the run with any wheel or magnetorquer at a limit; null if no cycle begins there";
+    TORQUE_LIMIT_STARTS = "wheel_torque_limit_starts_s", "s",
+        "First control cycle that begins with the motor of any wheel at its torque limit, in each mode of operation in the order of the scenario, or once without modes; null without such a cycle";
+    TORQUE_LIMIT_TIMES = "wheel_torque_limit_times_s", "s",
+        "Time with the motor of any wheel at its torque limit, in each mode of operation in the order of the scenario, or once without modes";
+    MOMENTUM_LIMIT_STARTS = "wheel_momentum_limit_starts_s", "s",
+        "First control cycle that begins with any wheel at its limit of momentum or speed, in each mode of operation in the order of the scenario, or once without modes; null without such a cycle";
+    MOMENTUM_LIMIT_TIMES = "wheel_momentum_limit_times_s", "s",
+        "Time with any wheel at its limit of momentum or speed, in each mode of operation in the order of the scenario, or once without modes";
+    MOMENT_LIMIT_STARTS = "moment_limit_starts_s", "s",
+        "First control cycle that begins with any magnetorquer at its largest magnetic moment, in each mode of operation in the order of the scenario, or once without modes; null without such a cycle";
+    MOMENT_LIMIT_TIMES = "moment_limit_times_s", "s",
+        "Time with any magnetorquer at its largest magnetic moment, in each mode of operation in the order of the scenario, or once without modes";
+    JET_LIMIT_STARTS = "jet_limit_starts_s", "s",
+        "First control cycle that begins with jets that are on for their whole period, in each mode of operation in the order of the scenario, or once without modes; null without such a cycle";
+    JET_LIMIT_TIMES = "jet_limit_times_s", "s",
+        "Time with jets that are on for their whole period, in each mode of operation in the order of the scenario, or once without modes";
+    GIMBAL_LIMIT_STARTS = "gimbal_rate_limit_starts_s", "s",
+        "First control cycle that begins with any gimbal of the control moment gyros at its rate limit, in each mode of operation in the order of the scenario, or once without modes; null without such a cycle";
+    GIMBAL_LIMIT_TIMES = "gimbal_rate_limit_times_s", "s",
+        "Time with any gimbal of the control moment gyros at its rate limit, in each mode of operation in the order of the scenario, or once without modes";
+    TARGET_LOSSES = "target_losses", "",
+        "Number of stays in a mode of operation, or at a target, in which an actuator is at a limit and the error grows meanwhile beyond three times the largest one shortly before; those in acquisition do not count";
+    LOSS_MODES = "target_loss_modes", "",
+        "Mode of operation of each such loss of the target, as its index in the scenario, in the order of time, at most 100; 0 without modes";
+    LOSS_LIMITS = "target_loss_limits", "", "Actuator and limit of each loss: those that were reached for the longest time";
+    LOSS_STARTS = "target_loss_starts_s", "s", "First time at this limit, of each loss";
+    LOSS_TIMES = "target_loss_times_s", "s", "Time at this limit, of each loss";
+    LOSS_BEFORE = "target_loss_errors_before_rad", "rad",
+        "Largest pointing error (norm over three axes) shortly before each loss";
+    LOSS_ERRORS = "target_loss_errors_rad", "rad", "Largest pointing error (norm over three axes) of each loss";
     GIMBAL_RATE = "gimbal_rate_peak_rad_s", "rad/s", "Largest rate of a gimbal of the control moment gyros";
     SINGULARITY = "singularity_min", "",
         "Smallest singularity measure of the control moment gyros at their commands: 0 where they give no torque in some direction";
@@ -210,8 +241,8 @@ pub const REDUCED_IMPULSE: MetricDescription = reduced(IMPULSE, "rad/s");
 /// Integral of the absolute angular acceleration per hour in the limit cycle of a body without inertia.
 pub const CYCLE_REDUCED_IMPULSE: MetricDescription = reduced(CYCLE_IMPULSE, "rad/s");
 
-/// Metrics that are words, and no numbers.
-const WORDS: [&str; 4] = [GOAL.name, REQUIREMENT.name, CYCLE_KIND.name, ACTUATOR_END.name];
+/// Metrics that are words or lists of words, and no numbers.
+const WORDS: [&str; 5] = [GOAL.name, REQUIREMENT.name, CYCLE_KIND.name, ACTUATOR_END.name, LOSS_LIMITS.name];
 
 /// Returns the name of a list and the index in it of a name `NAME[i]`.
 pub fn list_element(name: &str) -> Option<(&str, usize)> {
@@ -222,6 +253,28 @@ pub fn list_element(name: &str) -> Option<(&str, usize)> {
 /// Returns true if the value of a metric is a word.
 pub fn is_word(name: &str) -> bool {
     WORDS.contains(&name)
+}
+
+/// Metrics of the goal of a run.
+pub const OF_GOAL: &[MetricDescription] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
+
+/// Returns true if a metric is of the goal of a run.
+pub fn is_of_goal(name: &str) -> bool {
+    OF_GOAL.iter().any(|meaning| meaning.name == name)
+}
+
+/// Returns true if the value of a metric depends on the band of the goal.
+pub fn needs_goal(name: &str) -> bool {
+    is_of_goal(name) || name == SETTLING_TIME.name
+}
+
+/// Metrics that list events of a run.
+const EVENT_LISTS: [&str; 5] =
+    [LOSS_MODES.name, LOSS_STARTS.name, LOSS_TIMES.name, LOSS_BEFORE.name, LOSS_ERRORS.name];
+
+/// Returns true if a metric is a list of events, which differ in number from run to run.
+pub fn is_event_list(name: &str) -> bool {
+    EVENT_LISTS.contains(&name)
 }
 
 /// Returns the description of a metric by its name, with the units of a body if one is given; objectives of adaptations

@@ -9,10 +9,14 @@ use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::TargetVisit;
 use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use nalgebra::Quaternion;
 
 use flexsc_scenario::Scenario;
+
+/// Rotation (rad) between equal targets, by rounding.
+const SAME_TARGET: f64 = 1e-9;
 
 /// Reference motion of a scenario.
 #[derive(Clone, Debug)]
@@ -27,6 +31,10 @@ pub struct Guidance {
     computed: Option<(Instant, AttitudeMotion)>,
     /// Target of each mode of operation that has one.
     mode_targets: Vec<Option<ModeReference>>,
+    /// For each mode of operation, true if its law pursues a target.
+    pursuing: Vec<bool>,
+    /// Index of the mode of operation, and number of its changes.
+    mode: (usize, u64),
 }
 
 /// Target of a mode of operation, and the start of a slew to it.
@@ -89,12 +97,15 @@ impl Guidance {
                 .iter()
                 .map(|mode| mode.target.as_ref().map(|target| ModeReference::new(target, scenario)))
                 .collect(),
+            pursuing: scenario.mode.iter().map(|mode| mode.law.offers().reads_motion()).collect(),
+            mode: (0, 0),
         }
     }
 
     /// Takes the target of a mode that begins at `now`, if it has one; returns true if it has. A slew starts at the reference,
     /// or at the estimated attitude.
     pub fn enter_mode(&mut self, now: Instant, [before, mode]: [usize; 2], estimated: &Orientation) -> bool {
+        self.mode = (mode, self.mode.1 + 1);
         let reference = self.mode_targets.get(mode).and_then(Option::as_ref);
         let (Some(reference), Some(profile)) = (reference, self.profile.as_mut()) else { return false };
         let from_estimate = reference.from_estimate.get(before) == Some(&true);
@@ -164,6 +175,18 @@ impl Guidance {
     /// Returns the number of the current target, which changes with the target; 0 before the first one.
     pub fn target_number(&self, now: Instant) -> usize {
         self.profile.as_ref().map_or(0, |way| way.target_number(now))
+    }
+
+    /// Returns true if the mode before pursued the present target too, where it `held` another one or this one.
+    pub fn is_held(&self, before: usize, now: Instant, held: &Orientation) -> bool {
+        let turn = self.target(now).error_from(held);
+        self.pursuing.get(before) == Some(&true) && turn.iter().all(|angle| angle.abs() < SAME_TARGET)
+    }
+
+    /// Returns the mode of operation and the target at an instant.
+    pub fn visit(&self, now: Instant) -> TargetVisit {
+        let (mode, changes) = self.mode;
+        TargetVisit { mode, changes, target: self.target_number(now) }
     }
 
     /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for

@@ -109,10 +109,13 @@ impl Simulation {
         let estimates = &self.estimation.estimates;
         let angles = std::array::from_fn(|axis| estimates.get(axis).map_or(0.0, |estimate| estimate.angle));
         let estimated = self.estimation.origin().rotated_by(angles);
+        let held = self.guidance.target(now);
         if self.guidance.enter_mode(now, [before, mode], &estimated) {
             self.estimation.move_origin(now, &mut self.guidance);
+            // The error of a mode that already holds the target is no distance from it.
+            let is_held = self.guidance.is_held(before, now, &held);
             let errors = self.plant.truth().orientation.error_from(&self.guidance.target(now));
-            let distance = f64::sqrt(errors.iter().map(|error| error * error).sum());
+            let distance = if is_held { 0.0 } else { norm(&errors) };
             start = Some(ModeTargetStart { mode, distance });
         }
         let Some(event) = self.operation.event(now, change) else { return Ok(()) };

@@ -92,7 +92,7 @@ fn number(metrics: &Metrics, name: &str) -> Option<f64> {
         MetricValue::Count(count) => Some(*count as f64),
         MetricValue::Number(number) => Some(*number),
         MetricValue::Word(word) => goal::score(word),
-        MetricValue::Numbers(_) | MetricValue::Quantities(_) => None,
+        MetricValue::Numbers(_) | MetricValue::Quantities(_) | MetricValue::Words(_) => None,
     }
 }
 

@@ -75,7 +75,9 @@ impl CampaignReport {
         }
         let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
-        for s in self.statistics.iter().filter(|s| s.runs > 0 && !is_verdict(s)) {
+        // An element of a list that is 0 in all runs does not apply, as the time at a limit in a mode that reaches none.
+        let is_idle = |s: &&Statistics| s.name.ends_with(']') && s.mean == 0.0 && s.quantiles == [0.0; 5];
+        for s in self.statistics.iter().filter(|s| s.runs > 0 && !is_verdict(s) && !is_idle(s)) {
             let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
             say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
         }

@@ -72,8 +72,12 @@ struct SettlingCurve {
 }
 
 impl SettlingCurve {
-    /// Returns `None` without motion, or if no band is given after a manoeuvre, which may end anywhere near its goal.
+    /// Returns `None` without motion, without a goal, or if no band is given after a manoeuvre, which may end anywhere near its
+    /// goal.
     fn from_events(story: &RunEvents, times: &[f64], error: &[f64]) -> Option<Self> {
+        if !story.scenario.has_goal() {
+            return None;
+        }
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
         let band = story.scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get);
         let promise = story.scenario.expected_band();

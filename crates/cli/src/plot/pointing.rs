@@ -76,5 +76,5 @@ fn bands(story: &RunEvents, axis: usize) -> [Option<f64>; 2] {
     let own = scenario.study.expected_bands.get(axis).copied().flatten();
     let goal = scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get).or(own);
     let zone = scenario.law.about(axis).coasting_zone();
-    [goal.filter(|half| *half > 0.0), zone.filter(|half| *half > 0.0)]
+    [goal.filter(|half| *half > 0.0 && scenario.has_goal()), zone.filter(|half| *half > 0.0)]
 }

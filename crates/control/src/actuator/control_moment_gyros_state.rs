@@ -67,7 +67,12 @@ impl ControlMomentGyros {
             commanded: vec![0.0; count],
             failing: (0..count).map(|gyro| self.gimbal_failures(gyro)).collect(),
             updates: self.period.map(|period| (Instant::START + period, period)),
-            steered: SteeringRecord { largest_rate_rad_s: 0.0, least_measure, largest_error_nm: 0.0 },
+            steered: SteeringRecord {
+                rate_rad_s: 0.0,
+                largest_rate_rad_s: 0.0,
+                least_measure,
+                largest_error_nm: 0.0,
+            },
         }
     }
 }
@@ -139,8 +144,10 @@ impl ControlMomentGyrosState {
     /// Updates the extreme values with the rates from now on.
     fn update_extremes(&mut self, columns: &[Vector]) {
         let error = self.body_torque(columns, &self.rates) - (self.demanded - self.against);
-        let SteeringRecord { largest_rate_rad_s, least_measure, largest_error_nm } = &mut self.steered;
-        *largest_rate_rad_s = self.rates.iter().map(|rate| rate.abs()).fold(*largest_rate_rad_s, f64::max);
+        let SteeringRecord { rate_rad_s, largest_rate_rad_s, least_measure, largest_error_nm } =
+            &mut self.steered;
+        *rate_rad_s = self.rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
+        *largest_rate_rad_s = largest_rate_rad_s.max(*rate_rad_s);
         *least_measure = least_measure.min(steering::singularity_measure(columns));
         *largest_error_nm = largest_error_nm.max(error.norm());
     }

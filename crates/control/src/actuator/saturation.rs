@@ -1,13 +1,12 @@
-//! Saturation: how often a run has wheels and magnetorquers at their limits, and whether it ends there.
+//! Saturation: when and how long a run has actuators at their limits, whether they lose the target there, and whether the run
+//! ends there.
 
-use flexsc_numerics::quantity::Positive;
-use flexsc_record::{self, Report};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{self, Report, ThreeAxisCycle};
 
-use super::AssignedActuator;
-use crate::one_or_many::OneOrMany;
+use super::limits::{ActuatorLimits, LimitKind};
+use super::target_loss::{TargetLoss, TargetLossMonitor};
 
-/// A value is at its limit if it misses it by this part of it.
-const AT_LIMIT: f64 = 1e-9;
 /// Part of a run that is its end.
 const LATE: f64 = 0.1;
 /// An actuator is saturated at the end if it is at one limit for more than this part of it.
@@ -57,26 +56,39 @@ impl EndState {
     }
 }
 
+/// Number of kinds of limits.
+const KINDS: usize = LimitKind::ALL.len();
+
+/// First time at limits of a kind, and time there, in a mode of operation.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct LimitTime {
+    /// Instant of the first cycle with an actuator at such a limit; `None` without one.
+    pub start: Option<Instant>,
+    /// Time with an actuator at such a limit, from cycle to cycle.
+    pub time: Span,
+}
+
 /// Counts of the control cycles of a run in which actuators are at their limits.
 #[derive(Clone, Debug)]
 pub struct Saturation {
-    /// Largest torque (N m), momentum (N m s) and speed (rad/s) of a wheel, and moment (A m²) of each magnetorquer.
-    torque: f64,
-    momentum: f64,
-    speed: f64,
-    moments: [f64; 3],
+    limits: ActuatorLimits,
     /// Start and middle of the last tenth of the run (s).
     late: f64,
     middle: f64,
     duration: f64,
-    /// Numbers of cycles: all, and those at the limits of torque, momentum and moment.
+    /// Numbers of cycles: all, and those at the limits of each kind.
     cycles: u64,
-    limited: [u64; 3],
+    limited: [u64; KINDS],
+    /// For each mode of operation, or once, the time at the limits of each kind.
+    times: Vec<[LimitTime; KINDS]>,
+    /// Last cycle: its instant, its mode, and the kinds of limits that were reached.
+    before: (Instant, usize, [bool; KINDS]),
     /// Largest speed (rad/s) and momentum (N m s) of a wheel.
     peaks: [f64; 2],
     wheels: Vec<LateWheel>,
     /// At the end: cycles, those at any limit, and those of them at that of the moment.
     ending: [u64; 3],
+    losses: TargetLossMonitor,
 }
 
 /// Counts of a wheel in the last tenth of a run.
@@ -94,61 +106,108 @@ struct LateWheel {
 }
 
 impl Saturation {
-    /// Creates counts without cycles for runs of a duration (s) with these actuators.
-    pub fn new(actuators: &OneOrMany<AssignedActuator>, duration: f64) -> Self {
-        let limit = |bound: Option<Positive>| bound.map_or(f64::INFINITY, Positive::get);
-        let wheels = actuators.wheels().map(|(wheels, _)| wheels);
-        let torquers = actuators.magnetorquers().map(|(torquers, _)| torquers);
+    /// Creates counts without cycles for runs of a duration with these limits, of `wheels` wheels and `modes` modes of operation.
+    pub fn new(
+        limits: ActuatorLimits,
+        losses: TargetLossMonitor,
+        duration: Span,
+        [wheels, modes]: [usize; 2],
+    ) -> Self {
+        let duration = duration.seconds();
         let late = duration * (1.0 - LATE);
         Self {
-            torque: limit(wheels.and_then(|wheels| wheels.torque)),
-            momentum: limit(wheels.and_then(|wheels| wheels.momentum)),
-            speed: limit(wheels.and_then(|wheels| wheels.speed_limit)),
-            moments: [0, 1, 2]
-                .map(|axis| torquers.map_or(f64::INFINITY, |torquers| torquers.moment.about(axis).get())),
+            limits,
             late,
             middle: 0.5 * (late + duration),
             duration,
             cycles: 0,
-            limited: [0; 3],
+            limited: [0; KINDS],
+            times: vec![Default::default(); modes.max(1)],
+            before: (Instant::START, 0, [false; KINDS]),
             peaks: [0.0; 2],
-            wheels: vec![LateWheel::default(); wheels.map_or(0, super::wheels::Wheels::count)],
+            wheels: vec![LateWheel::default(); wheels],
             ending: [0; 3],
+            losses,
         }
     }
 
-    /// Observes the wheels and magnetorquers in the report of a cycle that begins at a time (s).
-    pub fn observe(&mut self, t: f64, report: &Report) {
-        if self.wheels.is_empty() && self.moments.iter().all(|limit| limit.is_infinite()) {
-            return;
-        }
+    /// Observes the actuators in the report of a cycle that begins now; returns the loss of the target in the visit that ends
+    /// here, if any.
+    pub fn observe(&mut self, now: Instant, report: &Report) -> Option<TargetLoss> {
+        let cycle = report.get::<ThreeAxisCycle>()?;
         let wheels = report.get().map_or(&[][..], |row: &flexsc_record::Wheels| &row.wheels);
-        let torquers = report.get().map_or(&[][..], |row: &flexsc_record::Magnetorquers| &row.axes);
-        let reaches = |value: f64, limit: f64| value.abs() >= limit * (1.0 - AT_LIMIT);
-        let is_late = t >= self.late;
-        let (mut torque, mut momentum) = (false, false);
-        for (own, wheel) in self.wheels.iter_mut().zip(wheels) {
+        for wheel in wheels {
             self.peaks[0] = self.peaks[0].max(wheel.speed_rad_s.abs());
             self.peaks[1] = self.peaks[1].max(wheel.momentum_nm_s.abs());
-            let forced = reaches(wheel.torque_nm, self.torque);
-            let full = reaches(wheel.momentum_nm_s, self.momentum) || reaches(wheel.speed_rad_s, self.speed);
-            torque |= forced;
-            momentum |= full;
-            if is_late {
-                own.record(if forced { wheel.torque_nm } else { 0.0 }, full, t >= self.middle);
+        }
+        if self.limits.is_empty() {
+            return None;
+        }
+        self.limits.observe(report);
+        let mut kinds = [false; KINDS];
+        for (_, limit, _) in self.limits.reached() {
+            kinds[limit.kind() as usize] = true;
+        }
+        self.cycles += 1;
+        for (count, is_reached) in self.limited.iter_mut().zip(kinds) {
+            *count += u64::from(is_reached);
+        }
+        if now.seconds() >= self.late {
+            self.observe_end(now.seconds() >= self.middle, kinds);
+        }
+        self.add_times(now);
+        self.before = (now, cycle.visit.mode, kinds);
+        let square: f64 = cycle.error_rad.iter().map(|error| error * error).sum();
+        self.losses.observe(now, cycle.visit, &self.limits, square.sqrt())
+    }
+
+    /// Observes a cycle in the last tenth of the run, with the kinds of limits that are reached; `second` if it is in its second
+    /// half.
+    fn observe_end(&mut self, second: bool, kinds: [bool; KINDS]) {
+        let mut wheels = vec![(0.0, false); self.wheels.len()];
+        for (_, limit, sign) in self.limits.reached() {
+            if let Some((torque, is_full)) = limit.wheel().and_then(|wheel| wheels.get_mut(wheel)) {
+                match limit.kind() {
+                    LimitKind::Torque => *torque = sign,
+                    _ => *is_full = true,
+                }
             }
         }
-        let mut moments = torquers.iter().zip(self.moments);
-        let moment = moments.any(|(torquer, limit)| reaches(torquer.moment_am2, limit));
-        self.cycles += 1;
-        for (count, now) in self.limited.iter_mut().zip([torque, momentum, moment]) {
-            *count += u64::from(now);
+        for (own, (torque, is_full)) in self.wheels.iter_mut().zip(wheels) {
+            own.record(torque, is_full, second);
         }
-        if is_late {
-            self.ending[0] += 1;
-            self.ending[1] += u64::from(torque || momentum || moment);
-            self.ending[2] += u64::from(moment);
+        let [torque, momentum, moment] =
+            [LimitKind::Torque, LimitKind::Momentum, LimitKind::Moment].map(|kind| kinds[kind as usize]);
+        self.ending[0] += 1;
+        self.ending[1] += u64::from(torque || momentum || moment);
+        self.ending[2] += u64::from(moment);
+    }
+
+    /// Adds the time since the last cycle to the limits that were reached there.
+    fn add_times(&mut self, now: Instant) {
+        let (from, mode, kinds) = self.before;
+        let Some(times) = self.times.get_mut(mode) else { return };
+        for (time, _) in times.iter_mut().zip(kinds).filter(|(_, is_reached)| *is_reached) {
+            time.start.get_or_insert(from);
+            time.time = time.time + now.since(from);
         }
+        self.before = (now, mode, [false; KINDS]);
+    }
+
+    /// Adds the time up to the end of the run; returns the loss of the target in the visit that ends here, if any.
+    pub fn close(&mut self, end: Instant) -> Option<TargetLoss> {
+        self.add_times(end);
+        self.losses.end_visit(end)
+    }
+
+    /// Returns the limits of the actuators.
+    pub fn limits(&self) -> &ActuatorLimits {
+        &self.limits
+    }
+
+    /// Returns the first time at the limits of a kind, and the time there, in each mode of operation, or once without modes.
+    pub fn times(&self, kind: LimitKind) -> impl Iterator<Item = LimitTime> {
+        self.times.iter().map(move |times| times[kind as usize])
     }
 
     /// Returns true if there are wheels.
@@ -161,13 +220,9 @@ impl Saturation {
         self.peaks
     }
 
-    /// Returns the fractions of the cycles with an actuator at its limit of torque, of momentum or speed, and of magnetic
-    /// moment; `None` where there is no such limit.
-    pub fn shares(&self) -> [Option<f64>; 3] {
-        let limits = [self.torque, self.momentum.min(self.speed), self.moments[0]];
-        let share = |(limit, count): (f64, u64)| limit.is_finite().then(|| count as f64 / self.cycles as f64);
-        let [torque, momentum, moment] = [0, 1, 2].map(|index| share((limits[index], self.limited[index])));
-        [torque, momentum, moment]
+    /// Returns the fraction of the cycles with an actuator at a limit of a kind; `None` without such a limit.
+    pub fn share(&self, kind: LimitKind) -> Option<f64> {
+        self.limits.has(kind).then(|| self.limited[kind as usize] as f64 / self.cycles as f64)
     }
 
     /// Returns the fraction of the cycles in the last tenth of the run with an actuator at a limit; NaN without such cycles.
@@ -175,9 +230,10 @@ impl Saturation {
         self.ending[1] as f64 / self.ending[0] as f64
     }
 
-    /// Returns the state in the last tenth of the run; `None` without any limit.
+    /// Returns the state of wheels and magnetorquers in the last tenth of the run; `None` without a limit of theirs.
     pub fn end_state(&self) -> Option<EndState> {
-        self.shares().iter().any(Option::is_some).then(|| {
+        let kinds = [LimitKind::Torque, LimitKind::Momentum, LimitKind::Moment];
+        kinds.into_iter().any(|kind| self.limits.has(kind)).then(|| {
             let [all, _, moment] = self.ending.map(|count| count as f64);
             let steady = |count: u64| count as f64 > STEADY * all;
             let is_steady =
@@ -212,14 +268,13 @@ impl Saturation {
 }
 
 impl LateWheel {
-    /// Records a cycle: `torque` (N m) if it is at its limit, else 0; `full` if the wheel is at its largest speed; `second`
+    /// Records a cycle: the sign of the torque if it is at its limit, else 0; `full` if the wheel is at its largest speed; `second`
     /// if the cycle is in the second half of the end.
-    fn record(&mut self, torque: f64, full: bool, second: bool) {
+    fn record(&mut self, sign: f64, full: bool, second: bool) {
         self.full += u64::from(full);
-        if torque == 0.0 {
+        if sign == 0.0 {
             return;
         }
-        let sign = torque.signum();
         self.halves[usize::from(second)] += 1;
         self.ahead += u64::from(sign > 0.0);
         self.back += u64::from(sign < 0.0);

@@ -31,6 +31,9 @@ impl Setpoint {
     }
 }
 
+/// Distance (rad) that rounding alone may leave.
+const ROUNDING: f64 = 1e-9;
+
 /// Expected error band of a law about the setpoint.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum ErrorBand {
@@ -43,12 +46,14 @@ pub enum ErrorBand {
 }
 
 impl ErrorBand {
-    /// Returns the half width of the band (rad) for an initial distance (rad); NaN without a band.
+    /// Returns the half width of the band (rad) for an initial distance (rad); NaN without a band, and for a fraction of a distance
+    /// that is rounding.
     pub fn band(self, distance: f64) -> f64 {
         match self {
             Self::None => f64::NAN,
             Self::Absolute(band) => band,
-            Self::Fraction(part) => part * distance,
+            Self::Fraction(part) if distance > ROUNDING => part * distance,
+            Self::Fraction(_) => f64::NAN,
         }
     }
 }

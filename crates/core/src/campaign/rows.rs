@@ -18,6 +18,9 @@ pub const SECONDS: &str = "seconds";
 /// Name of the column with the reason why a run failed.
 pub const ERROR: &str = "error";
 
+/// Separator of the words of a list in a cell.
+pub const WORD_SEPARATOR: &str = "; ";
+
 /// Type of a column. Cells without a value are null.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
@@ -89,7 +92,7 @@ impl Campaign {
             let kind = match value {
                 MetricValue::Count(_) => ColumnKind::Integers,
                 MetricValue::Number(_) => ColumnKind::Numbers,
-                MetricValue::Word(_) => ColumnKind::Words,
+                MetricValue::Word(_) | MetricValue::Words(_) => ColumnKind::Words,
                 MetricValue::Numbers(_) | MetricValue::Quantities(_) => ColumnKind::Lists,
             };
             heading(meaning.name, kind, meaning.unit)
@@ -230,6 +233,7 @@ impl ColumnCells {
             (Self::Integers(cells), MetricValue::Count(count)) => cells.push(i64::try_from(*count).ok()),
             (Self::Numbers(cells), MetricValue::Number(number)) => cells.push(*number),
             (Self::Words(cells), MetricValue::Word(word)) => cells.push(Some((*word).to_owned())),
+            (Self::Words(cells), MetricValue::Words(words)) => cells.push(Some(words.join(WORD_SEPARATOR))),
             (Self::Lists(cells), MetricValue::Numbers(_) | MetricValue::Quantities(_)) => {
                 cells.push(Some(value.numbers()));
             }

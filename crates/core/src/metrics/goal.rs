@@ -2,19 +2,28 @@
 //! time.
 
 use flexsc_numerics::polynomial::Polynomial;
+use flexsc_scenario::metric_descriptions;
 
-use super::{GOAL, GOAL_BAND, MetricDescription, MetricValue, NamedMetric, REQUIREMENT, TIME_OUTSIDE};
+use super::{GOAL, GOAL_BAND, MetricValue, NamedMetric, REQUIREMENT, TIME_OUTSIDE};
 
 /// Fraction of the time since the goal's start that the run must end with inside the band.
 const LAST: f64 = 0.1;
-/// Descriptions of the metrics of a one-axis body.
-pub(super) const ONE_AXIS_METRICS: &[MetricDescription] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
 /// Names of the metrics that are verdicts.
 pub const NAMES: [&str; 2] = [GOAL.name, REQUIREMENT.name];
 /// Words of a verdict.
 const MET: &str = "met";
 const MISSED: &str = "missed";
 const NONE: &str = "none";
+
+/// Removes the goal from the metrics of a run that is judged by requirements alone.
+pub(super) fn remove(metrics: &mut [NamedMetric]) {
+    for (meaning, value) in
+        metrics.iter_mut().filter(|(meaning, _)| metric_descriptions::is_of_goal(meaning.name))
+    {
+        *value =
+            if meaning.name == GOAL.name { MetricValue::Word(NONE) } else { MetricValue::Number(f64::NAN) };
+    }
+}
 
 /// Returns the word of a verdict.
 pub fn word(is_met: bool) -> &'static str {

@@ -7,6 +7,7 @@ mod envelope;
 mod filter;
 pub mod goal;
 mod index_record;
+mod limits;
 mod line_of_sight;
 mod mode_bands;
 mod operation;
@@ -26,7 +27,7 @@ use flexsc_spacecraft::body::BodyAxes;
 use flexsc_scenario::Scenario;
 use flexsc_scenario::metric_descriptions;
 
-pub use flexsc_scenario::metric_descriptions::{ALL, list_element};
+pub use flexsc_scenario::metric_descriptions::{ALL, is_event_list, list_element};
 
 use flexsc_scenario::metric_descriptions::*;
 
@@ -146,6 +147,9 @@ impl MetricsCollector {
         metrics.extend(self.known.into_iter().flat_map(AttitudeMetrics::finish));
         metrics.extend(self.windows.iter().flat_map(EnvelopeMetrics::finish));
         metrics.extend(self.adapted.into_iter().flat_map(AdaptationMetrics::finish));
+        if !scenario.has_goal() {
+            goal::remove(&mut metrics);
+        }
         let mut metrics = Metrics(metrics);
         metrics.0.extend(self.requirements.finish(&metrics));
         metrics

@@ -3,7 +3,7 @@
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::ModeEvent;
 
-use super::{MODE_CHANGES, MODE_STARTS, MODE_TIMES, MetricValue, NamedMetric};
+use super::{MODE_CHANGES, MODE_STARTS, MODE_TIMES, MODE_VISITS, MetricValue, NamedMetric};
 use flexsc_scenario::Scenario;
 
 /// Collector of the changes of the mode.
@@ -13,6 +13,8 @@ pub struct ModeMetrics {
     times: Vec<Span>,
     /// First start of each mode (s); NaN before.
     starts: Vec<f64>,
+    /// Number of starts of each mode.
+    visits: Vec<f64>,
     changes: u64,
     /// Index and start of the current mode.
     current: Option<(usize, Instant)>,
@@ -26,6 +28,7 @@ impl ModeMetrics {
         (count > 0).then(|| Self {
             times: vec![Span::ZERO; count],
             starts: vec![f64::NAN; count],
+            visits: vec![0.0; count],
             changes: 0,
             current: None,
             end: Instant::START + scenario.duration,
@@ -38,6 +41,7 @@ impl ModeMetrics {
         self.close(now);
         let index = event.index as usize;
         self.current = Some((index, now));
+        self.visits.get_mut(index).into_iter().for_each(|visits| *visits += 1.0);
         if let Some(start) = self.starts.get_mut(index).filter(|start| start.is_nan()) {
             *start = now.seconds();
         }
@@ -53,12 +57,13 @@ impl ModeMetrics {
     }
 
     /// Returns the metrics at the end of the run.
-    pub fn finish(mut self) -> [NamedMetric; 3] {
+    pub fn finish(mut self) -> [NamedMetric; 4] {
         self.close(self.end);
         let times = self.times.into_iter().map(Span::seconds).collect();
         [
             (&MODE_TIMES, MetricValue::Numbers(times)),
             (&MODE_STARTS, MetricValue::Numbers(self.starts)),
+            (&MODE_VISITS, MetricValue::Numbers(self.visits)),
             (&MODE_CHANGES, MetricValue::Count(self.changes)),
         ]
     }

@@ -11,7 +11,7 @@ use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Arrival, PieceDemand, Record, RecordError, Sample};
 
-use super::goal::{self, GoalMetrics};
+use super::goal::GoalMetrics;
 use super::{
     ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, MetricDescription,
     MetricValue, NamedMetric, NumberWithUnit, OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE,
@@ -20,6 +20,7 @@ use super::{
 };
 use flexsc_analysis::sampled_loop::{DiscretePlant, SampledLoop};
 use flexsc_scenario::Scenario;
+use flexsc_scenario::metric_descriptions::OF_GOAL;
 
 pub use lanes::{LaneManoeuvreMetrics, LanePiece};
 
@@ -144,7 +145,7 @@ impl ManoeuvreMetrics {
                 if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
             }),
             outputs: body.outputs.iter().map(|output| range_of(&output.unit)).collect(),
-            wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::ONE_AXIS_METRICS),
+            wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(OF_GOAL),
         }
     }
 

@@ -8,7 +8,7 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Adaptation, Command, PieceDemand, Record, RecordError, Sample};
 
 use super::envelope::EnvelopeMetrics;
-use super::goal::{self, GoalMetrics};
+use super::goal::GoalMetrics;
 use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
     CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
@@ -18,6 +18,7 @@ use super::{
 };
 use flexsc_analysis::limit_cycle::LimitCycleDetector;
 use flexsc_scenario::Scenario;
+use flexsc_scenario::metric_descriptions::OF_GOAL;
 
 /// Collector of the switchings of a relay law, of window means and of the adaptation's steps.
 #[derive(Clone, Debug)]
@@ -96,7 +97,7 @@ impl RelayMetrics {
             ),
             wanted: WantedMetrics {
                 cycle: selection.wants_any(OF_CYCLE),
-                verdict: selection.wants_any(goal::ONE_AXIS_METRICS),
+                verdict: selection.wants_any(OF_GOAL),
                 counts: selection.wants_any(COUNTED),
             },
         }

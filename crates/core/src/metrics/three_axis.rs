@@ -1,6 +1,6 @@
 //! Metrics of a run of a three-axis body: propellant, firings, elastic energy, pointing.
 
-use flexsc_control::actuator::{JetCycle, Saturation};
+use flexsc_control::actuator::JetCycle;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
@@ -8,13 +8,14 @@ use flexsc_record::{
 };
 
 use super::goal::GoalMetrics;
+use super::limits::LimitMetrics;
 use super::mode_bands::ModeBands;
 use super::{
-    ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, BURN_IMPULSE, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE,
-    FIRING_CYCLES, FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
-    GYRO_MOMENTUM_PEAK, LATE_SHARE, MOMENT_SHARE, MOMENTUM_END, MOMENTUM_PEAK, MOMENTUM_SHARE, MetricValue,
-    NamedMetric, POINTING_END, POINTING_RMS, RATE_END, SINGULARITY, SLEW_PEAK, SLEW_RMS, TORQUE_ERROR,
-    TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS, ZERO_CROSSINGS,
+    ACCELERATION, BELOW_1, BELOW_10, BURN_IMPULSE, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES,
+    FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
+    GYRO_MOMENTUM_PEAK, MOMENTUM_END, MOMENTUM_PEAK, MetricValue, NamedMetric, POINTING_END, POINTING_RMS,
+    RATE_END, SINGULARITY, SLEW_PEAK, SLEW_RMS, TORQUE_ERROR, VISIBLE_END, VISIBLE_PEAK, WHEEL_STOPS,
+    ZERO_CROSSINGS,
 };
 use flexsc_scenario::{Pointing, Scenario};
 
@@ -62,7 +63,7 @@ pub struct ThreeAxisMetrics {
     stored: [f64; 2],
     /// Values of control moment gyros.
     steered: Option<SteeringRecord>,
-    saturation: Saturation,
+    limits: LimitMetrics,
     /// Largest and sum of the squared errors during slews (rad²), and the number of these cycles.
     slews: (f64, f64, u64),
     /// True if there are slews.
@@ -119,7 +120,7 @@ impl ThreeAxisMetrics {
             square: (0.0, 0),
             error: f64::NAN,
             magnetic: scenario.actuator.magnetorquers().is_some(),
-            saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
+            limits: LimitMetrics::new(scenario),
             slews: (f64::NAN, 0.0, 0),
             has_slews: scenario.study.profile.has_slews() || slews_to_mode(scenario),
             modes,
@@ -151,7 +152,7 @@ impl ThreeAxisMetrics {
         if self.jets || self.burn_impulse.is_some() {
             report.get().into_iter().for_each(|jets| self.observe_jets(jets));
         }
-        self.saturation.observe(t, report);
+        self.limits.observe(now, report);
         if cycle.slewing {
             let square = norm(cycle.error_rad);
             self.slews = (self.slews.0.max(square), self.slews.1 + square, self.slews.2 + 1);
@@ -258,7 +259,8 @@ impl ThreeAxisMetrics {
             (&MOMENTUM_PEAK, MetricValue::Number(momentum_peak)),
             (&MOMENTUM_END, MetricValue::Number(momentum_end)),
         ];
-        let stored = stored.into_iter().filter(|_| self.saturation.has_wheels());
+        let has_wheels = self.limits.has_wheels();
+        let stored = stored.into_iter().filter(|_| has_wheels);
         let slews = [
             (&SLEW_PEAK, MetricValue::Number(f64::sqrt(self.slews.0))),
             // 0/0 of no cycles: no number.
@@ -289,33 +291,13 @@ impl ThreeAxisMetrics {
             .chain(mean_displacement)
             .chain(rate)
             .chain(stored)
-            .chain(limits(&self.saturation))
+            .chain(self.limits.finish())
             .chain(steered.into_iter().flatten())
             .chain(slews)
             .chain(pointing)
             .chain(self.verdict.finish(self.end))
             .collect()
     }
-}
-
-/// How wheels and magnetorquers reached their limits.
-fn limits(saturation: &Saturation) -> Vec<NamedMetric> {
-    let mut metrics: Vec<NamedMetric> = Vec::new();
-    if saturation.has_wheels() {
-        let [speed, momentum] = saturation.peaks();
-        metrics.push((&WHEEL_SPEED, MetricValue::Number(speed)));
-        metrics.push((&WHEEL_MOMENTUM, MetricValue::Number(momentum)));
-    }
-    for (meaning, share) in
-        [&TORQUE_SHARE, &MOMENTUM_SHARE, &MOMENT_SHARE].into_iter().zip(saturation.shares())
-    {
-        metrics.extend(share.map(|share| (meaning, MetricValue::Number(share))));
-    }
-    if let Some(state) = saturation.end_state() {
-        metrics.push((&ACTUATOR_END, MetricValue::Word(state.word())));
-        metrics.push((&LATE_SHARE, MetricValue::Number(saturation.late_share())));
-    }
-    metrics
 }
 
 /// Returns true if a mode of operation has a target that is reached by a slew.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -184,6 +184,14 @@ class Result(Topics, Exportable):
     (15, 's')
     """
 
+    warnings: tuple[str, ...]
+    """Warnings about the run, as `flexsc simulate` prints them: a target that is lost while an actuator is at
+    a limit, an end in saturation, an unstable loop.
+
+    >>> run.warnings
+    ()
+    """
+
     def __init__(
         self,
         scenario: Scenario,
@@ -194,9 +202,11 @@ class Result(Topics, Exportable):
         took: float = 0.0,
         stepped: engine.Commands | None = None,
         until: float = inf,
+        warnings: Sequence[str] = (),
     ) -> None:
         self.scenario = scenario
         self.run = run
+        self.warnings = tuple(warnings)
         self.metrics = Metrics(metrics, scenario)
         read_only(value for value in metrics.values() if hasattr(value, "flags"))
         self._log = log
@@ -380,4 +390,5 @@ class Result(Topics, Exportable):
         topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
         held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
         figure = _html.of_log(self._native_log(), self.scenario._native) if self._took < _html.SOON_S else ""
-        return _html.heading(self.scenario.name, about) + figure + metrics + held
+        warned = _html.table(("warning",), [(text,) for text in self.warnings]) if self.warnings else ""
+        return _html.heading(self.scenario.name, about) + warned + figure + metrics + held

@@ -352,10 +352,10 @@ class Scenario(ScenarioAnalysis):
     ) -> Result:
         """Simulate a run, or repeat one that was stepped."""
         began = time.perf_counter()
-        metrics, topics = engine.simulate(self._native, run, log, yes, stepped)
+        metrics, topics, warnings = engine.simulate(self._native, run, log, yes, stepped)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, took, stepped, until)
+        return Result(self, run, log, metrics, final, took, stepped, until, warnings)
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -125,7 +125,7 @@ def _within(schema: dict[str, Any], place: Any, step: str) -> Iterator[tuple[dic
 class Metrics(dict[str, Any]):
     """The metrics of a run by name: a dictionary with their units.
 
-    Lists are arrays, words are str, and None means no value.
+    Lists are arrays, words are str, lists of words are lists, and None means no value.
 
     >>> import flexsc
     >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate()

@@ -1,6 +1,7 @@
 //! Rows of a cycle of three axes: errors, rates, jets, wheels, and adaptive observers.
 
-use flexsc_control::actuator::Saturation;
+use flexsc_control::actuator::{Saturation, TargetLoss};
+use flexsc_numerics::time::Instant;
 use flexsc_record::{LoggedRevisions, Record, RecordError, Report, Tracking};
 
 use super::journal_events::JournalEvents;
@@ -12,8 +13,10 @@ use flexsc_scenario::Scenario;
 pub struct CycleRows {
     /// Revisions of the rows that are logged only when they change.
     revisions: LoggedRevisions,
-    /// How wheels and magnetorquers reach their limits.
+    /// How actuators reach their limits.
     saturation: Saturation,
+    /// Names of the modes of operation.
+    modes: Vec<String>,
     /// True if there are adaptive observers, whose elastic rates active damping needs.
     has_observers: bool,
     /// Reports of the last cycle: of the body and its actuators, and of the estimator.
@@ -24,19 +27,24 @@ pub struct CycleRows {
 impl CycleRows {
     /// Creates the memory of a scenario's rows, before its start.
     pub fn new(scenario: &Scenario) -> Self {
-        let saturation = Saturation::new(&scenario.actuator, scenario.duration.seconds());
         Self {
             has_observers: scenario.has_adaptive_observers(),
             revisions: LoggedRevisions::default(),
-            saturation,
+            saturation: scenario.saturation(),
+            modes: scenario.mode.iter().map(|mode| mode.name.clone()).collect(),
             actuator_report: Report::new(),
             estimator_report: Report::new(),
         }
     }
 
-    /// Returns the warning of the run's end that wheels or magnetorquers have reached their limits.
-    pub fn saturation_warning(&self) -> Option<String> {
-        self.saturation.warning()
+    /// Returns the warnings of the run's end that actuators have lost the target at their limits, or are at them.
+    pub fn saturation_warnings(&self, end: Instant) -> impl Iterator<Item = String> {
+        let loss = self.saturation.clone().close(end).map(|loss| self.loss_text(&loss));
+        loss.into_iter().chain(self.saturation.warning())
+    }
+
+    fn loss_text(&self, loss: &TargetLoss) -> String {
+        loss.text(self.modes.get(loss.mode).map(String::as_str), self.saturation.limits().name(loss.limit))
     }
 
     /// Records the rows of the cycle that begins now.
@@ -52,10 +60,11 @@ impl CycleRows {
         report.clear();
         run.add_actuator_cycle(motion, report);
         report.skip_repeated(&mut self.revisions);
-        if is_journaled {
-            self.saturation.observe(now.seconds(), report);
-        }
+        let loss = if is_journaled { self.saturation.observe(now, report) } else { None };
         run.record_report(report, record)?;
+        if let Some(loss) = loss {
+            journal.warned(now, "actuators", self.loss_text(&loss), record)?;
+        }
         if is_journaled {
             let error = || run.sensors.angles_of(&truth.orientation, &run.guidance.target(now));
             journal.target(now, run.guidance, error, record)?;

@@ -124,7 +124,7 @@ impl Recorder {
 
     /// Records the last lines of the run's journal.
     pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
-        if let Some(line) = self.cycles.saturation_warning() {
+        for line in self.cycles.saturation_warnings(now) {
             self.journal.warned(now, "actuators", line, record)?;
         }
         self.journal.end(now, record)

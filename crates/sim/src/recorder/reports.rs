@@ -98,6 +98,7 @@ impl RunView<'_> {
         let (elastic_energy_j, visible_energy_j) = motion.elastic_energies();
         let actuator = &*self.loads.actuator;
         report.add_value(ThreeAxisCycle {
+            visit: self.guidance.visit(self.now),
             elastic_energy_j,
             visible_energy_j,
             rigid_rate_rad_s: rigid.into(),
