@@ -124,13 +124,21 @@ impl Campaign {
         let threads = if threads == 0 { cores() } else { threads };
         // Batches are small enough to leave work for every thread.
         let most = most.min(count / threads as u64).max(1);
+        let mut started = 0;
         for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
             let (campaign, worker, outcomes) = (self.clone(), Worker(pool.clone()), outcomes.clone());
             let (work, selection) = (work.clone(), selection.clone());
-            thread::spawn(move || campaign.work_through(&worker, (most, &selection), &outcomes, &*work));
+            let through = move || while campaign.work_on(&worker, (most, &selection), &outcomes, &*work) {};
+            started += usize::from(thread::Builder::new().spawn(through).is_ok());
         }
-        drop(outcomes);
-        let described = report_in_order(&pool, runs, &ended, &mut report);
+        // Where the system has no thread left, this one does the work between the reports.
+        let (here, outcomes) = (Worker(pool.clone()), (started == 0).then_some(outcomes));
+        let mut work_here = || {
+            if let Some(outcomes) = &outcomes {
+                self.work_on(&here, (most, &selection), outcomes, &*work);
+            }
+        };
+        let described = report_in_order(&pool, runs, &ended, &mut work_here, &mut report);
         if described.is_err() {
             pool.close();
             let began = Instant::now();
@@ -143,27 +151,23 @@ impl Campaign {
         described
     }
 
-    fn work_through(
+    /// Simulates the next `most` runs at most, and returns true if there may be more.
+    fn work_on(
         &self,
         worker: &Worker,
         (most, selection): (u64, &Selection),
         outcomes: &Sender<Vec<RunOutcome>>,
         work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
-    ) {
-        loop {
-            let numbers = worker.0.merge_from(most);
-            if numbers.is_empty() {
-                return;
-            }
-            let mut notify = |some| outcomes.send(some).is_ok();
-            let continues = if numbers.end - numbers.start > 1 {
-                self.run_batch(numbers, selection, work, &mut notify)
-            } else {
-                notify(vec![self.run_outcome(numbers.start, selection, work)])
-            };
-            if !continues {
-                return;
-            }
+    ) -> bool {
+        let numbers = worker.0.merge_from(most);
+        if numbers.is_empty() {
+            return false;
+        }
+        let mut notify = |some| outcomes.send(some).is_ok();
+        if numbers.end - numbers.start > 1 {
+            self.run_batch(numbers, selection, work, &mut notify)
+        } else {
+            notify(vec![self.run_outcome(numbers.start, selection, work)])
         }
     }
 
@@ -213,11 +217,13 @@ fn report_in_order<E>(
     pool: &WorkerPool,
     runs: Range<u64>,
     ended: &Receiver<Vec<RunOutcome>>,
+    work_here: &mut impl FnMut(),
     report: &mut impl FnMut(Option<RunOutcome>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut early = BTreeMap::new();
     let mut due = runs.start;
     while due < runs.end {
+        work_here();
         match ended.recv_timeout(REPORT_INTERVAL) {
             Ok(some) => early.extend(some.into_iter().map(|outcome| (outcome.number, outcome))),
             Err(RecvTimeoutError::Timeout) => {}
