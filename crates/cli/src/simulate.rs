@@ -155,6 +155,8 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
             Ok(Arc::new(campaign))
         })
         .collect::<Result<Vec<_>, CliError>>()?;
+    // Options that exclude each other are refused before a directory is made.
+    args.options.scheduler(args.detail(LogDetail::None).is_some(), args.json)?;
     args.make_room(&place)?;
     let prefixed = campaigns.len() > 1;
     let mut failures = Vec::new();

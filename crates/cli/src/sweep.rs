@@ -219,10 +219,12 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
     if undrawn && !args.json {
         say!("note: the [uncertain] keys keep their values; --uncertain draws them");
     }
+    let detail = args.detail();
+    // Options that exclude each other are refused before a directory is made.
+    let scheduler = args.options.scheduler(detail.is_some(), args.json)?;
     if let Some(out) = args.out.as_ref().filter(|_| !is_file) {
         files::make_directory(out)?;
     }
-    let detail = args.detail();
     let job = campaign::CampaignJob {
         range,
         part: args.runs.is_some(),
@@ -236,7 +238,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         jobs: args.jobs,
         json: args.json,
         units: args.units.units,
-        scheduler: args.options.scheduler(detail.is_some(), args.json)?,
+        scheduler,
         plain: detail.is_none(),
     };
     // A sweep explores: a point that misses a requirement is no failure of it.
