@@ -18,8 +18,9 @@ impl CoSimulation {
     pub fn restored(&self, bytes: &[u8]) -> Result<Self, CoSimulationError> {
         let mut run = Self::new(self.content.clone())?;
         run.journal = InputJournal::from_bytes(bytes, &self.journal.token, self.table.input_count())?;
-        run.rebuild()?;
+        // Before the start nothing was built with the parameters, which may not fit.
         let Some(reached) = run.journal.reached else { return Ok(run) };
+        run.rebuild()?;
         if reached.at() > run.simulation.end() {
             return Err(CoSimulationError::refused(
                 "the serialised state is damaged: it is after the end of the run",
