@@ -108,11 +108,14 @@ mod stepping;
 mod unwatched;
 
 // Formats: scenarios, structures, results and logs, and what is refused.
+mod bad_arguments;
 mod bad_files;
 mod bad_manoeuvres;
+mod bad_results;
 mod bad_scenarios;
 mod bad_spatial;
 mod bad_structures;
+mod boundary_values;
 mod craft_written;
 mod documented;
 #[cfg(feature = "flight-code")]
@@ -148,6 +151,8 @@ mod cli;
 mod costs;
 mod extremes;
 mod help;
+#[cfg(all(target_os = "linux", feature = "parquet"))]
+mod io_faults;
 #[cfg(not(feature = "full"))]
 mod light;
 #[cfg(feature = "live")]
@@ -172,6 +177,8 @@ mod repeated_runs;
 mod report;
 mod reproduce;
 mod requirements;
+#[cfg(unix)]
+mod sanitizers;
 mod serve;
 mod serve_clients;
 mod sheets;

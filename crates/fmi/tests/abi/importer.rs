@@ -8,7 +8,7 @@ use flexsc_core::Scenario;
 use flexsc_cosim::{FmuContent, FmuPart, FmuRun, VariableTable, find_library};
 use tempfile::TempDir;
 
-type Handle = *mut c_void;
+pub type Handle = *mut c_void;
 
 /// Loaded library.
 pub struct Library(*mut c_void);
@@ -110,6 +110,11 @@ impl Fmu3 {
         };
         fmu.instance = fmu.instantiate(&fmu.content.token(), uses_events);
         fmu
+    }
+
+    /// Returns the instance.
+    pub fn handle(&self) -> Handle {
+        self.instance
     }
 
     /// Returns the directory of the resources.

@@ -4,10 +4,12 @@
 #![expect(clippy::macro_metavars_in_unsafe, reason = "the macro names the types of a C function")]
 #![expect(unsafe_code, reason = "the tests call the C functions of the library")]
 
+mod absent;
 mod controller;
 mod fmi2;
 mod importer;
 mod refusals;
+
 mod states;
 
 use flexsc_core::control::law::Command;
