@@ -43,14 +43,20 @@ TYPES = "tests/python/test_types.py"
 WITHOUT = ("-k", "not matplotlib_alone")
 # Whether the wheel is in the environment, or could not be built or installed.
 INSTALLED = threading.Event()
-# So many inputs, the same on every machine: about 6 s each.
+# So many inputs, the same on every machine: about 3.5 s each.
 FUZZED = {
-    "scenarios": "1000",
-    "structures": "2200",
-    "logs": "440",
-    "arguments": "640",
-    "live": "1400",
-    "parts": "600",
+    "scenarios": "570",
+    "structures": "1250",
+    "logs": "250",
+    "arguments": "360",
+    "live": "800",
+    "parts": "340",
+    "environment": "2000",
+    "conditions": "700",
+    "points": "1200",
+    "commands": "220",
+    "lockstep": "130",
+    "fmus": "400",
 }
 # Tests wait now and then: so many at a time, three on two cores.
 THREADS = (os.cpu_count() or 1) + 1

@@ -6,11 +6,17 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::util::{Dir, FLEXSC};
 use crate::viewer::connect;
+
+#[path = "fuzz/src/lockstep_client.rs"]
+mod lockstep_client;
+
+use lockstep_client::LockstepClient;
 
 /// Inputs by surface: the command's arguments, and the files in its directory.
 const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/fuzz/corpus");
@@ -103,7 +109,7 @@ fn end(child: &mut Child, name: &str, stops: bool) -> ExitStatus {
 fn what_the_fuzzer_found_is_mended() {
     let inputs = inputs();
     assert!(!inputs.is_empty(), "the corpus is gone");
-    for input in inputs.iter().filter(|input| !input.dir.has("sent")) {
+    for input in inputs.iter().filter(|input| !input.dir.has("sent") && !input.dir.has("packets")) {
         let given = files(&input.dir.path(""));
         let mut child = start(input);
         let stops = !["export", "plot", "log", "check", "modes"].contains(&&*input.arguments[0]);
@@ -148,5 +154,31 @@ fn what_the_fuzzer_sent_to_a_live_run_is_survived() {
         }
         interrupt(&child);
         assert_eq!(end(&mut child, &input.name, true).code(), Some(130), "{}", input.name);
+    }
+}
+
+#[test]
+fn a_run_in_lockstep_survives_the_packets_of_the_fuzzer() {
+    for input in inputs().iter().filter(|input| input.dir.has("packets")) {
+        let mut child = start(input);
+        let mut err = BufReader::new(child.stderr.take().expect("piped"));
+        let mut line = String::new();
+        while !line.starts_with("  serve ") {
+            line.clear();
+            assert!(err.read_line(&mut line).expect("text") > 0, "{}: it is not served", input.name);
+        }
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let (transport, address) = (words[1], words[2].trim_end_matches(','));
+        let has_ended = AtomicBool::new(false);
+        let script = input.dir.text("packets");
+        let status = thread::scope(|scope| {
+            scope.spawn(|| LockstepClient::new(transport, address).control(&script, &has_ended));
+            // Messages that are not read would stop the run.
+            scope.spawn(|| err.read_to_string(&mut String::new()));
+            let status = end(&mut child, &input.name, false);
+            has_ended.store(true, Ordering::Relaxed);
+            status
+        });
+        assert!(status.code().is_some_and(|code| code <= 3), "{}: {status}", input.name);
     }
 }

@@ -6,6 +6,10 @@ use std::path::Path;
 
 /// Name of the file with the messages that a viewer sends to a live run.
 pub const SENT: &str = "sent";
+/// Name of the file with the packets of a client to a run in lockstep.
+pub const PACKETS: &str = "packets";
+/// Name of the file with the calls of an importer of an FMU.
+pub const CALLS: &str = "calls";
 const ARGUMENTS: &str = "arguments.json";
 const FILES: &str = "files";
 

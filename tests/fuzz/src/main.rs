@@ -1,6 +1,7 @@
-//! A mutation fuzzer of flexsc: scenarios, structures, logs, parts of campaigns, arguments and what viewers send.
+//! A mutation fuzzer of flexsc: files of every kind that it reads, arguments, what viewers and control programs send, and what
+//! importers of FMUs call.
 //!
-//!     cargo run --release -p flexsc-fuzz                         12 s on each of six surfaces
+//!     cargo run --release -p flexsc-fuzz                         12 s on each surface
 //!     cargo run --release -p flexsc-fuzz -- --seconds 3600       an hour on each
 //!     cargo run --release -p flexsc-fuzz -- --surface logs --inputs 900       the same 900 inputs on any machine
 //!
@@ -12,6 +13,8 @@
 mod case;
 mod chance;
 mod findings;
+mod fmu_importer;
+mod lockstep_client;
 mod mutate;
 mod nasty;
 mod node;
@@ -37,7 +40,7 @@ use tally::Tally;
 use watch::News;
 use worker::Work;
 
-/// Number of inputs of a worker, which limits the effects that an input leaves in its process.
+/// Largest number of inputs of a worker, which limits the effects that an input leaves in its process.
 const BATCH: u64 = 250;
 
 /// Time limit that no number of inputs reaches.
@@ -149,6 +152,11 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
     let end = args.inputs.map_or(u64::MAX, |inputs| args.first.saturating_add(inputs));
     let maker = Maker::new(surface, args.seed)?;
     let (tally, findings) = (Mutex::new(Tally::default()), Mutex::new(findings));
+    // Viewers, control programs and their runs wait for each other most of the time.
+    let several = if matches!(surface, Surface::Live | Surface::Lockstep) { 4 } else { 1 };
+    let jobs = several * args.jobs.max(1);
+    // Every job gets inputs.
+    let batch = args.inputs.map_or(BATCH, |inputs| inputs.div_ceil(jobs as u64).clamp(1, BATCH));
     let next = AtomicU64::new(args.first);
     // If one job fails, the others stop early too.
     let failed = AtomicBool::new(false);
@@ -156,11 +164,11 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
     let job = |job: usize| -> io::Result<()> {
         let directory = scratch.join(format!("{}-{job}", name(surface)));
         while goes_on() {
-            let from = next.fetch_add(BATCH, Ordering::Relaxed);
+            let from = next.fetch_add(batch, Ordering::Relaxed);
             if from >= end {
                 break;
             }
-            let (mut at, to) = (from, end.min(from + BATCH));
+            let (mut at, to) = (from, end.min(from + batch));
             while at < to && goes_on() {
                 let (seed, mut broken) = (args.seed.to_string(), Vec::new());
                 let arguments = ["worker".to_owned(), name(surface), seed, at.to_string(), to.to_string()];
@@ -199,9 +207,7 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
         done
     };
     let done = std::thread::scope(|scope| {
-        // Viewers and their run wait for each other most of the time.
-        let several = if surface == Surface::Live { 4 } else { 1 };
-        let jobs: Vec<_> = (0..several * args.jobs.max(1)).map(|n| scope.spawn(move || job(n))).collect();
+        let jobs: Vec<_> = (0..jobs).map(|n| scope.spawn(move || job(n))).collect();
         jobs.into_iter()
             .try_for_each(|job| job.join().unwrap_or_else(|_| Err(io::Error::other("a thread panicked"))))
     });

@@ -5,9 +5,13 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::fd::AsFd;
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::case::{self, Case, Stop};
+use crate::fmu_importer::play;
+use crate::lockstep_client::LockstepClient;
 use crate::surface::{Maker, Server, Surface};
 use crate::watch::processor;
 
@@ -106,16 +110,57 @@ fn run(case: &Case) -> io::Result<(u8, Option<String>)> {
     fs::create_dir(directory)?;
     case.lay_out(directory)?;
     std::env::set_current_dir(directory)?;
-    let arguments = ["flexsc"].into_iter().chain(case.arguments.iter().map(String::as_str));
-    let code = flexsc_cli::main(arguments.map(OsString::from));
+    let played =
+        case.file(case::CALLS).map(|calls| play(&String::from_utf8_lossy(calls), Path::new("resources")));
+    let (code, wrong_call) = match played {
+        Some(wrong) => (0, wrong),
+        None => (command(case), None),
+    };
     std::env::set_current_dir("..")?;
     if code == 130 {
         // Work that could not be stopped may continue; it ends with this process.
         return Ok((code, None));
     }
-    let wrong = wrong(case, code, directory)?;
+    let wrong = match wrong_call {
+        Some(wrong) => Some(wrong),
+        None => wrong(case, code, directory)?,
+    };
     fs::remove_dir_all(directory)?;
     Ok((code, wrong))
+}
+
+/// Runs the command, and beside it the client of a run in lockstep, if there is one; returns the exit code.
+fn command(case: &Case) -> u8 {
+    let arguments = ["flexsc"].into_iter().chain(case.arguments.iter().map(String::as_str));
+    let run = || flexsc_cli::main(arguments.map(OsString::from));
+    let Some(script) = case.file(case::PACKETS) else { return run() };
+    let has_ended = AtomicBool::new(false);
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            if let Some((transport, address)) = announced(&Path::new("..").join(MESSAGES), &has_ended) {
+                LockstepClient::new(&transport, &address)
+                    .control(&String::from_utf8_lossy(script), &has_ended);
+            }
+        });
+        let code = run();
+        has_ended.store(true, Ordering::Relaxed);
+        code
+    })
+}
+
+/// Waits for the transport and the address that a server announces; returns none if it ends before.
+fn announced(messages: &Path, has_ended: &AtomicBool) -> Option<(String, String)> {
+    while !has_ended.load(Ordering::Relaxed) {
+        let said = fs::read_to_string(messages).unwrap_or_default();
+        let line = said.lines().find_map(|line| line.trim_start().strip_prefix("serve "));
+        if let Some((transport, rest)) = line.and_then(|line| line.trim_start().split_once(' '))
+            && let Some((address, _)) = rest.split_once(',')
+        {
+            return Some((transport.to_owned(), address.to_owned()));
+        }
+        thread::sleep(TICK / 10);
+    }
+    None
 }
 
 /// Returns the first violation of the rules for every command.
@@ -149,6 +194,11 @@ fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> 
             name.rsplit('.').next().unwrap_or_default()
         )));
     }
+    if code == 2
+        && let Some(new) = new_directory(case, directory)?
+    {
+        return Ok(Some(format!("exit code 2, but left the directory {new}")));
+    }
     let tables = files.iter().filter(|(name, _)| name.ends_with("statistics.csv"));
     let infinite = |bytes: &[u8]| {
         let is_infinite = |cell: &str| cell.parse().is_ok_and(|number: f64| !number.is_finite());
@@ -156,6 +206,19 @@ fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> 
     };
     if tables.into_iter().any(|(_, bytes)| infinite(bytes)) {
         return Ok(Some("inf or NaN in statistics.csv".to_owned()));
+    }
+    Ok(None)
+}
+
+/// Returns a directory that the command has made.
+fn new_directory(case: &Case, directory: &Path) -> io::Result<Option<String>> {
+    for entry in fs::read_dir(directory)? {
+        let entry = entry?;
+        let within = format!("{}/", entry.file_name().to_string_lossy());
+        let is_given = case.files.iter().any(|(name, _)| name.starts_with(&within));
+        if entry.file_type()?.is_dir() && !is_given {
+            return Ok(Some(within));
+        }
     }
     Ok(None)
 }

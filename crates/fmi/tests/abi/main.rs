@@ -9,7 +9,7 @@ mod controller;
 mod fmi2;
 mod importer;
 mod refusals;
-
+mod sequences;
 mod states;
 
 use flexsc_core::control::law::Command;

@@ -75,7 +75,7 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
 }
 
 /// Returns a log without compression.
-fn plain(log: &[u8]) -> mcap::McapResult<Vec<u8>> {
+pub fn plain(log: &[u8]) -> mcap::McapResult<Vec<u8>> {
     let options = mcap::WriteOptions::new().compression(None).chunk_size(Some(1 << 14)).library("flexsc");
     let mut writer = mcap::Writer::with_options(Cursor::new(Vec::new()), options)?;
     let summary = mcap::Summary::read(log)?.unwrap_or_default();

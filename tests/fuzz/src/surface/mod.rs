@@ -1,9 +1,18 @@
 //! Surfaces on which input arrives, and the makers of their inputs.
 
 mod arguments;
+mod coefficients;
+mod commands;
+mod conditions;
+mod element_sets;
+mod environment;
+mod ephemerides;
+mod fmus;
 mod live;
+mod lockstep;
 mod logs;
 mod parts;
+mod points;
 mod records;
 mod results;
 mod scenarios;
@@ -35,6 +44,18 @@ pub enum Surface {
     Live,
     /// Parquet parts of campaigns, to everything that reads them
     Parts,
+    /// Element sets, ephemerides, coefficients of the field and densities, to checks and short runs
+    Environment,
+    /// Conditions of modes of operation
+    Conditions,
+    /// Tables of the points of a sweep
+    Points,
+    /// Commands within logs, by which runs are repeated
+    Commands,
+    /// Packets to a run in lockstep
+    Lockstep,
+    /// Calls of the functions of FMUs, and serialised states
+    Fmus,
 }
 
 /// Maker of the inputs of a surface.
@@ -44,6 +65,7 @@ pub struct Maker {
     seeds: Seeds,
     logs: Vec<Vec<u8>>,
     campaign: Vec<(String, Vec<u8>)>,
+    fmus: Vec<fmus::Fmu>,
 }
 
 /// Material of the inputs.
@@ -86,10 +108,12 @@ impl Maker {
         let seeds = Seeds::load()?;
         let logs = match surface {
             Surface::Logs | Surface::Arguments => logs::seeds(&seeds)?,
+            Surface::Commands => commands::seeds(&seeds)?,
             _ => Vec::new(),
         };
         let campaign = if surface == Surface::Parts { parts::seeds()? } else { Vec::new() };
-        Ok(Self { surface, seed, seeds, logs, campaign })
+        let fmus = if surface == Surface::Fmus { fmus::seeds(&seeds)? } else { Vec::new() };
+        Ok(Self { surface, seed, seeds, logs, campaign, fmus })
     }
 
     /// Returns the input of a number.
@@ -102,6 +126,12 @@ impl Maker {
             Surface::Parts => parts::make(&self.campaign, chance),
             Surface::Arguments => arguments::make(&self.logs, &self.seeds, chance),
             Surface::Live => live::make(chance),
+            Surface::Environment => environment::make(chance),
+            Surface::Conditions => conditions::make(&self.seeds, chance),
+            Surface::Points => points::make(chance),
+            Surface::Commands => commands::make(&self.logs, chance),
+            Surface::Lockstep => lockstep::make(chance),
+            Surface::Fmus => fmus::make(&self.fmus, chance),
         }
     }
 }
