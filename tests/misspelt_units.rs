@@ -33,8 +33,9 @@ fn the_name_is_the_one_mistake() {
         assert_eq!(ran.err.matches("bad.toml:").count(), 1, "{to}: {}", ran.err);
     }
     let uncertain =
-        "[uncertain]\n\"environment.orbit.noed\" = { normal = { mean = \"3 deg\", sd = \"1 deg\" } }";
-    dir.write("bad.toml", format!("{text}\n{uncertain}\n"));
+        "[uncertain]\n\"environment.orbit.noed\" = { normal = { mean = \"3 deg\", sd = \"1 deg\" } }\n";
+    assert!(text.contains("[uncertain]\n"), "drawn keys");
+    dir.write("bad.toml", text.replacen("[uncertain]\n", uncertain, 1));
     let ran = dir.run("check bad.toml").exits(2).says(&["environment.orbit.noed"]);
     assert!(!ran.err.contains("expected a number"), "{}", ran.err);
 }
