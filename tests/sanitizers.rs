@@ -123,10 +123,11 @@ fn lies(nonce: [u8; 4], random: &mut Stream) -> Vec<Vec<u8>> {
     content.truncate([content.len(), content.len(), content.len(), 18, 19, 4][random.index(6)].min(59_000));
     let mut packets = vec![packet(WELCOME, 0, &content)];
     for cycle in 0..random.index(12) as u64 {
-        let length = [0, 4, 11, 12, 27, 28, 29, 76, 77, 100, 500, 59_000][random.index(12)];
+        // Most are those of the right layout.
+        let length = [64, 64, 64, 64, 64, 64, 0, 4, 12, 63, 65, 28, 29, 76, 500, 59_000][random.index(16)];
         let mut body = [&session[..], &cycle.to_be_bytes()].concat();
         body.extend(noise(length, random));
-        packets.push(match random.index(8) {
+        packets.push(match random.index(20) {
             0 => packet(REFUSAL, 0, &noise(length % 300, random)),
             1 => packet(WELCOME, 0, &body),
             2 => packet(END, 0, &body[..body.len().min(29)]),

@@ -19,6 +19,8 @@ const PARTS: [(&str, FmuPart); 5] = [
     ("earth-observer", FmuPart::Loop),
     ("earth-observer", FmuPart::Controller),
 ];
+/// Largest number that is set: torques act on bodies of some kg m².
+const HEAVIEST: f64 = 1e3;
 /// Functions of the instance alone.
 const FUNCTIONS: [&str; 11] = [
     "begin",
@@ -188,7 +190,11 @@ fn set(fmu: &Fmu, calls: &mut String, chance: &mut Chance) {
         found = variable(fmu, chance);
     }
     let (reference, kind, _) = found;
-    let value =
+    let mut value =
         if chance.percent(60) { chance.one(&["0.1", "1", "0", "1e-3"]) } else { nasty::number(chance) };
+    // A torque of 1e20 N m makes a body turn so fast that a step takes hours, which an importer has asked for.
+    if kind == "f" && value.parse().is_ok_and(|number: f64| number.is_finite() && number.abs() > HEAVIEST) {
+        value = "100";
+    }
     let _ = writeln!(calls, "set {kind} {reference} {value}");
 }
