@@ -46,6 +46,9 @@ enum Form {
 /// Maximum number of decades of a logarithmic axis: values far below the largest are rounding errors.
 const DECADES: f64 = 8.0;
 
+/// Largest size of a value that an axis shows: twice a larger one can be infinite.
+const MOST: f64 = 1e300;
+
 /// Maximum ratio of the largest values of axes that share a prefix, for axes of one quantity.
 const SAME: f64 = 1000.0;
 /// Maximum ratio of the largest values of axes that share a prefix, for axes of different quantities.
@@ -61,13 +64,18 @@ const TIMES: [(f64, &str, f64); 4] =
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
 impl FigureAxis {
-    /// Creates an axis with exactly the given range.
+    /// Least size of a range, and of a value on a logarithmic axis: the power of ten of a smaller step can be 0.
+    pub const LEAST: f64 = 1e-300;
+
+    /// Creates an axis with exactly the given range, as far as it is within ±1e300.
     pub fn exact(name: &str, unit: &'static str, range: Range<f64>) -> Self {
+        let is_finite = range.start.is_finite() && range.end.is_finite();
+        let range = range.start.clamp(-MOST, MOST)..range.end.clamp(-MOST, MOST);
         let size = range.start.abs().max(range.end.abs());
         // An axis needs a width, which a single value or an empty range does not have.
-        let wide = size.is_finite() && range.end - range.start > 1e-9 * size;
-        let middle = if range.start.is_finite() { range.start } else { 0.0 };
-        let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
+        let wide = is_finite && range.end - range.start > (1e-9 * size).max(Self::LEAST);
+        let middle = if is_finite { range.start } else { 0.0 };
+        let half = if middle.abs() < Self::LEAST { 1.0 } else { 0.05 * middle.abs() };
         let range = if wide { range } else { middle - half..middle + half };
         Self { name: name.to_owned(), unit, range, scale: Scale::Linear, stacked_size: 0.0 }
     }
@@ -89,7 +97,7 @@ impl FigureAxis {
 
     /// Creates a logarithmic axis of whole decades for all positive values, with at most eight decades.
     pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
-        let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+        let positive = values.into_iter().filter(|value| (Self::LEAST..=MOST).contains(value));
         let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
         let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
         let low = low.min(high - 1.0).max(high - DECADES);
@@ -336,6 +344,38 @@ mod tests {
             let axis = FigureAxis::around("x", "m", values.clone());
             assert!(axis.range.start < axis.range.end, "{values:?}");
             assert!(axis.ticks(5).at.len() <= 7, "{values:?}");
+        }
+    }
+
+    /// Returns numbers of all exponents, the subnormal ones included, with both signs, and 0.
+    fn all_exponents() -> Vec<f64> {
+        let sizes = (0..2047).step_by(23).flat_map(|exponent: u64| {
+            [1, 0x000A_0000_0000_0000].map(|mantissa| f64::from_bits(exponent << 52 | mantissa))
+        });
+        sizes.chain([f64::MAX]).flat_map(|size| [size, -size]).chain([0.0]).collect()
+    }
+
+    #[test]
+    fn ticks_are_few_and_finite_for_all_exponents_of_both_ends() {
+        let numbers = all_exponents();
+        for (index, one) in numbers.iter().enumerate() {
+            for other in &numbers[index..] {
+                let (low, high) = (one.min(*other), one.max(*other));
+                for (unit, axis) in [
+                    ("m", FigureAxis::exact("x", "m", low..high)),
+                    ("s", FigureAxis::exact("x", "s", low..high)),
+                    ("kg", FigureAxis::around("x", "kg", [low, high])),
+                    ("from zero", FigureAxis::from_zero("x", "rad", [low, high])),
+                    ("decades", FigureAxis::decades("x", "m", [low, high])),
+                ] {
+                    let Range { start, end } = axis.range;
+                    assert!(start.is_finite() && end.is_finite() && start < end, "{unit} {low:e} {high:e}");
+                    let ticks = axis.ticks(7);
+                    let is_finite = ticks.at.iter().all(|value| value.is_finite());
+                    assert!(is_finite && ticks.at.len() <= 16, "{unit} {low:e} {high:e} {:?}", ticks.at);
+                    ticks.at.iter().for_each(|value| assert!(!ticks.text(*value).is_empty()));
+                }
+            }
         }
     }
 

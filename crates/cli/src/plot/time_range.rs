@@ -38,7 +38,8 @@ pub fn crop(mut figure: Figure, shown: &Range<f64>) -> Figure {
         if panel.y.scale == Scale::Linear
             && let Some(range) = heights(panel)
         {
-            panel.y.range = range;
+            let name = std::mem::take(&mut panel.y.name);
+            panel.y = FigureAxis::exact(&name, panel.y.unit, range);
         }
     }
     figure

@@ -131,11 +131,15 @@ fn read_wmm(lines: &NumberedLines) -> Result<HarmonicRows, String> {
     let text = header.split_whitespace().next().unwrap_or_default();
     let year = numbers(&(*number, text.to_owned()), 1, "a year")?[0];
     let is_end = |line: &str| line.trim().len() > 20 && line.trim().bytes().all(|byte| byte == b'9');
-    let Some(end) = lines.iter().position(|(_, line)| is_end(line)) else {
+    let rows = &lines[1..];
+    let Some(end) = rows.iter().position(|(_, line)| is_end(line)) else {
         return Err("must end with a line of nines, as a whole file of the World Magnetic Model".to_owned());
     };
+    if end == 0 {
+        return Err(format!("line {}: must be a row of degree, order, g, h and their rates", rows[0].0));
+    }
     let mut block = Block { year, rows: Vec::new(), places: Vec::new() };
-    for line in &lines[1..end] {
+    for line in &rows[..end] {
         block.rows.push(block_row(line)?);
         block.places.push(line.0);
     }

@@ -107,6 +107,10 @@ fn damaged_files_are_refused_with_their_lines() {
         assert!(error.contains(words), "{error}");
     };
     refused("", "and is empty");
+    refused("999999999999999999999999\n1 0 -29351.8 0 12 0\n", "must end with a line of nines");
+    let nines = "9999999999999999999999999\n";
+    refused(&format!("{nines}{nines}"), "line 2: must be a row of degree, order, g, h and their rates");
+    refused(&format!("2025.0 WMM\n{nines}"), "line 2: must be a row of degree");
     refused(&WMM.replace("9999999999999999999999999\n", ""), "a line of nines");
     refused(&WMM.replace("1  1 ", "1  2 "), "line 3: must have an order from -1 to 1, got 2");
     refused(&WMM.replace("1  1 ", "1 -1 "), "line 3: must have an order from 0 on, got -1");
@@ -133,4 +137,29 @@ fn damaged_files_are_refused_with_their_lines() {
     );
     refused(&BLOCKS.replace("1  0 -29403", "1  1 -29403"), "line 2: must have degree 1 and order 0");
     assert!(read(&b"2025.0 WMM\n\xff\n"[..]).expect_err("damaged").contains("line 2: is not UTF-8"));
+}
+
+#[test]
+fn files_of_any_lines_in_any_order_are_read_or_refused() {
+    let nines = "9999999999999999999999999";
+    let lines: Vec<&str> =
+        [WMM, SHC, BLOCKS].into_iter().flat_map(str::lines).chain(["0 0 0", "1 0"]).collect();
+    // Every file of up to three of the lines, and each file without each of its lines.
+    for first in &lines {
+        for second in &lines {
+            for third in lines.iter().chain([&"", &nines]) {
+                let _ = read(format!("{first}\n{second}\n{third}\n").as_bytes());
+            }
+        }
+    }
+    for file in [WMM, SHC, BLOCKS] {
+        let count = file.lines().count();
+        for (left_out, moved) in (0..count).flat_map(|one| (0..count).map(move |other| (one, other))) {
+            let mut kept: Vec<&str> = file.lines().collect();
+            let line = kept.remove(left_out);
+            let _ = read(kept.join("\n").as_bytes());
+            kept.insert(moved, line);
+            let _ = read(kept.join("\n").as_bytes());
+        }
+    }
 }

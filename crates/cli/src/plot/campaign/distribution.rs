@@ -74,8 +74,8 @@ fn title(runs: &CampaignRuns, name: &str, count: usize) -> String {
 fn bars(sorted: &[f64]) -> Vec<((f64, f64), usize)> {
     let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else { return Vec::new() };
     let (low, range) = (*low, high - low);
-    if range <= 0.0 {
-        return vec![((low - 0.5, low + 0.5), sorted.len())];
+    if !(FigureAxis::LEAST..f64::INFINITY).contains(&range) {
+        return vec![((low - 0.5, high + 0.5), sorted.len())];
     }
     let quartiles = quantile(sorted, 0.75) - quantile(sorted, 0.25);
     let wanted = 2.0 * quartiles / (sorted.len() as f64).cbrt();
@@ -101,8 +101,15 @@ mod tests {
 
     #[test]
     fn every_value_is_in_a_bar() {
-        for values in [vec![3.0], vec![1.0, 1.0, 1.0], vec![0.1, 0.2, 0.3, 0.4, 9.0], vec![-1e-6, 0.0, 2e-6]]
-        {
+        for values in [
+            vec![3.0],
+            vec![1.0, 1.0, 1.0],
+            vec![0.1, 0.2, 0.3, 0.4, 9.0],
+            vec![-1e-6, 0.0, 2e-6],
+            vec![0.0, 5e-324, 1e-323],
+            vec![0.0, 1e-290],
+            vec![-1.5e308, 1.5e308],
+        ] {
             let bars = bars(&values);
             assert_eq!(bars.iter().map(|bar| bar.1).sum::<usize>(), values.len(), "{values:?}");
             for value in &values {
