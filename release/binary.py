@@ -1,4 +1,4 @@
-"""Builds the command for a target into dist/, with its checksum and its bill of materials (CycloneDX).
+"""Builds the command for a target into dist/, with checksum, licences and bill of materials (CycloneDX).
 
 `python release/binary.py x86_64-unknown-linux-gnu`; the crates are those of the lock file.
 """
@@ -79,6 +79,8 @@ def main() -> None:
     made = DIST / f"{name}-{library}"
     shutil.copyfile(built.parent / "deps" / library, made)
     (DIST / f"{name}.cdx.json").write_text(json.dumps(materials(target), indent=1), encoding="utf-8")
+    # The licences of the crates in both.
+    shutil.copyfile(ROOT / "crates/cosim/licences.txt", DIST / f"{name}-licences.txt")
     digest = hashlib.sha256(binary.read_bytes()).hexdigest()
     sums = f"{digest}  {binary.name}\n{hashlib.sha256(made.read_bytes()).hexdigest()}  {made.name}\n"
     (DIST / f"{name}.sha256").write_text(sums, encoding="utf-8")

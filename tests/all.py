@@ -120,6 +120,7 @@ def form() -> None:
 
 def crates() -> None:
     run(sys.executable, "tests/deny.py")
+    run(sys.executable, "release/licences.py", "--check")
     if shutil.which("cargo-deny") is not None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
     run(sys.executable, "tests/features.py")

@@ -1,4 +1,4 @@
-//! Archive of an FMU: the model description, the library of the platform, and the scenario, with equal bytes at each export.
+//! Archive of an FMU: the model description, the library of the platform, its licences and the scenario, with equal bytes at each export.
 
 use std::io::{Cursor, Write};
 
@@ -11,6 +11,9 @@ use crate::description::model_description;
 use crate::error::CoSimulationError;
 use crate::fmi_version::{FmiVersion, MODEL_IDENTIFIER};
 use crate::fmu_run::FmuRun;
+
+/// Licences of flexsc and of the crates in its library, which release/licences.py writes.
+const LICENCES: &str = include_str!("../licences.txt");
 
 /// Returns the bytes of an FMU with this library.
 ///
@@ -28,6 +31,7 @@ pub fn fmu_bytes(
     let files = [
         ("modelDescription.xml".to_owned(), description.as_bytes()),
         (binary, library),
+        ("documentation/licenses/license.txt".to_owned(), LICENCES.as_bytes()),
         (format!("resources/{PART}"), content.part.name().as_bytes()),
         (format!("resources/{SCENARIO}"), content.toml.as_bytes()),
     ];

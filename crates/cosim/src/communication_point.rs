@@ -37,13 +37,26 @@ impl CommunicationPoint {
         }
         Self { at: nearest, latest: after(last) }
     }
+
+    /// Returns the point, at most at the end of a run.
+    #[must_use]
+    pub fn until(self, end: Instant) -> Self {
+        Self { at: self.at.min(end), latest: self.latest.min(end) }
+    }
 }
 
-/// Returns the end (s) of a step of `size` seconds from a communication point (s), for a run that is at `now` (s).
+/// Returns the end (s) of a step of `size` seconds from a communication point (s), for a run that is at `now` (s) and ends at
+/// `run_end`.
 ///
 /// # Errors
-/// Fails if the run is not at `from`, and for a size that is no time.
-pub fn step_end(from: f64, size: f64, now: f64, grid_ns: u64) -> Result<f64, CoSimulationError> {
+/// Fails if the run is not at `from`, for a size that is no time, and for a step beyond the end of the run.
+pub fn step_end(
+    from: f64,
+    size: f64,
+    now: f64,
+    run_end: Instant,
+    grid_ns: u64,
+) -> Result<f64, CoSimulationError> {
     if !is_same_time(from, now, grid_ns) {
         let why = format!("the step begins at {from:?} s, and the run is at {now:?} s");
         return Err(CoSimulationError::refused(why));
@@ -51,7 +64,14 @@ pub fn step_end(from: f64, size: f64, now: f64, grid_ns: u64) -> Result<f64, CoS
     if size.is_nan() || size < 0.0 || size.is_infinite() {
         return Err(CoSimulationError::refused(format!("the size of a step must be a time, got {size:?} s")));
     }
-    Ok(from + size)
+    let target = from + size;
+    if target > run_end.seconds() && !is_same_time(target, run_end.seconds(), grid_ns.max(1)) {
+        let why = format!(
+            "{target:?} s is after the end of the run, {run_end} s\n\nhint: state a later stop time before the start"
+        );
+        return Err(CoSimulationError::refused(why));
+    }
+    Ok(target)
 }
 
 /// Returns the multiple of a grid (ns) that is nearest to an instant.

@@ -3,16 +3,16 @@
 //! At the instant of a decision the run waits, as a plant does for commands: the inputs that are set at the end of the event, or at
 //! the start of the next step, are those on which the laws decide.
 
+use flexsc_core::Scenario;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::{Document, Scenario};
 use flexsc_export_c::control_system::{CallLayout, ControlSystem, NumberKind};
 
 use crate::communication_point::{CommunicationPoint, step_end};
-use crate::content::{FmuContent, SCENARIO};
+use crate::content::FmuContent;
 use crate::cosimulation::StepResult;
 use crate::error::CoSimulationError;
 use crate::flight_laws::laws_alone;
-use crate::journal::{AppliedInputs, Counts, InputJournal, Moment};
+use crate::journal::{InputJournal, Moment};
 use crate::variable::{ClockRole, Quantity, ValueKind};
 use crate::variable_table::VariableTable;
 
@@ -46,17 +46,7 @@ impl ControllerRun {
         let (laws, period) = laws_alone(&scenario)?;
         let layout = laws.calls().swap_remove(STEP);
         let table = VariableTable::for_laws(&scenario, &layout, period);
-        let journal = InputJournal {
-            token: content.token(),
-            keys: Vec::new(),
-            seed: scenario.seed,
-            grid_ns: 0,
-            stop_time: None,
-            inputs: vec![0; table.input_count()],
-            applied: Vec::new(),
-            reached: None,
-            counts: Counts::default(),
-        };
+        let journal = InputJournal::new(&content, scenario.seed, table.input_count());
         let outputs = vec![0; layout.output_words()];
         let (now, next) = (Instant::START, Instant::START);
         Ok(Self {
@@ -89,28 +79,39 @@ impl ControllerRun {
         self.now.seconds()
     }
 
-    /// Begins the run with the parameters that are set; the first decision is pending.
+    /// Returns true from the start on.
+    pub fn has_begun(&self) -> bool {
+        self.has_begun
+    }
+
+    /// Begins the run with the parameters that are set; the first decision is pending. The run ends at `stop_time` (s), if that is
+    /// later than the scenario's end.
     ///
     /// # Errors
     /// Fails for invalid parameters.
-    pub fn begin(&mut self) -> Result<(), CoSimulationError> {
-        if !self.journal.keys.is_empty() {
-            let mut document = Document::parse(SCENARIO, self.content.toml.clone())?;
-            for (key, bits) in &self.journal.keys {
-                document.set(key, f64::from_bits(*bits).into())?;
-            }
-            self.scenario = Scenario::from_document(&document)?;
-            (self.laws, self.period) = laws_alone(&self.scenario)?;
-        }
+    pub fn begin(&mut self, stop_time: Option<f64>) -> Result<(), CoSimulationError> {
+        self.journal.set_stop_time(stop_time);
+        self.start()
+    }
+
+    /// Starts the laws with the parameters of the journal.
+    fn start(&mut self) -> Result<(), CoSimulationError> {
+        self.scenario = self.journal.scenario(&self.content)?;
+        (self.laws, self.period) = laws_alone(&self.scenario)?;
         self.has_begun = true;
         Ok(())
+    }
+
+    /// Returns the end of the run.
+    fn end(&self) -> Instant {
+        Instant::START + self.scenario.duration
     }
 
     /// Advances the run from a communication point (s) by `size` seconds; stops at the first decision on the way if
     /// `stop_at_events`. A decision that is pending is made on the inputs of now.
     ///
     /// # Errors
-    /// Fails if the run is not at `from`, and for a size that is no time.
+    /// Fails if the run is not at `from`, for a size that is no time, and for a step beyond the end of the run.
     pub fn step(
         &mut self,
         from: f64,
@@ -118,8 +119,8 @@ impl ControllerRun {
         stop_at_events: bool,
     ) -> Result<StepResult, CoSimulationError> {
         let (now, grid) = (self.time(), self.journal.grid_ns);
-        let target = step_end(from, size, now, grid)?;
-        let point = CommunicationPoint::new(target, grid);
+        let target = step_end(from, size, now, self.end(), grid)?;
+        let point = CommunicationPoint::new(target, grid).until(self.end());
         self.decide_pending();
         let mut is_event = false;
         while self.next <= point.latest {
@@ -149,10 +150,12 @@ impl ControllerRun {
     /// Makes the decision that is due now, if it was not made.
     fn decide_pending(&mut self) {
         if self.next == self.now {
-            let applied =
-                AppliedInputs { from: Moment::new(self.now, true), bits: self.journal.inputs.clone() };
-            self.decide(&applied.bits);
-            self.journal.applied.push(applied);
+            let InputJournal { inputs, applied, .. } = &mut self.journal;
+            if applied.last() != Some(inputs) {
+                applied.add(Moment::new(self.now, true), inputs);
+            }
+            let inputs = self.journal.inputs.clone();
+            self.decide(&inputs);
         }
     }
 
@@ -242,16 +245,21 @@ impl ControllerRun {
         let mut run = Self::new(self.content.clone())?;
         run.journal = InputJournal::from_bytes(bytes, &self.journal.token, self.table.input_count())?;
         let Some(reached) = run.journal.reached else { return Ok(run) };
-        run.begin()?;
-        for AppliedInputs { from, bits } in run.journal.applied.clone() {
-            run.now = from.at();
-            run.decide(&bits);
+        run.start()?;
+        if reached.at() > run.end() {
+            return Err(CoSimulationError::after_end());
+        }
+        let applied = run.journal.applied.clone();
+        let mut changes = applied.changes().peekable();
+        let mut inputs = vec![0; run.table.input_count()];
+        while Moment::new(run.next, true) <= reached {
+            while let Some(change) = changes.next_if(|change| change.from.at() <= run.next) {
+                change.apply(&mut inputs);
+            }
+            run.now = run.next;
+            run.decide(&inputs);
         }
         run.now = reached.at();
-        if run.next < run.now {
-            let why = "the serialised state is damaged: a decision is missing";
-            return Err(CoSimulationError::refused(why));
-        }
         Ok(run)
     }
 }

@@ -28,6 +28,11 @@ impl CoSimulationError {
         Self::Refused(why.into())
     }
 
+    /// Creates the error of a serialised state that is later than its run ends.
+    pub fn after_end() -> Self {
+        Self::refused("the serialised state is damaged: it is after the end of the run")
+    }
+
     /// Creates the error of a value reference that stands for no variable of a kind.
     pub fn no_variable(reference: u32, kind: &str) -> Self {
         Self::Refused(format!("there is no {kind} variable with the value reference {reference}"))

@@ -50,6 +50,14 @@ impl FmuRun {
         }
     }
 
+    /// Returns true from the start on.
+    pub fn has_begun(&self) -> bool {
+        match self {
+            Self::Spacecraft(run) => run.has_begun(),
+            Self::Laws(run) => run.has_begun(),
+        }
+    }
+
     /// Returns the current time (s), rounded to a double.
     pub fn time(&self) -> f64 {
         match self {
@@ -65,7 +73,7 @@ impl FmuRun {
     pub fn begin(&mut self, stop_time: Option<f64>) -> Access<()> {
         match self {
             Self::Spacecraft(run) => run.begin(stop_time),
-            Self::Laws(run) => run.begin(),
+            Self::Laws(run) => run.begin(stop_time),
         }
     }
 

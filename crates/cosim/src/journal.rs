@@ -1,10 +1,13 @@
 //! Journal of a co-simulation: everything that an importer has set, and when. Scenario and journal determine the run, so
 //! that a serialised state is a journal.
 
-use flexsc_core::numerics::time::Instant;
+use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::{Document, Scenario};
 use serde::{Deserialize, Serialize};
 
+use crate::content::{FmuContent, SCENARIO};
 use crate::error::CoSimulationError;
+use crate::input_history::InputHistory;
 
 /// Instant of a run, and whether the response to its event has been given.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -32,15 +35,6 @@ impl Moment {
     fn is_valid(self) -> bool {
         self.whole < 1 << 60 && self.part < 1_000_000_000_000_000
     }
-}
-
-/// Inputs that were applied at a moment, as the bits of their values.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct AppliedInputs {
-    /// Moment at which the inputs were applied.
-    pub from: Moment,
-    /// Bits of the values.
-    pub bits: Vec<u64>,
 }
 
 /// Counts of a run that a repetition does not renew.
@@ -74,7 +68,7 @@ pub struct InputJournal {
     /// Bits of the inputs that are set.
     pub inputs: Vec<u64>,
     /// Inputs that were applied, in the order of time.
-    pub applied: Vec<AppliedInputs>,
+    pub applied: InputHistory,
     /// Moment that the run has reached; `None` before its start.
     pub reached: Option<Moment>,
     /// Counts at that moment.
@@ -82,6 +76,44 @@ pub struct InputJournal {
 }
 
 impl InputJournal {
+    /// Creates the journal of an FMU's content before the start, with this number of inputs.
+    pub fn new(content: &FmuContent, seed: u64, inputs: usize) -> Self {
+        Self {
+            token: content.token(),
+            keys: Vec::new(),
+            seed,
+            grid_ns: 0,
+            stop_time: None,
+            inputs: vec![0; inputs],
+            applied: InputHistory::default(),
+            reached: None,
+            counts: Counts::default(),
+        }
+    }
+
+    /// Returns the scenario of an FMU's content with the keys, the seed and the stop time that are set. A stop time before the
+    /// scenario's end has no effect.
+    ///
+    /// # Errors
+    /// Fails for invalid keys, and for a stop time that is no duration.
+    pub fn scenario(&self, content: &FmuContent) -> Result<Scenario, CoSimulationError> {
+        let mut scenario = content.scenario()?;
+        let mut document = Document::parse(SCENARIO, content.toml.clone())?;
+        for (key, bits) in &self.keys {
+            document.set(key, f64::from_bits(*bits).into())?;
+        }
+        if !self.keys.is_empty() {
+            scenario = Scenario::from_document(&document)?;
+        }
+        let stop = self.stop_time.map(|bits| Span::from_seconds(f64::from_bits(bits)));
+        if let Some(stop) = stop.filter(|stop| *stop > scenario.duration) {
+            document.set("duration", stop.seconds().into())?;
+            scenario = Scenario::from_document(&document)?;
+        }
+        scenario.written.seed = self.seed;
+        Ok(scenario)
+    }
+
     /// Returns the journal as bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         // A journal consists of texts and integers, which JSON can hold.
@@ -95,16 +127,16 @@ impl InputJournal {
     pub fn from_bytes(bytes: &[u8], token: &str, inputs: usize) -> Result<Self, CoSimulationError> {
         let damaged =
             |why: &str| CoSimulationError::refused(format!("the serialised state is damaged: {why}"));
-        let journal: Self = serde_json::from_slice(bytes).map_err(|error| damaged(&error.to_string()))?;
+        let mut journal: Self = serde_json::from_slice(bytes).map_err(|error| damaged(&error.to_string()))?;
         if journal.token != token {
             return Err(CoSimulationError::refused("the serialised state is that of another FMU"));
         }
         let is_finite = |bits: &u64| f64::from_bits(*bits).is_finite();
-        let fits = |bits: &[u64]| bits.len() == inputs && bits.iter().all(is_finite);
-        if !fits(&journal.inputs) || !journal.applied.iter().all(|applied| fits(&applied.bits)) {
+        if journal.inputs.len() != inputs || !journal.inputs.iter().all(is_finite) {
             return Err(damaged("inputs must be finite and as many as those of the FMU"));
         }
-        let moments = journal.applied.iter().map(|applied| applied.from).chain(journal.reached);
+        journal.applied.fit(inputs).map_err(damaged)?;
+        let moments = journal.applied.changes().map(|applied| applied.from).chain(journal.reached);
         let moments: Vec<Moment> = moments.collect();
         if !moments.is_sorted() || !moments.iter().all(|moment| moment.is_valid()) {
             return Err(damaged("times must increase"));

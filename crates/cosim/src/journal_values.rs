@@ -35,6 +35,11 @@ impl InputJournal {
         Some(value as i64)
     }
 
+    /// Sets the stop time (s) that the importer requests; one that is not finite requests none.
+    pub fn set_stop_time(&mut self, stop_time: Option<f64>) {
+        self.stop_time = stop_time.filter(|stop| stop.is_finite()).map(f64::to_bits);
+    }
+
     /// Sets an input, or a parameter before the start of the run.
     ///
     /// # Errors

@@ -26,6 +26,7 @@ mod error;
 mod flight_laws;
 mod fmi_version;
 mod fmu_run;
+mod input_history;
 mod journal;
 mod journal_values;
 mod library;

@@ -3,6 +3,7 @@
 #![expect(unsafe_code, reason = "pointers of the importer are read and written here, under the rules of FMI")]
 
 use std::ffi::{CStr, c_char};
+use std::mem::MaybeUninit;
 
 /// Values that the importer passes.
 #[repr(transparent)]
@@ -29,21 +30,41 @@ impl<T> Values<T> {
 pub struct Results<T>(*mut T);
 
 impl<T> Results<T> {
-    /// Returns the place for `count` values; `None` for a null pointer, unless `count` is 0.
-    pub fn place(&mut self, count: usize) -> Option<&mut [T]> {
+    /// Returns the place for `count` values, which need not hold any; `None` for a null pointer, unless `count` is 0.
+    pub fn place(&mut self, count: usize) -> Option<&mut [MaybeUninit<T>]> {
         if count == 0 {
             return Some(&mut []);
         }
         // SAFETY: FMI requires that the importer passes space for `count` values, which nothing else uses until the function
         // returns.
-        (!self.0.is_null()).then(|| unsafe { std::slice::from_raw_parts_mut(self.0, count) })
+        (!self.0.is_null()).then(|| unsafe { std::slice::from_raw_parts_mut(self.0.cast(), count) })
+    }
+
+    /// Writes a value in each of `count` places; `None` for a null pointer, unless `count` is 0.
+    pub fn fill(&mut self, count: usize, value: T) -> Option<()>
+    where
+        T: Copy,
+    {
+        self.place(count)?.fill(MaybeUninit::new(value));
+        Some(())
     }
 
     /// Writes a single value, unless the pointer is null.
     pub fn write(&mut self, value: T) {
         if let Some([place]) = self.place(1) {
-            *place = value;
+            place.write(value);
         }
+    }
+}
+
+impl<T> Results<Held<T>> {
+    /// Puts an object, or the null pointer, where the importer holds one, and frees that one; `None` for a null pointer.
+    pub fn replace(&mut self, held: Held<T>) -> Option<()> {
+        // SAFETY: FMI requires that the importer passes a pointer to a null pointer or to an object that it got from this library
+        // and has not freed.
+        let place = unsafe { self.0.as_mut() }?;
+        std::mem::replace(place, held).free();
+        Some(())
     }
 }
 

@@ -58,11 +58,11 @@ pub extern "C" fn fmi2GetReal(
         let references = references.read(count).ok_or_else(no_pointer)?;
         let places = values.place(count).ok_or_else(no_pointer)?;
         for (reference, place) in references.iter().zip(places) {
-            *place = if is_float(instance, *reference) {
+            place.write(if is_float(instance, *reference) {
                 instance.run.get(*reference)?
             } else {
                 instance.run.get_integer(*reference)? as f64
-            };
+            });
         }
         Ok(())
     })

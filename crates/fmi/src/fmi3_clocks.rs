@@ -25,7 +25,7 @@ pub extern "C" fn fmi3GetClock(
         let references = references.read(count).ok_or_else(no_pointer)?;
         let places = values.place(count).ok_or_else(no_pointer)?;
         for (reference, place) in references.iter().zip(places) {
-            *place = instance.run.clock(*reference)?;
+            place.write(instance.run.clock(*reference)?);
         }
         Ok(())
     })
@@ -59,10 +59,9 @@ pub extern "C" fn fmi3GetIntervalDecimal(
         let references = references.read(count).ok_or_else(no_pointer)?;
         let places = intervals.place(count).ok_or_else(no_pointer)?;
         for (reference, place) in references.iter().zip(places) {
-            *place = instance.run.interval(*reference)?.seconds();
+            place.write(instance.run.interval(*reference)?.seconds());
         }
-        qualifiers.place(count).ok_or_else(no_pointer)?.fill(CHANGED);
-        Ok(())
+        qualifiers.fill(count, CHANGED).ok_or_else(no_pointer)
     })
 }
 
@@ -80,11 +79,10 @@ pub extern "C" fn fmi3GetIntervalFraction(
         let references = references.read(count).ok_or_else(no_pointer)?;
         let places = counters.place(count).ok_or_else(no_pointer)?;
         for (reference, place) in references.iter().zip(places) {
-            *place = instance.run.interval(*reference)?.leading_femtoseconds() as u64;
+            place.write(instance.run.interval(*reference)?.leading_femtoseconds() as u64);
         }
-        resolutions.place(count).ok_or_else(no_pointer)?.fill(RESOLUTION);
-        qualifiers.place(count).ok_or_else(no_pointer)?.fill(CHANGED);
-        Ok(())
+        resolutions.fill(count, RESOLUTION).ok_or_else(no_pointer)?;
+        qualifiers.fill(count, CHANGED).ok_or_else(no_pointer)
     })
 }
 
@@ -98,8 +96,7 @@ pub extern "C" fn fmi3GetShiftDecimal(
 ) -> c_int {
     call(instance, |instance| {
         periodic(instance, &references, count)?;
-        shifts.place(count).ok_or_else(no_pointer)?.fill(0.0);
-        Ok(())
+        shifts.fill(count, 0.0).ok_or_else(no_pointer)
     })
 }
 
@@ -114,9 +111,8 @@ pub extern "C" fn fmi3GetShiftFraction(
 ) -> c_int {
     call(instance, |instance| {
         periodic(instance, &references, count)?;
-        counters.place(count).ok_or_else(no_pointer)?.fill(0);
-        resolutions.place(count).ok_or_else(no_pointer)?.fill(RESOLUTION);
-        Ok(())
+        counters.fill(count, 0).ok_or_else(no_pointer)?;
+        resolutions.fill(count, RESOLUTION).ok_or_else(no_pointer)
     })
 }
 

@@ -9,9 +9,7 @@ use crate::instance::{Instance, InstanceState, Outcome, call, no_pointer, refuse
 
 /// Writes a snapshot into the importer's pointer, and frees the one that is there.
 pub fn get_state(instance: &mut Instance, state: &mut Results<Held<InstanceState>>) -> Outcome {
-    let [place] = state.place(1).ok_or_else(no_pointer)? else { return Err(no_pointer()) };
-    std::mem::replace(place, Held::new(instance.snapshot())).free();
-    Ok(())
+    state.replace(Held::new(instance.snapshot())).ok_or_else(no_pointer)
 }
 
 /// Restores a snapshot.
@@ -22,9 +20,7 @@ pub fn set_state(instance: &mut Instance, mut state: Held<InstanceState>) -> Out
 
 /// Frees a snapshot, and sets the importer's pointer to null.
 pub fn free_state(state: &mut Results<Held<InstanceState>>) -> Outcome {
-    let [place] = state.place(1).ok_or_else(no_pointer)? else { return Err(no_pointer()) };
-    std::mem::replace(place, Held::null()).free();
-    Ok(())
+    state.replace(Held::null()).ok_or_else(no_pointer)
 }
 
 /// Writes the number of bytes of a snapshot.
@@ -40,11 +36,13 @@ pub fn serialize(mut state: Held<InstanceState>, bytes: &mut Results<u8>, size: 
     let Some(place) = place.get_mut(..own.len()) else {
         return Err(refused("there is less space than the state needs"));
     };
-    place.copy_from_slice(&own);
+    for (place, byte) in place.iter_mut().zip(own) {
+        place.write(byte);
+    }
     Ok(())
 }
 
-/// Writes the snapshot of these bytes into the importer's pointer.
+/// Writes the snapshot of these bytes into the importer's pointer, and frees the one that is there.
 pub fn deserialize(
     instance: &mut Instance,
     bytes: &Values<u8>,
@@ -52,9 +50,7 @@ pub fn deserialize(
     state: &mut Results<Held<InstanceState>>,
 ) -> Outcome {
     let snapshot = instance.snapshot_from_bytes(bytes.read(size).ok_or_else(no_pointer)?)?;
-    let [place] = state.place(1).ok_or_else(no_pointer)? else { return Err(no_pointer()) };
-    *place = Held::new(snapshot);
-    Ok(())
+    state.replace(Held::new(snapshot)).ok_or_else(no_pointer)
 }
 
 /// Gets the state.

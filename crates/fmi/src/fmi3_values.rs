@@ -94,7 +94,7 @@ fn get_each<T>(
         return Err(refused("every variable has one value"));
     }
     for (reference, place) in references.iter().zip(places) {
-        *place = get(*reference)?;
+        place.write(get(*reference)?);
     }
     Ok(())
 }

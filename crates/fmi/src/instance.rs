@@ -185,7 +185,13 @@ impl Instance {
         let damaged = || refused("the serialised state is damaged: there is no such mode");
         let (first, rest) = bytes.split_first().ok_or_else(damaged)?;
         let mode = modes.into_iter().find(|mode| *mode as u8 == *first).ok_or_else(damaged)?;
-        Ok(InstanceState { run: self.run.restored(rest)?, mode })
+        let run = self.run.restored(rest)?;
+        let follows_start =
+            matches!(mode, InstanceMode::Event | InstanceMode::Step | InstanceMode::Terminated);
+        if run.has_begun() != follows_start {
+            return Err(refused("the serialised state is damaged: its mode and its start do not fit"));
+        }
+        Ok(InstanceState { run, mode })
     }
 }
 

@@ -7,13 +7,13 @@ mod snapshot;
 mod values;
 
 use flexsc_core::control::law::Command;
-use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::{Document, Scenario, Simulation, SimulationError, StopAt};
+use flexsc_core::numerics::time::Instant;
+use flexsc_core::{Scenario, Simulation, SimulationError, StopAt};
 
-use crate::communication_point::{CommunicationPoint, is_same_time, step_end};
-use crate::content::{FmuContent, FmuPart, SCENARIO};
+use crate::communication_point::{CommunicationPoint, step_end};
+use crate::content::{FmuContent, FmuPart};
 use crate::error::CoSimulationError;
-use crate::journal::{AppliedInputs, Counts, InputJournal, Moment};
+use crate::journal::{InputJournal, Moment};
 use crate::variable_table::VariableTable;
 
 /// Result of a step.
@@ -57,17 +57,7 @@ impl CoSimulation {
         let scenario = content.scenario()?;
         let simulation = Simulation::new(&scenario, 0);
         let table = VariableTable::new(&scenario, &simulation, content.part);
-        let journal = InputJournal {
-            token: content.token(),
-            keys: Vec::new(),
-            seed: scenario.seed,
-            grid_ns: 0,
-            stop_time: None,
-            inputs: vec![0; table.input_count()],
-            applied: Vec::new(),
-            reached: None,
-            counts: Counts::default(),
-        };
+        let journal = InputJournal::new(&content, scenario.seed, table.input_count());
         Ok(Self {
             content,
             scenario,
@@ -92,6 +82,11 @@ impl CoSimulation {
         &self.scenario
     }
 
+    /// Returns true from the start on.
+    pub fn has_begun(&self) -> bool {
+        self.has_begun
+    }
+
     /// Returns the current time (s), rounded to a double.
     pub fn time(&self) -> f64 {
         self.simulation.time().seconds()
@@ -103,8 +98,7 @@ impl CoSimulation {
     /// # Errors
     /// Fails for invalid parameters.
     pub fn begin(&mut self, stop_time: Option<f64>) -> Result<(), CoSimulationError> {
-        let stop_time = stop_time.filter(|stop| stop.is_finite());
-        self.journal.stop_time = stop_time.map(f64::to_bits);
+        self.journal.set_stop_time(stop_time);
         self.rebuild()?;
         self.has_begun = true;
         self.apply_inputs();
@@ -118,24 +112,8 @@ impl CoSimulation {
 
     /// Creates the simulation again, with the parameters that are set.
     fn rebuild(&mut self) -> Result<(), CoSimulationError> {
-        let mut document = Document::parse(SCENARIO, self.content.toml.clone())?;
-        for (key, bits) in &self.journal.keys {
-            document.set(key, f64::from_bits(*bits).into())?;
-        }
-        let mut scenario = if self.journal.keys.is_empty() {
-            self.content.scenario()?
-        } else {
-            Scenario::from_document(&document)?
-        };
-        scenario.written.seed = self.journal.seed;
-        let stop = self.journal.stop_time.map(|bits| Span::from_seconds(f64::from_bits(bits)));
-        if let Some(stop) = stop.filter(|stop| *stop > scenario.duration) {
-            document.set("duration", stop.seconds().into())?;
-            scenario = Scenario::from_document(&document)?;
-            scenario.written.seed = self.journal.seed;
-        }
-        self.simulation = Simulation::new(&scenario, 0);
-        self.scenario = scenario;
+        self.scenario = self.journal.scenario(&self.content)?;
+        self.simulation = Simulation::new(&self.scenario, 0);
         self.observed = None;
         self.law_inputs = None;
         Ok(())
@@ -153,16 +131,9 @@ impl CoSimulation {
         stop_at_events: bool,
     ) -> Result<StepResult, CoSimulationError> {
         let (now, grid) = (self.time(), self.journal.grid_ns);
-        let target = step_end(from, size, now, grid)?;
         let end = self.simulation.end();
-        if target > end.seconds() && !is_same_time(target, end.seconds(), grid.max(1)) {
-            let why = format!(
-                "{target:?} s is after the end of the run, {end} s\n\nhint: state a later stop time before the start"
-            );
-            return Err(CoSimulationError::refused(why));
-        }
-        let point = CommunicationPoint::new(target, grid);
-        let point = CommunicationPoint { at: point.at.min(end), latest: point.latest.min(end) };
+        let target = step_end(from, size, now, end, grid)?;
+        let point = CommunicationPoint::new(target, grid).until(end);
         self.clear_clocks();
         self.apply_inputs();
         self.complete()?;
@@ -248,16 +219,15 @@ impl CoSimulation {
     /// Applies the inputs if the bits of any have changed.
     fn apply_inputs(&mut self) {
         let inputs = &self.journal.inputs;
-        let before = self.journal.applied.last().map(|applied| &applied.bits);
+        let before = self.journal.applied.last();
         let is_changed = before.map_or_else(
             || self.table.is_commanded || inputs.iter().any(|bits| *bits != 0),
             |before| before != inputs,
         );
         if is_changed {
             let from = Moment::new(self.simulation.time(), self.is_complete);
-            let applied = AppliedInputs { from, bits: inputs.clone() };
-            set_inputs(&mut self.simulation, &self.table, &applied.bits, before.map(Vec::as_slice));
-            self.journal.applied.push(applied);
+            set_inputs(&mut self.simulation, &self.table, inputs, before);
+            self.journal.applied.add(from, &self.journal.inputs);
             self.is_complete = false;
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{CoSimulation, set_inputs};
 use crate::error::CoSimulationError;
-use crate::journal::{AppliedInputs, InputJournal, Moment};
+use crate::journal::{InputJournal, Moment};
 
 impl CoSimulation {
     /// Returns the state as bytes: everything that the importer has set, from which the run can be repeated.
@@ -22,14 +22,14 @@ impl CoSimulation {
         let Some(reached) = run.journal.reached else { return Ok(run) };
         run.rebuild()?;
         if reached.at() > run.simulation.end() {
-            return Err(CoSimulationError::refused(
-                "the serialised state is damaged: it is after the end of the run",
-            ));
+            return Err(CoSimulationError::after_end());
         }
         run.has_begun = true;
         let mut before: Option<Vec<u64>> = None;
-        for AppliedInputs { from, bits } in run.journal.applied.clone() {
-            run.repeat_to(from)?;
+        for change in run.journal.applied.clone().changes() {
+            run.repeat_to(change.from)?;
+            let mut bits = before.clone().unwrap_or_else(|| vec![0; run.table.input_count()]);
+            change.apply(&mut bits);
             set_inputs(&mut run.simulation, &run.table, &bits, before.as_deref());
             before = Some(bits);
             run.is_complete = false;

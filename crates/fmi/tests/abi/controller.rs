@@ -3,7 +3,7 @@
 use flexsc_core::Scenario;
 use flexsc_cosim::{Causality, FmuPart};
 
-use crate::importer::{Fmu3, shipped};
+use crate::importer::{Fmu3, memory_kb, shipped};
 
 /// Plant and laws of a scenario, with the variables that join them.
 struct Pair {
@@ -166,6 +166,51 @@ fn states_of_laws_are_restored() {
     pair.laws.restore(restored);
     assert_eq!(steps(20, 40), expected);
     assert!(pair.laws.deserialized(b"damaged").is_none());
+}
+
+#[test]
+fn a_million_decisions_keep_the_memory_and_the_state() {
+    let scenario = shipped("earth-observer", &[("duration", "20.0")]);
+    let laws = Fmu3::new(&scenario, FmuPart::Controller, false);
+    laws.set_grid(1);
+    laws.begin(Some(3e5));
+    let input = names(&laws, Causality::Input).swap_remove(0);
+    let decide = |from: usize, to: usize| {
+        for index in from..to {
+            // An input changes now and then.
+            if index.is_multiple_of(100_000) {
+                assert_eq!(laws.set(&input, 1e-3 * (1 + index) as f64), 0);
+            }
+            let at = index as f64 * 0.25;
+            assert_eq!(laws.step(at, (index + 1) as f64 * 0.25 - at).status, 0);
+        }
+    };
+    decide(0, 100);
+    let (before, bytes) = (memory_kb(), laws.bytes(laws.state()).len());
+    decide(100, 1_000_000);
+    let (after, later) = (memory_kb(), laws.bytes(laws.state()).len());
+    // Other tests run in this process.
+    assert!(after < before + 60_000, "{before} kB, then {after} kB");
+    assert!(later < bytes + 2000, "{bytes} bytes, then {later}");
+    assert_eq!(laws.integers(["events"]), [1_000_000]);
+}
+
+#[test]
+fn laws_have_an_end() {
+    let scenario = shipped("wheel-fixed-gain", &[("duration", "60.0")]);
+    let laws = Fmu3::new(&scenario, FmuPart::Controller, false);
+    laws.begin(None);
+    for size in [1e300, 61.0] {
+        assert_eq!(laws.step(0.0, size).status, 3);
+        let why = laws.messages.0.last().expect("a message");
+        assert!(why.contains("s is after the end of the run, 60"), "{why}");
+    }
+    assert_eq!(laws.step(0.0, 60.0).status, 0);
+    let later = Fmu3::new(&scenario, FmuPart::Controller, false);
+    later.begin(Some(70.0));
+    assert_eq!((later.step(0.0, 70.0).status, later.step(70.0, 1.0).status), (0, 3));
+    let endless = Fmu3::new(&scenario, FmuPart::Controller, false);
+    assert_eq!(endless.try_begin(Some(1e300)), [0, 3]);
 }
 
 #[test]

@@ -59,6 +59,13 @@ pub fn shipped(name: &str, keys: &[(&str, &str)]) -> Scenario {
     Scenario::from_document(&document).expect("a scenario")
 }
 
+/// Returns the memory of this process (kB); 0 where the system does not state it.
+pub fn memory_kb() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+}
+
 /// Result of `fmi3DoStep`.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Stepped {
@@ -144,12 +151,16 @@ impl Fmu3 {
 
     /// Initializes the instance, with this stop time.
     pub fn begin(&self, stop: Option<f64>) {
+        assert_eq!(self.try_begin(stop), [0, 0], "{:?}", self.messages.0);
+    }
+
+    /// Initializes the instance, with this stop time; returns the status of the begin and of the end of the initialization.
+    pub fn try_begin(&self, stop: Option<f64>) -> [c_int; 2] {
         let (defined, stop) = (stop.is_some(), stop.unwrap_or(0.0));
         let entered = c_call!(self.library, "fmi3EnterInitializationMode", (
             self.instance => Handle, false => bool, 0.0 => f64, 0.0 => f64, defined => bool, stop => f64
         ) -> c_int);
-        let left = self.mode("fmi3ExitInitializationMode");
-        assert_eq!((entered, left), (0, 0), "{:?}", self.messages.0);
+        [entered, self.mode("fmi3ExitInitializationMode")]
     }
 
     /// Calls a function that changes the mode.
@@ -286,7 +297,11 @@ impl Fmu3 {
 
     /// Returns the state of these bytes; `None` if they are refused.
     pub fn deserialized(&self, bytes: &[u8]) -> Option<Handle> {
-        let mut state = ptr::null_mut();
+        self.deserialized_over(bytes, ptr::null_mut())
+    }
+
+    /// Returns the state of these bytes in the place of another one, which the library frees; `None` if they are refused.
+    pub fn deserialized_over(&self, bytes: &[u8], mut state: Handle) -> Option<Handle> {
         let status = c_call!(self.library, "fmi3DeserializeFMUState", (
             self.instance => Handle, bytes.as_ptr() => *const u8, bytes.len() => usize, &raw mut state => *mut Handle
         ) -> c_int);

@@ -2,7 +2,7 @@
 
 use flexsc_cosim::FmuPart;
 
-use crate::importer::{Fmu3, shipped};
+use crate::importer::{Fmu3, memory_kb, shipped};
 
 /// Steps from 4 s to 8 s with inputs, and returns the bits of the motion on the way.
 fn onwards(fmu: &Fmu3, part: FmuPart, state: &str) -> Vec<u64> {
@@ -79,6 +79,38 @@ fn a_state_within_an_event_continues_there() {
     let other = Fmu3::new(&scenario, FmuPart::Loop, true);
     other.restore(other.deserialized(&bytes).expect("a state"));
     assert_eq!(onwards(&other), onwards(&fmu));
+}
+
+#[test]
+fn a_state_in_the_place_of_another_frees_it() {
+    let scenario = shipped("relay-fixed", &[("duration", "100.0")]);
+    let fmu = Fmu3::new(&scenario, FmuPart::Loop, false);
+    fmu.begin(None);
+    let bytes = fmu.bytes(fmu.state());
+    let mut state = fmu.state();
+    let mut replace = |count: u32| {
+        (0..count).for_each(|_| state = fmu.deserialized_over(&bytes, state).expect("a state"));
+        memory_kb()
+    };
+    let (before, after) = (replace(50), replace(400));
+    assert!(after < before + 1000, "{before} kB, then {after} kB");
+    fmu.restore(state);
+}
+
+#[test]
+fn a_state_whose_mode_and_start_do_not_fit_is_refused() {
+    for part in [FmuPart::Plant, FmuPart::Controller] {
+        let scenario = shipped("earth-observer", &[("duration", "20.0")]);
+        let fmu = Fmu3::new(&scenario, part, false);
+        let not_begun = fmu.bytes(fmu.state());
+        fmu.begin(None);
+        let begun = fmu.bytes(fmu.state());
+        let modes = |bytes: &[u8]| -> Vec<u8> {
+            (0..6).filter(|mode| fmu.deserialized(&[&[*mode], &bytes[1..]].concat()).is_some()).collect()
+        };
+        // Instantiated, configuration and initialization; then event, step and terminated.
+        assert_eq!((modes(&not_begun), modes(&begun)), (vec![0, 1, 2], vec![3, 4, 5]));
+    }
 }
 
 #[test]
