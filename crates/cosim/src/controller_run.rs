@@ -12,7 +12,8 @@ use crate::content::FmuContent;
 use crate::cosimulation::StepResult;
 use crate::error::CoSimulationError;
 use crate::flight_laws::laws_alone;
-use crate::journal::{InputJournal, Moment};
+use crate::journal::InputJournal;
+use crate::moment::Moment;
 use crate::variable::{ClockRole, Quantity, ValueKind};
 use crate::variable_table::VariableTable;
 

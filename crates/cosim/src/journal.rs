@@ -1,41 +1,14 @@
 //! Journal of a co-simulation: everything that an importer has set, and when. Scenario and journal determine the run, so
 //! that a serialised state is a journal.
 
-use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::numerics::time::Span;
 use flexsc_core::{Document, Scenario};
 use serde::{Deserialize, Serialize};
 
+use crate::applied_inputs::AppliedInputs;
 use crate::content::{FmuContent, SCENARIO};
 use crate::error::CoSimulationError;
-use crate::input_history::InputHistory;
-
-/// Instant of a run, and whether the response to its event has been given.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Moment {
-    /// Whole seconds.
-    whole: u64,
-    /// Femtoseconds past the whole second.
-    part: u64,
-    /// True if everything that is due at the instant has been done.
-    pub is_complete: bool,
-}
-
-impl Moment {
-    /// Creates the moment of an instant.
-    pub fn new(at: Instant, is_complete: bool) -> Self {
-        let (whole, part) = at.parts();
-        Self { whole, part, is_complete }
-    }
-
-    /// Returns the instant.
-    pub fn at(self) -> Instant {
-        Instant::from_parts(self.whole, self.part)
-    }
-
-    fn is_valid(self) -> bool {
-        self.whole < 1 << 60 && self.part < 1_000_000_000_000_000
-    }
-}
+use crate::moment::Moment;
 
 /// Counts of a run that a repetition does not renew.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,7 +41,7 @@ pub struct InputJournal {
     /// Bits of the inputs that are set.
     pub inputs: Vec<u64>,
     /// Inputs that were applied, in the order of time.
-    pub applied: InputHistory,
+    pub applied: AppliedInputs,
     /// Moment that the run has reached; `None` before its start.
     pub reached: Option<Moment>,
     /// Counts at that moment.
@@ -85,7 +58,7 @@ impl InputJournal {
             grid_ns: 0,
             stop_time: None,
             inputs: vec![0; inputs],
-            applied: InputHistory::default(),
+            applied: AppliedInputs::default(),
             reached: None,
             counts: Counts::default(),
         }

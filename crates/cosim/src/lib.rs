@@ -15,6 +15,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod applied_inputs;
 mod archive;
 mod communication_point;
 mod content;
@@ -26,10 +27,10 @@ mod error;
 mod flight_laws;
 mod fmi_version;
 mod fmu_run;
-mod input_history;
 mod journal;
 mod journal_values;
 mod library;
+mod moment;
 mod parameters;
 mod texts;
 mod units;

@@ -13,7 +13,8 @@ use flexsc_core::{Scenario, Simulation, SimulationError, StopAt};
 use crate::communication_point::{CommunicationPoint, step_end};
 use crate::content::{FmuContent, FmuPart};
 use crate::error::CoSimulationError;
-use crate::journal::{InputJournal, Moment};
+use crate::journal::InputJournal;
+use crate::moment::Moment;
 use crate::variable_table::VariableTable;
 
 /// Result of a step.

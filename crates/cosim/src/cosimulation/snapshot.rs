@@ -2,7 +2,8 @@
 
 use super::{CoSimulation, set_inputs};
 use crate::error::CoSimulationError;
-use crate::journal::{InputJournal, Moment};
+use crate::journal::InputJournal;
+use crate::moment::Moment;
 
 impl CoSimulation {
     /// Returns the state as bytes: everything that the importer has set, from which the run can be repeated.

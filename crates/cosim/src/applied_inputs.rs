@@ -6,14 +6,14 @@ use serde::de::Error as _;
 use serde::ser::SerializeSeq as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::journal::Moment;
+use crate::moment::Moment;
 
 /// Number of entries of a full block.
 const BLOCK: usize = 256;
 
 /// Inputs that were applied, as changes. A copy shares the full blocks, so that its cost hardly grows with the run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct InputHistory {
+pub struct AppliedInputs {
     blocks: Vec<Arc<Block>>,
     /// Bits of all inputs after the last entry; empty before the first.
     last: Vec<u64>,
@@ -51,7 +51,7 @@ impl InputChange {
     }
 }
 
-impl InputHistory {
+impl AppliedInputs {
     /// Returns the bits of the inputs that were applied last; `None` if none were.
     pub fn last(&self) -> Option<&[u64]> {
         (!self.blocks.is_empty()).then_some(&*self.last)
@@ -118,7 +118,7 @@ impl InputHistory {
     }
 }
 
-impl Serialize for InputHistory {
+impl Serialize for AppliedInputs {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut entries = serializer.serialize_seq(None)?;
         self.changes().try_for_each(|change| entries.serialize_element(&change))?;
@@ -126,7 +126,7 @@ impl Serialize for InputHistory {
     }
 }
 
-impl<'de> Deserialize<'de> for InputHistory {
+impl<'de> Deserialize<'de> for AppliedInputs {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut history = Self::default();
         for change in Vec::<InputChange>::deserialize(deserializer)? {
@@ -156,13 +156,13 @@ mod tests {
 
     #[test]
     fn entries_are_those_that_were_added() {
-        let mut history = InputHistory::default();
+        let mut history = AppliedInputs::default();
         assert!(history.is_empty() && history.last().is_none());
         for entry in 0..1000 {
             history.add(moment(entry), &inputs(entry as u64));
         }
         let bytes = serde_json::to_vec(&history).expect("bytes");
-        let mut again: InputHistory = serde_json::from_slice(&bytes).expect("a history");
+        let mut again: AppliedInputs = serde_json::from_slice(&bytes).expect("a history");
         again.fit(3).expect("three inputs");
         assert_eq!(again, history);
         let mut values = [0; 3];
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn copies_share_full_blocks_and_keep_their_own_end() {
-        let mut history = InputHistory::default();
+        let mut history = AppliedInputs::default();
         for entry in 0..BLOCK + 1 {
             history.add(moment(entry as i64), &inputs(entry as u64));
         }
