@@ -179,8 +179,11 @@ mod reproduce;
 mod requirements;
 #[cfg(unix)]
 mod sanitizers;
+#[cfg(all(unix, feature = "parquet"))]
+mod scheduler;
 mod serve;
 mod serve_clients;
+mod serve_faults;
 mod sheets;
 mod sky_combinations;
 mod stops;

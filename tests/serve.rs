@@ -265,6 +265,7 @@ fn a_stream_that_holds_no_packets_is_closed() {
     let dir = Dir::with(&["earth-observer"]);
     let (server, transport, address) = serve(&dir, "earth-observer.toml --tcp --set duration=9 --log none");
     let mut client = ControlClient::connect(&transport, &address).expect("a welcome");
+    assert_eq!(client.control(1, ACCELERATION, remote_law), Ok(None));
     client.send_bytes(&[0xFF; 200]);
     server.wait().exits(1).says(&["has closed its connection"]);
     // Datagrams of other programs are no reason to stop.

@@ -43,7 +43,7 @@ fn packets_of_every_scenario_are_described() {
 }
 
 /// Compiles the client of C; `None` on a machine without a compiler, which is reported.
-fn c_client(dir: &Dir) -> Option<PathBuf> {
+pub fn c_client(dir: &Dir) -> Option<PathBuf> {
     let sources = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../clients/c");
     let program = dir.path("attitude_law");
     let mut compiler = Program::new("cc");

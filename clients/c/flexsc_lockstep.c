@@ -1,5 +1,8 @@
 /* A control program in lockstep with `flexsc serve`: packets, repetition and the fields of the sensors. */
 #define _POSIX_C_SOURCE 200112L
+#ifdef __APPLE__
+#define _DARWIN_C_SOURCE /* for SO_NOSIGPIPE */
+#endif
 
 #include "flexsc_lockstep.h"
 
@@ -20,6 +23,13 @@
 enum { HELLO = 0x2F0, WELCOME, REFUSAL, REQUEST, SENSORS, COMMAND, END, FAREWELL };
 
 enum { HEADER = 6, CHECKSUM = 2, REPEAT_MS = 20, HELLO_REPEAT_MS = 100, TIMEOUT_MS = 10000 };
+
+/* A server that has gone is an error, and no signal, which would end the program. */
+#ifdef MSG_NOSIGNAL
+enum { SEND_FLAGS = MSG_NOSIGNAL };
+#else
+enum { SEND_FLAGS = 0 };
+#endif
 
 static int is_telecommand(unsigned kind)
 {
@@ -90,7 +100,7 @@ static int send_packet(flexsc_client *client, unsigned kind, const unsigned char
     write_bits(packet + size, CHECKSUM, checksum(packet, size));
     size += CHECKSUM;
     for (size_t sent = 0; sent < size;) {
-        const ssize_t more = send(client->socket, packet + sent, size - sent, 0);
+        const ssize_t more = send(client->socket, packet + sent, size - sent, SEND_FLAGS);
         if (more < 0 && errno == EINTR) {
             continue;
         }
@@ -264,6 +274,9 @@ static int open_socket(flexsc_client *client, const char *host, uint16_t port)
     if (client->transport == FLEXSC_TCP) {
         const int on = 1;
         setsockopt(client->socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+#ifdef SO_NOSIGPIPE
+        setsockopt(client->socket, SOL_SOCKET, SO_NOSIGPIPE, &on, sizeof on);
+#endif
     }
     return 0;
 }

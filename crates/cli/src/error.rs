@@ -50,6 +50,9 @@ pub enum CliError {
     /// Run in lockstep that its client ended.
     #[error("{0}")]
     Lockstep(String),
+    /// Scheduler of a campaign that is lost or failed.
+    #[error("{0}")]
+    Scheduler(String),
     /// Figure that could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
@@ -235,6 +238,21 @@ pub fn for_terminal(text: &str) -> String {
     all
 }
 
+/// Returns a text of TOML whose control characters, which TOML does not allow as such, are escaped as in its strings.
+pub fn without_controls(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    let mut characters = text.chars().peekable();
+    while let Some(c) = characters.next() {
+        let is_line_end = c == '\r' && characters.peek() == Some(&'\n');
+        if c.is_control() && !matches!(c, '\t' | '\n') && !is_line_end {
+            let _ = write!(all, "\\u{:04X}", u32::from(c));
+        } else {
+            all.push(c);
+        }
+    }
+    all
+}
+
 /// Returns an error message with its first word and those of its hints in colours.
 fn coloured(text: &str) -> String {
     let (error, hint) = (AnsiColor::Red.on_default().bold(), AnsiColor::Cyan.on_default().bold());
@@ -253,7 +271,17 @@ fn coloured(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{LONGEST_LINE, for_terminal, without_zeros};
+    use super::{LONGEST_LINE, for_terminal, without_controls, without_zeros};
+
+    #[test]
+    fn control_characters_are_escaped_as_toml_does() {
+        let text = "name = \"a\"\r\n\tb = 1 # é\n";
+        assert_eq!(without_controls(text), text);
+        assert_eq!(
+            without_controls("a\u{1b}[2J\rb\u{9b}\u{7f}\0"),
+            "a\\u001B[2J\\u000Db\\u009B\\u007F\\u0000"
+        );
+    }
 
     #[test]
     fn numbers_of_many_zeros_have_an_exponent() {

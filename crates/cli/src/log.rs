@@ -8,7 +8,7 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
-use crate::error::CliError;
+use crate::error::{CliError, without_controls};
 use crate::{files, out, print, say};
 
 #[derive(clap::Args)]
@@ -56,6 +56,6 @@ pub fn run(args: &LogArgs) -> Result<(), CliError> {
             say!("{} saved in {}", counted(saved, "message"), whole.display());
             Ok(())
         }
-        Verb::Scenario { log } => print(Log::open(log)?.require_scenario()?.as_bytes()),
+        Verb::Scenario { log } => print(without_controls(Log::open(log)?.require_scenario()?).as_bytes()),
     }
 }

@@ -1,6 +1,7 @@
 //! Runs in pieces: to an instant or to the next event of a kind, stopped between sensing and the response, with
 //! external commands.
 
+use flexsc_control::actuator::Demand;
 use flexsc_control::law::{Command, Event};
 use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
@@ -41,6 +42,18 @@ impl Simulation {
     /// ```
     pub fn set_external_command(&mut self, commands: [Command; 3]) {
         self.laws.set_external(commands);
+    }
+
+    /// Returns the first axis about which none of the actuators in use executes an external command of its quantity, such as a
+    /// magnetic moment about an axis of wheels.
+    pub fn unexecuted_axis(&self, commands: &[Command; 3]) -> Option<usize> {
+        let demands = commands.map(|command| match command {
+            Command::Torque(value) | Command::Acceleration(value) => Demand::Torque(value),
+            Command::Change(value) => Demand::Change(value),
+            Command::Moment(value) => Demand::Moment(value),
+        });
+        let (now, axes) = (self.clock.now(), self.axis_count());
+        (0..axes).find(|axis| self.loads.actuator.ignores(now, *axis, &demands[..axes]))
     }
 
     /// Sets an external torque about each axis of the body (N m; rad/s² on a body without inertia), which acts in

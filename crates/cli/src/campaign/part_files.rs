@@ -57,6 +57,7 @@ pub fn run(
     if job.scheduler.is_some() {
         manifest.limit_part_size(scheduler::TASK_S);
     }
+    let is_new = !Directory::is_campaign_directory(path);
     let directory = create(path, manifest, job)?;
     let missing = directory.missing_among(job.range.clone()).map_err(failure)?;
     let count = |ranges: &[Range<u64>]| ranges.iter().map(|runs| runs.end - runs.start).sum::<u64>();
@@ -67,7 +68,13 @@ pub fn run(
     if let Some(address) = job.scheduler {
         // The process that hands out the runs needs the lock.
         drop(directory);
-        scheduler::make(path, address)?;
+        if let Err(error) = scheduler::make(path, address) {
+            if is_new {
+                // What the scheduler's failure leaves without a run is no campaign.
+                Directory::remove_empty(path).map_err(failure)?;
+            }
+            return Err(error);
+        }
         return summary(&Directory::open(path).map_err(failure)?, &job.range);
     }
     let work = Arc::new(work);

@@ -13,6 +13,8 @@ use crate::stop;
 /// Intended duration of a task (s): much longer than the scheduler's overhead.
 pub const TASK_S: f64 = 1.0;
 
+/// Exit code of the Python process for an address that is none.
+const WRONG_ADDRESS: i32 = 2;
 /// Polling period for the end of the Python process.
 const POLL_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time for the Python process to end after it is asked to.
@@ -30,12 +32,25 @@ pub fn make(directory: &Path, address: &str) -> Result<(), CliError> {
     let why = match status {
         Ok(status) if status.success() => return Ok(()),
         Ok(_) if stop::stop_requested() => return Err(CliError::Interrupted(String::new())),
-        Ok(status) => format!("`{reported} -m flexsc.dask` ended with {status}"),
+        Ok(status) if has_dask(&python) => {
+            let why = format!("--scheduler {address}: `{reported} -m flexsc.dask` ended with {status}");
+            let is_address = status.code() == Some(WRONG_ADDRESS);
+            return Err(if is_address { CliError::Arguments(why) } else { CliError::Scheduler(why) });
+        }
+        Ok(_) => format!("`{reported}` has no `flexsc[dask]`"),
         Err(error) if error.kind() == io::ErrorKind::NotFound => format!("there is no `{reported}`"),
         Err(error) => format!("`{reported}` cannot be started: {error}"),
     };
     let hint = "hint: it needs Python with `pip install flexsc[dask]`; FLEXSC_PYTHON names another Python";
     Err(CliError::Arguments(format!("--scheduler {address}: {why}\n\n{hint}")))
+}
+
+/// Returns true if a Python has what the workers of a scheduler need.
+fn has_dask(python: &OsString) -> bool {
+    let mut command = Command::new(python);
+    command.args(["-c", "import distributed, flexsc.dask"]);
+    let tried = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+    tried.is_ok_and(|status| status.success())
 }
 
 /// Waits for the end of the Python process, or ends it when the user asks to stop.

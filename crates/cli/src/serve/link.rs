@@ -2,12 +2,19 @@
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant as WallInstant};
 
 use super::packet::{LONGEST_PACKET, length};
+use crate::stop;
 
-/// Time limit for a client to take what it is sent.
-const WRITE_TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest time limit for a client to take a packet.
+pub const WRITE_TIMEOUT: Duration = Duration::from_secs(5);
+/// Time limit of one write, after which the user's wish to stop is checked.
+const PUSH: Duration = Duration::from_millis(50);
+/// Time limit for the first packet of a connection.
+const GREETING: Duration = Duration::from_secs(5);
+/// Largest number of connections that have not been chosen.
+const MOST_WAITING: usize = 32;
 /// Period in which a connection is waited for.
 const POLL_PERIOD: Duration = Duration::from_millis(2);
 /// Longest datagram of UDP (bytes).
@@ -47,13 +54,30 @@ pub struct Link {
     socket: Socket,
     /// Answer to further clients of TCP.
     pub busy: Vec<u8>,
+    /// Time limit for a client of TCP to take a packet.
+    pub patience: Duration,
     /// Time limit that the socket has.
     wait: Duration,
 }
 
 enum Socket {
     Udp(UdpSocket),
-    Tcp { listener: TcpListener, client: Option<(TcpStream, SocketAddr)>, buffer: Vec<u8> },
+    Tcp {
+        listener: TcpListener,
+        /// Connections that have not been chosen, the oldest first.
+        waiting: Vec<Connection>,
+        client: Option<Connection>,
+    },
+}
+
+/// Connection of TCP.
+struct Connection {
+    stream: TcpStream,
+    from: SocketAddr,
+    buffer: Vec<u8>,
+    since: WallInstant,
+    /// True after a packet that was not taken whole: what follows it would be no packet.
+    is_broken: bool,
 }
 
 impl Link {
@@ -64,10 +88,10 @@ impl Link {
             Transport::Tcp => {
                 let listener = TcpListener::bind(address)?;
                 listener.set_nonblocking(true)?;
-                Socket::Tcp { listener, client: None, buffer: Vec::new() }
+                Socket::Tcp { listener, waiting: Vec::new(), client: None }
             }
         };
-        Ok(Self { socket, busy: Vec::new(), wait: Duration::ZERO })
+        Ok(Self { socket, busy: Vec::new(), patience: WRITE_TIMEOUT, wait: Duration::ZERO })
     }
 
     /// Returns the address of the server.
@@ -81,11 +105,6 @@ impl Link {
     /// Returns true if packets may be lost, so that they have to be repeated.
     pub fn is_lossy(&self) -> bool {
         matches!(self.socket, Socket::Udp(_))
-    }
-
-    /// Returns true if a client has a connection.
-    pub fn is_connected(&self) -> bool {
-        matches!(self.socket, Socket::Tcp { client: Some(_), .. })
     }
 
     /// Returns the next packet, if one comes within a time.
@@ -107,82 +126,145 @@ impl Link {
                     Err(error) => Err(error),
                 }
             }
-            Socket::Tcp { listener, client, buffer } => {
-                accept(listener, client, &self.busy)?;
-                let Some((stream, from)) = client else {
-                    std::thread::sleep(wait.min(POLL_PERIOD));
-                    return Ok(Received::Nothing);
+            Socket::Tcp { listener, waiting, client } => {
+                accept(listener, waiting, client.is_some().then_some(&*self.busy));
+                let Some(client) = client else {
+                    let received = greeted(waiting);
+                    if let Received::Nothing = received {
+                        std::thread::sleep(wait.min(POLL_PERIOD));
+                    }
+                    return Ok(received);
                 };
+                if client.is_broken {
+                    return Ok(Received::Closed);
+                }
                 if self.wait != wait {
-                    stream.set_read_timeout(Some(wait))?;
+                    client.stream.set_read_timeout(Some(wait))?;
                     self.wait = wait;
                 }
-                Ok(read_packet(stream, buffer, *from))
+                Ok(client.read_packet())
             }
         }
     }
 
-    /// Sends a packet to a client; one that cannot be sent is lost.
+    /// Sends a packet to a client; one that cannot be sent is lost. A stream that does not take it whole in time has ended.
     pub fn send(&mut self, packet: &[u8], to: SocketAddr) {
-        // A client that has gone is noticed by its silence.
-        let _ = match &mut self.socket {
-            Socket::Udp(socket) => socket.send_to(packet, to).map(drop),
-            Socket::Tcp { client: Some((stream, _)), .. } => stream.write_all(packet),
-            Socket::Tcp { .. } => Ok(()),
-        };
+        match &mut self.socket {
+            Socket::Udp(socket) => {
+                // A client that has gone is noticed by its silence.
+                let _ = socket.send_to(packet, to);
+            }
+            Socket::Tcp { waiting, client, .. } => {
+                if let Some(own) = client.iter_mut().chain(waiting).find(|own| own.from == to) {
+                    own.send(packet, self.patience);
+                }
+            }
+        }
     }
 
-    /// Closes the connection of a client that cannot begin.
-    pub fn dismiss(&mut self) {
-        if let Socket::Tcp { client, buffer, .. } = &mut self.socket {
-            *client = None;
-            buffer.clear();
+    /// Makes a connection that of the client; further ones get the answer that it controls the run.
+    pub fn choose(&mut self, from: SocketAddr) -> io::Result<()> {
+        let Socket::Tcp { waiting, client, .. } = &mut self.socket else { return Ok(()) };
+        if let Some(place) = waiting.iter().position(|own| own.from == from) {
+            let chosen = waiting.remove(place);
+            chosen.stream.set_nonblocking(false)?;
+            *client = Some(chosen);
             self.wait = Duration::ZERO;
         }
-    }
-}
-
-/// Accepts a waiting connection: the client if there is none, and another one only to be refused.
-fn accept(
-    listener: &TcpListener,
-    client: &mut Option<(TcpStream, SocketAddr)>,
-    busy: &[u8],
-) -> io::Result<()> {
-    let Ok((mut stream, from)) = listener.accept() else { return Ok(()) };
-    stream.set_nonblocking(false)?;
-    stream.set_write_timeout(Some(WRITE_TIMEOUT))?;
-    if client.is_some() {
-        let _ = stream.write_all(busy);
-        return Ok(());
-    }
-    stream.set_nodelay(true)?;
-    *client = Some((stream, from));
-    Ok(())
-}
-
-/// Returns the next packet of a stream; one that does not hold packets counts as closed.
-fn read_packet(stream: &mut TcpStream, buffer: &mut Vec<u8>, from: SocketAddr) -> Received {
-    let mut piece = [0; 4096];
-    loop {
-        if let Some(length) = length(buffer) {
-            if length > LONGEST_PACKET {
-                return Received::Closed;
-            }
-            if buffer.len() >= length {
-                let rest = buffer.split_off(length);
-                return Received::Packet(std::mem::replace(buffer, rest), from);
-            }
+        for mut other in waiting.drain(..) {
+            other.send(&self.busy, PUSH);
         }
-        match stream.read(&mut piece) {
-            Ok(0) => return Received::Closed,
-            Ok(count) => buffer.extend(&piece[..count]),
-            Err(error) if is_silence(&error) => return Received::Nothing,
-            Err(_) => return Received::Closed,
+        Ok(())
+    }
+
+    /// Closes the connection of a client.
+    pub fn dismiss(&mut self, from: SocketAddr) {
+        if let Socket::Tcp { waiting, client, .. } = &mut self.socket {
+            waiting.retain(|own| own.from != from);
+            client.take_if(|own| own.from == from);
         }
     }
 }
 
-/// Returns true if an error means that nothing was received.
+/// Accepts the connections that have come. With a client, they only get the answer `busy`.
+fn accept(listener: &TcpListener, waiting: &mut Vec<Connection>, busy: Option<&[u8]>) {
+    for _ in 0..MOST_WAITING {
+        let Ok((stream, from)) = listener.accept() else { return };
+        let prepared = stream
+            .set_nodelay(true)
+            .and_then(|()| stream.set_write_timeout(Some(PUSH)))
+            .and_then(|()| stream.set_nonblocking(busy.is_none()));
+        if prepared.is_err() {
+            // The connection has ended.
+            continue;
+        }
+        let since = WallInstant::now();
+        let mut connection = Connection { stream, from, buffer: Vec::new(), since, is_broken: false };
+        if let Some(busy) = busy {
+            connection.send(busy, PUSH);
+            return;
+        }
+        if waiting.len() == MOST_WAITING {
+            waiting.remove(0);
+        }
+        waiting.push(connection);
+    }
+}
+
+/// Returns the first packet of a connection that has one; closes those that have ended or sent none in time.
+fn greeted(waiting: &mut Vec<Connection>) -> Received {
+    waiting.retain(|own| own.since.elapsed() < GREETING);
+    let mut place = 0;
+    while place < waiting.len() {
+        match waiting[place].read_packet() {
+            Received::Nothing => place += 1,
+            Received::Closed => drop(waiting.remove(place)),
+            packet @ Received::Packet(..) => return packet,
+        }
+    }
+    Received::Nothing
+}
+
+impl Connection {
+    /// Sends a packet within a time. A stream that does not take it whole is broken.
+    fn send(&mut self, mut packet: &[u8], patience: Duration) {
+        let began = WallInstant::now();
+        while !packet.is_empty() && !self.is_broken {
+            match self.stream.write(packet) {
+                Ok(0) => self.is_broken = true,
+                Ok(count) => packet = &packet[count..],
+                Err(error) if is_silence(&error) && !stop::stop_requested() && began.elapsed() < patience => {
+                    std::thread::sleep(POLL_PERIOD);
+                }
+                Err(_) => self.is_broken = true,
+            }
+        }
+    }
+
+    /// Returns the next packet of the stream; one that does not hold packets counts as closed.
+    fn read_packet(&mut self) -> Received {
+        let mut piece = [0; 4096];
+        loop {
+            if let Some(length) = length(&self.buffer) {
+                if length > LONGEST_PACKET {
+                    return Received::Closed;
+                }
+                if self.buffer.len() >= length {
+                    let rest = self.buffer.split_off(length);
+                    return Received::Packet(std::mem::replace(&mut self.buffer, rest), self.from);
+                }
+            }
+            match self.stream.read(&mut piece) {
+                Ok(0) => return Received::Closed,
+                Ok(count) => self.buffer.extend(&piece[..count]),
+                Err(error) if is_silence(&error) => return Received::Nothing,
+                Err(_) => return Received::Closed,
+            }
+        }
+    }
+}
+
+/// Returns true if an error means that nothing was received, or taken.
 fn is_silence(error: &io::Error) -> bool {
     // The others are reports about an earlier datagram.
     matches!(

@@ -109,6 +109,14 @@ impl Lockstep<'_> {
             let telemetry = self.simulation.telemetry(&self.session.layout().telemetry)?;
             let commands = self.session.exchange(cycle, now, before, &telemetry);
             let commands = commands.map_err(StopReason::Session)?;
+            if let Some(axis) = self.simulation.unexecuted_axis(&commands) {
+                let quantity = commands[axis].quantity().label();
+                let why = format!(
+                    "the command about axis {} has the quantity {quantity}, which no actuator in use executes",
+                    axis + 1
+                );
+                return Err(StopReason::Session(self.session.refuse(why)));
+            }
             self.commands.push(now, commands);
             self.simulation.set_external_command(commands);
             self.simulation.run_up_to(now + self.period, record)?;

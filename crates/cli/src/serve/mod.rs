@@ -154,7 +154,6 @@ pub fn run(args: &ServeArgs) -> Result<(), CliError> {
     let limit = (args.timeout > 0.0).then(|| Duration::from_secs_f64(args.timeout));
     let mut session = Session::begin(link, layout, args.pace.start(), limit)
         .map_err(|end| ended(StopReason::Session(end), &run, None))?;
-    say!("  client         {}", session.client());
     let began = WallInstant::now();
     let scene = detail.and_then(|detail| Scene::for_detail(&run.scenario, detail));
     let served = lockstep::serve(&run, &mut session, period, (log, scene)).map_err(|error| match error {

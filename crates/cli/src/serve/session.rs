@@ -1,6 +1,6 @@
 //! Session of a client: the agreement on the packets, the exchange of each cycle, and the end.
 
-use std::io;
+use std::io::{self, Write};
 use std::net::SocketAddr;
 use std::process;
 use std::time::{Duration, Instant as WallInstant, SystemTime, UNIX_EPOCH};
@@ -10,17 +10,17 @@ use flexsc_core::control::law::Command;
 use flexsc_core::numerics::time::Instant;
 
 use super::layout::{PacketLayout, VERSION, cycle_content};
-use super::link::{Link, Received};
+use super::link::{Link, Received, WRITE_TIMEOUT};
 use super::pace::Pace;
 use super::packet::{ContentReader, PacketKind, PacketWriter, open};
-use crate::stop;
+use crate::{say, stop};
 
 /// Time after which a packet without an answer is repeated on a link that loses packets.
 const REPEAT: Duration = Duration::from_millis(20);
 /// Number of times that the end of the run is sent to a client that does not confirm it.
 const LAST_REPEATS: u32 = 25;
-/// Time limit for the hello of a connection.
-const GREETING: Duration = Duration::from_secs(5);
+/// Silence after its welcome with which a client that has sent no command leaves its place to another one.
+const HESITATION: Duration = Duration::from_secs(1);
 
 /// Reason why a session ends before its run does.
 #[derive(Debug)]
@@ -62,6 +62,10 @@ pub struct Session {
     nonce: u32,
     pace: Pace,
     timeout: Option<Duration>,
+    /// Time of the client's welcome.
+    welcomed: WallInstant,
+    /// True from the client's first command or request on, with which the run begins.
+    has_begun: bool,
     /// True once the end of the run is reported, which Ctrl-C does not shorten.
     is_ending: bool,
     pub counts: PacketCounts,
@@ -77,7 +81,7 @@ enum Message {
 }
 
 impl Session {
-    /// Waits for a client that agrees on the packets.
+    /// Creates the session of a client that agrees on the packets, for which it waits.
     pub fn begin(
         mut link: Link,
         layout: PacketLayout,
@@ -86,43 +90,70 @@ impl Session {
     ) -> Result<Self, SessionEnd> {
         let mut writer = PacketWriter::default();
         link.busy = refusal(&mut writer, 0, "another client controls this run");
-        let mut silent_since = WallInstant::now();
+        link.patience = timeout.map_or(WRITE_TIMEOUT, |timeout| timeout.min(WRITE_TIMEOUT));
+        let client = SocketAddr::from(([0; 4], 0));
+        let counts = PacketCounts::default();
+        let (number, nonce, welcomed) = (0, 0, WallInstant::now());
+        let (has_begun, is_ending) = (false, false);
+        let mut session = Self {
+            link,
+            layout,
+            writer,
+            client,
+            number,
+            nonce,
+            pace,
+            timeout,
+            welcomed,
+            has_begun,
+            is_ending,
+            counts,
+        };
+        session.wait_for_client()?;
+        Ok(session)
+    }
+
+    /// Waits for a client that agrees on the packets, and welcomes it.
+    fn wait_for_client(&mut self) -> Result<(), SessionEnd> {
         loop {
             if stop::stop_requested() {
                 return Err(SessionEnd::Interrupted);
             }
-            let (packet, from) = match link.receive(REPEAT)? {
-                Received::Packet(packet, from) => (packet, from),
-                Received::Nothing if !link.is_connected() => {
-                    silent_since = WallInstant::now();
-                    continue;
-                }
-                Received::Nothing if silent_since.elapsed() < GREETING => continue,
-                Received::Nothing | Received::Closed => {
-                    link.dismiss();
-                    silent_since = WallInstant::now();
-                    continue;
-                }
-            };
-            let Some((nonce, version, expected)) = hello(&packet) else { continue };
-            if let Some(why) = disagreement(&layout, version, expected) {
-                link.send(&refusal(&mut writer, nonce, &why), from);
-                link.dismiss();
-                continue;
+            let Received::Packet(packet, from) = self.link.receive(REPEAT)? else { continue };
+            if self.greet(&packet, from)? {
+                return Ok(());
             }
-            let number = session_number();
-            let counts = PacketCounts::default();
-            let is_ending = false;
-            let mut session =
-                Self { link, layout, writer, client: from, number, nonce, pace, timeout, is_ending, counts };
-            session.welcome();
-            return Ok(session);
         }
     }
 
-    /// Returns the address of the client.
-    pub fn client(&self) -> SocketAddr {
-        self.client
+    /// Welcomes the sender of a hello that agrees on the packets; returns false for any other packet.
+    fn greet(&mut self, packet: &[u8], from: SocketAddr) -> Result<bool, SessionEnd> {
+        let Some((nonce, version, expected)) = hello(packet) else {
+            self.link.dismiss(from);
+            return Ok(false);
+        };
+        if let Some(why) = disagreement(&self.layout, version, expected) {
+            self.link.send(&refusal(&mut self.writer, nonce, &why), from);
+            self.link.dismiss(from);
+            return Ok(false);
+        }
+        self.link.choose(from)?;
+        (self.client, self.number, self.nonce) = (from, session_number(), nonce);
+        self.welcomed = WallInstant::now();
+        say!("  client         {from}");
+        self.welcome();
+        Ok(true)
+    }
+
+    /// Waits for another client in the place of one that has ended before its first command; any other end is that of the session.
+    fn replace_client(&mut self, end: SessionEnd) -> Result<(), SessionEnd> {
+        match end {
+            SessionEnd::Silent(_) | SessionEnd::Closed if !self.has_begun => {
+                self.link.dismiss(self.client);
+                self.wait_for_client()
+            }
+            end => Err(end),
+        }
     }
 
     /// Returns the layout of the packets.
@@ -158,11 +189,13 @@ impl Session {
             Pace::Step => {
                 let began = WallInstant::now();
                 loop {
-                    match self.message(REPEAT)? {
-                        Some(Message::Request(requested)) if requested == cycle => return Ok(()),
-                        Some(Message::Hello) => self.welcome(),
-                        Some(_) => self.counts.ignored += 1,
-                        None => self.check_silence(began)?,
+                    match self.message(REPEAT).and_then(|message| self.check_silence(began).map(|()| message))
+                    {
+                        Ok(Some(Message::Request(requested))) if requested == cycle => return Ok(()),
+                        Ok(Some(Message::Hello)) => self.welcome(),
+                        Ok(Some(_)) => self.counts.ignored += 1,
+                        Ok(None) => {}
+                        Err(end) => self.replace_client(end)?,
                     }
                 }
             }
@@ -177,27 +210,32 @@ impl Session {
         before: Option<Instant>,
         telemetry: &Telemetry,
     ) -> Result<[Command; 3], SessionEnd> {
-        let content = self.layout.sensor_content([self.number.into(), cycle], now, before, telemetry);
+        let mut number = self.number;
+        let mut content = self.layout.sensor_content([number.into(), cycle], now, before, telemetry);
         let began = WallInstant::now();
         let mut sent = began;
         self.send(PacketKind::Sensors, &content);
         loop {
             let mut repeat = false;
-            match self.message(REPEAT.saturating_sub(sent.elapsed()))? {
-                Some(Message::Commands(answered, commands)) if answered == cycle => {
-                    return commands.map_err(|why| {
-                        let packet = refusal(&mut self.writer, self.nonce, &why);
-                        self.link.send(&packet, self.client);
-                        SessionEnd::Refused(why)
-                    });
+            let wait = REPEAT.saturating_sub(sent.elapsed());
+            match self.message(wait).and_then(|message| self.check_silence(began).map(|()| message)) {
+                Ok(Some(Message::Commands(answered, commands))) if answered == cycle => {
+                    return commands.map_err(|why| self.refuse(why));
                 }
-                Some(Message::Hello) => {
+                Ok(Some(Message::Hello)) => {
                     self.welcome();
                     repeat = true;
                 }
-                Some(Message::Request(requested)) if requested == cycle => repeat = true,
-                Some(_) => self.counts.ignored += 1,
-                None => self.check_silence(began)?,
+                Ok(Some(Message::Request(requested))) if requested == cycle => repeat = true,
+                Ok(Some(_)) => self.counts.ignored += 1,
+                Ok(None) => {}
+                Err(end) => self.replace_client(end)?,
+            }
+            if number != self.number {
+                // Another client has taken the place.
+                number = self.number;
+                content = self.layout.sensor_content([number.into(), cycle], now, before, telemetry);
+                repeat = true;
             }
             if repeat || self.link.is_lossy() && sent.elapsed() >= REPEAT {
                 self.send(PacketKind::Sensors, &content);
@@ -205,6 +243,13 @@ impl Session {
                 sent = WallInstant::now();
             }
         }
+    }
+
+    /// Sends the client the reason why its commands are refused, and returns the end of the session.
+    pub fn refuse(&mut self, why: String) -> SessionEnd {
+        let packet = refusal(&mut self.writer, self.nonce, &why);
+        self.link.send(&packet, self.client);
+        SessionEnd::Refused(why)
     }
 
     /// Reports the end of the run to the client, until it confirms it.
@@ -224,10 +269,12 @@ impl Session {
         }
     }
 
-    /// Fails if a client has been silent for too long, or the user asks to stop.
-    fn check_silence(&self, began: WallInstant) -> Result<(), SessionEnd> {
+    /// Fails if a client that was asked at a time, or was welcomed later, has not answered for too long.
+    fn check_silence(&self, asked: WallInstant) -> Result<(), SessionEnd> {
         match self.timeout {
-            Some(timeout) if began.elapsed() >= timeout => Err(SessionEnd::Silent(timeout)),
+            Some(timeout) if asked.max(self.welcomed).elapsed() >= timeout => {
+                Err(SessionEnd::Silent(timeout))
+            }
             _ => Ok(()),
         }
     }
@@ -243,7 +290,10 @@ impl Session {
             Received::Closed => return Err(SessionEnd::Closed),
         };
         if from != self.client {
-            if hello(&packet).is_some() {
+            let is_free = !self.has_begun && self.welcomed.elapsed() >= HESITATION;
+            if hello(&packet).is_some() && is_free {
+                self.greet(&packet, from)?;
+            } else if hello(&packet).is_some() {
                 let busy = self.link.busy.clone();
                 self.link.send(&busy, from);
             }
@@ -251,6 +301,7 @@ impl Session {
             return Ok(None);
         }
         let message = self.parse(&packet);
+        self.has_begun |= matches!(message, Some(Message::Commands(..) | Message::Request(_)));
         self.counts.ignored += u64::from(message.is_none());
         Ok(message)
     }

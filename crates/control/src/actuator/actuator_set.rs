@@ -216,6 +216,15 @@ impl Actuator for ActuatorSet {
         }
     }
 
+    fn ignores(&self, now: Instant, axis: usize, demands: &[Demand]) -> bool {
+        let executing = self.executing.iter().enumerate().filter(|(index, _)| self.executes(*index, now));
+        let mut own = executing
+            .filter(|(_, (_, shares))| shares[axis] != 0.0 || matches!(demands[axis], Demand::Moment(_)));
+        let unloads = self.unloader.as_ref().filter(|unloader| unloader.is_commanded(demands));
+        own.all(|(_, (actuator, _))| actuator.ignores(now, axis, demands))
+            && unloads.is_none_or(|unloader| unloader.actuator.ignores(now, axis, demands))
+    }
+
     fn capabilities(&self) -> Capabilities<'_> {
         Capabilities {
             momentum: Some(self),

@@ -162,6 +162,12 @@ impl Actuator for MagnetorquersState {
         onto.moment += self.held();
     }
 
+    fn ignores(&self, _: Instant, axis: usize, demands: &[Demand]) -> bool {
+        // Beside moments, torques about the other axes are not given.
+        let has_moments = demands.iter().any(|demand| matches!(demand, Demand::Moment(_)));
+        has_moments && !matches!(demands[axis], Demand::Moment(_) | Demand::Torque(0.0) | Demand::Change(0.0))
+    }
+
     fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
         match event {
             ActuatorEvent::MagneticField(field) => self.field = Some(field),

@@ -151,6 +151,11 @@ pub trait Actuator: Part {
         Capabilities::default()
     }
 
+    /// Returns true if the actuator does nothing at `now` for the demand about an axis: by default if it is a magnetic moment.
+    fn ignores(&self, _now: Instant, axis: usize, demands: &[Demand]) -> bool {
+        matches!(demands.get(axis), Some(Demand::Moment(_)))
+    }
+
     /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Actuator>;
 }

@@ -149,6 +149,25 @@ impl Directory {
         Ok(directory)
     }
 
+    /// Removes a directory that has no parts and no other files than its own; any other one stays.
+    ///
+    /// # Errors
+    /// Another process that is writing the directory, and files that cannot be removed.
+    pub fn remove_empty(path: &Path) -> Result<(), DirectoryError> {
+        let _lock = lock(path)?;
+        if !parts(path)?.is_empty() {
+            return Ok(());
+        }
+        for place in [path.join(MANIFEST), path.join(LOCK)] {
+            fs::remove_file(&place).map_err(io_error(&place))?;
+        }
+        for place in [&path.join(RUNS), path] {
+            // One that holds other files stays.
+            let _ = fs::remove_dir(place);
+        }
+        Ok(())
+    }
+
     /// Removes the parts of all runs but these.
     fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
         for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {

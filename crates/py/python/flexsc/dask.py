@@ -154,6 +154,10 @@ def main(arguments: list[str] | None = None) -> int:
     except OSError as error:
         print(f"\nerror: {error}", file=sys.stderr)
         return 1
+    except ValueError as error:
+        # An address that is none; `flexsc --scheduler` knows it by this code.
+        print(f"\nerror: {given.scheduler}: {error}", file=sys.stderr)
+        return 2
     except KeyboardInterrupt:
         return 130
     print(file=sys.stderr)

@@ -287,6 +287,10 @@ impl Actuator for Acting {
         }
     }
 
+    fn ignores(&self, _: Exact, _: usize, _: &[Demand]) -> bool {
+        false
+    }
+
     fn copy(&self) -> Box<dyn Actuator> {
         Box::new(Self {
             method: self.method.copy("command"),
