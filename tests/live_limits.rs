@@ -212,3 +212,39 @@ fn after_the_end_nothing_pauses() {
     drop(viewer);
     run.wait().exits(0);
 }
+
+#[test]
+fn connections_that_are_refused_or_fail_are_closed_at_once() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let (_run, address) = endless(&dir, "--speed 1");
+    let closes = |stream: &mut TcpStream, what: &str| {
+        let began = Instant::now();
+        stream.set_read_timeout(Some(Duration::from_secs(8))).expect("set");
+        let mut rest = Vec::new();
+        // A reset is an end, too.
+        if let Err(error) = stream.read_to_end(&mut rest) {
+            assert_eq!(error.kind(), std::io::ErrorKind::ConnectionReset, "{what}");
+        }
+        assert!(began.elapsed() < Duration::from_secs(3), "{what}: {:?}", began.elapsed());
+    };
+    let connected = || TcpStream::connect(&address).expect("connected");
+    for request in ["GET / HTTP/1.1\r\nHost: x\r\n\r\n", "nonsense\r\n\r\n"] {
+        let mut stream = connected();
+        stream.write_all(request.as_bytes()).expect("sent");
+        closes(&mut stream, request);
+    }
+    // Without a mask, with a reserved bit, and with text that is not UTF-8.
+    for frame in
+        [&[0x81, 2, b'{', b'}'][..], &[0xC1, 0x80, 0, 0, 0, 0], &[0x81, 0x82, 0, 0, 0, 0, 0xFF, 0xFF]]
+    {
+        let mut stream = connected();
+        let key = "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13";
+        let (name, protocol) = PROTOCOL;
+        let upgrade = format!("Upgrade: websocket\r\nConnection: Upgrade\r\n{key}\r\n{name}: {protocol}");
+        stream
+            .write_all(format!("GET / HTTP/1.1\r\nHost: {address}\r\n{upgrade}\r\n\r\n").as_bytes())
+            .expect("sent");
+        stream.write_all(frame).expect("sent");
+        closes(&mut stream, &format!("{frame:?}"));
+    }
+}

@@ -17,7 +17,7 @@ mod topics;
 use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, ToSocketAddrs};
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
@@ -158,28 +158,50 @@ impl Record for Live {
     }
 }
 
-/// Accepts clients, each on a thread of its own, until the hub closes. Clients do not wait for each other: of too many
-/// connections without a request, the oldest is closed.
+/// Connections that have sent no request yet, the oldest first.
+#[derive(Default)]
+struct SilentConnections(Mutex<VecDeque<(Weak<()>, TcpStream)>>);
+
+impl SilentConnections {
+    fn each(&self) -> MutexGuard<'_, VecDeque<(Weak<()>, TcpStream)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a connection until the returned guard is dropped; of too many, the oldest is closed.
+    fn add(&self, stream: TcpStream) -> Arc<()> {
+        let greeting = Arc::new(());
+        let mut each = self.each();
+        if each.len() >= MOST_SILENT
+            && let Some((_, oldest)) = each.pop_front()
+        {
+            // The shutdown ends the connection's thread, unless it has ended.
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        each.push_back((Arc::downgrade(&greeting), stream));
+        greeting
+    }
+
+    /// Removes the connections whose guards were dropped, which closes those that are not served.
+    fn remove_ended(&self) {
+        self.each().retain(|(greeting, _)| greeting.strong_count() > 0);
+    }
+}
+
+/// Accepts clients, each on a thread of its own, until the hub closes. Clients do not wait for each other.
 fn accept(hub: &Arc<Hub>, gate: &Arc<AccessControl>, listener: &TcpListener) {
-    let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
+    let silent = Arc::new(SilentConnections::default());
     while !hub.closing() {
         let Ok((stream, _)) = listener.accept() else {
             thread::sleep(POLL_PERIOD);
             continue;
         };
-        silent.retain(|(greeting, _)| greeting.strong_count() > 0);
-        if silent.len() >= MOST_SILENT
-            && let Some((_, oldest)) = silent.pop_front()
-        {
-            // The shutdown ends the connection's thread, unless it has ended.
-            let _ = oldest.shutdown(Shutdown::Both);
-        }
         let Ok(other) = stream.try_clone() else { continue };
-        let (hub, gate, greeting) = (hub.clone(), gate.clone(), Arc::new(()));
-        silent.push_back((Arc::downgrade(&greeting), other));
+        let (hub, gate, silent) = (hub.clone(), gate.clone(), silent.clone());
+        let greeting = silent.add(other);
         thread::spawn(move || {
             let greeted = client::greet(&hub, &gate, stream);
             drop(greeting);
+            silent.remove_ended();
             if let Some((socket, _seat)) = greeted {
                 client::serve(&hub, socket);
             }
