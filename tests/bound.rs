@@ -206,7 +206,7 @@ fn the_verb_prints_verdicts_and_writes_witnesses() {
     let rows = crate::util::table(&dir, "range.csv");
     assert!(rows.len() > 100 && rows.iter().any(|row| row["claim"] == "1e0"), "{:?}", rows.first());
     dir.run("bound bounded-jitter.toml -o figures --format svg").exits(0);
-    assert!(dir.text("figures/bound.svg").contains("guaranteed range"));
+    assert!(dir.text("figures/bounded-jitter-bound.svg").contains("guaranteed range"));
     dir.run("bound bounded-jitter.toml -o other.toml").exits(2).says(&["no claim is violated"]);
     assert!(!dir.has("other.toml"));
 }

@@ -238,7 +238,7 @@ fn noise_of_a_loop() {
         dir.text("noise.csv").starts_with("frequency_hz,angle_density,angle_cumulative_rms,angle_density ")
     );
     dir.run(&format!("{verb} -o figures --format svg")).exits(0);
-    assert!(dir.has("figures/density_angle.svg"));
+    assert!(dir.has("figures/slew-wheel-lqg-density_angle.svg"));
     let set = "--set manoeuvre.angle=1e-9 --set duration=600";
     dir.run(&format!("simulate slew-wheel-lqg.toml {set} --log full")).exits(0);
     let compared = dir.run(&format!("{verb} --log slew-wheel-lqg.mcap --from 100")).exits(0);
@@ -271,7 +271,8 @@ fn margins_of_a_loop() {
     dir.run("margins wheel-fast-mode.toml -o figures --format svg").exits(0);
     assert_eq!(
         dir.names("figures"),
-        ["bode.svg", "nichols.svg", "nyquist.svg", "root-locus.svg", "singular-values.svg"]
+        ["bode", "nichols", "nyquist", "root-locus", "singular-values"]
+            .map(|name| format!("wheel-fast-mode-{name}.svg"))
     );
     let unstable = ["not stable and has no margins", "magnitude 1.0476992", "0.1090 rad/s", "`command`"];
     dir.run("margins wheel-unstable-band.toml").exits(2).says(&unstable);

@@ -182,3 +182,83 @@ fn a_reader_that_has_enough_is_no_failure() {
         assert!(done.status.success() && said.is_empty(), "{format}: {} {said}", done.status);
     }
 }
+
+#[cfg(unix)]
+#[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
+fn a_file_that_the_scenario_names_is_no_output() {
+    let dir = Dir::new();
+    dir.write("m.csv", "frequency,damping,tx,ty,tz,rx,ry,rz\n1.5,0.005,0.055,0.19,0.093,0.41,0.43,0.13\n");
+    let scenario = "duration = 20.0\n[spacecraft]\nmass = 600.0\ninertia = [[250, 0, 0], [0, 300, 0], [0, 0, 220]]\n\
+        [[appendage]]\nname = \"a\"\nmass = 14.4\ncentre = [2.4, 0.27, 0.89]\nat = [0.5, 0, 0]\nmodes = \"m.csv\"\n\
+        inertia = [[14.8, -2.4, -8.0], [-2.4, 24.4, -4.3], [-8.0, -4.3, 15.7]]\n\
+        [sensor.sampled]\nperiod = 0.5\nnoise = 4e-6\nrate_noise = 1e-6\n\
+        [law.pd]\nk_p = 1.0\nk_d = 20.0\nperiod = 0.5\n[uncertain.\"law.pd.k_d\"]\nuniform = [18.0, 22.0]\n";
+    dir.write("t.toml", scenario);
+    dir.run("check t.toml").exits(0);
+    for (name, target) in [("m.svg", "m.csv"), ("m.json", "m.csv"), ("m.fmu", "m.csv"), ("m.html", "m.csv")] {
+        std::os::unix::fs::symlink(target, dir.path(name)).expect("linked");
+    }
+    std::fs::hard_link(dir.path("m.csv"), dir.path("m.mcap")).expect("linked");
+    let before = dir.read("m.csv");
+    for command in [
+        "simulate t.toml --runs 3 -o m.csv --force",
+        "simulate t.toml -o m.mcap --force",
+        "sweep t.toml --vary law.pd.k_p=300,400 -o m.csv --force",
+        "spectrum t.toml -o m.csv --force",
+        "margins t.toml -o m.svg --force",
+        "worst t.toml --margin modulus --points 2 -o m.csv --force",
+        "layout t.toml -o m.json --force",
+        "export-fmu t.toml -o m.fmu --force",
+        "serve t.toml --bind 127.0.0.1:0 -o m.mcap --force",
+    ] {
+        dir.run(command).exits(2).says(&["is the input", "m.csv, which would be lost"]);
+        assert!(dir.read("m.csv") == before, "{command}");
+    }
+    // The library of an FMU is an input, too.
+    dir.run("export-fmu t.toml -o a.fmu").exits(0);
+    dir.run("export-fmu t.toml --library a.fmu -o a.fmu --force").exits(2).says(&["is the input a.fmu"]);
+}
+
+#[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
+fn figures_replace_figures_and_nothing_else() {
+    let dir = Dir::with(&["earth-observer"]);
+    let margins = "margins earth-observer.toml -o d";
+    std::fs::create_dir(dir.path("d")).expect("made");
+    dir.write("d/bode.svg", "not mine");
+    dir.run(margins).exits(0);
+    assert_eq!(dir.text("d/bode.svg"), "not mine");
+    let names = dir.names("d");
+    assert!(names.contains(&"earth-observer-bode.svg".to_owned()), "{names:?}");
+    // Figures of before are replaced.
+    dir.run(&format!("{margins} --set law.attitude.bandwidth=0.05")).exits(0);
+    for ending in ["svg", "png", "pdf"] {
+        let name = format!("d/earth-observer-nichols.{ending}");
+        dir.write(&name, "not mine");
+        let again = format!("{margins} --format {ending}");
+        dir.run(&again).exits(2).says(&["already exists, with other content", "--force replaces it"]);
+        assert_eq!(dir.text(&name), "not mine");
+        dir.run(&format!("{again} --force")).exits(0);
+        assert_ne!(dir.read(&name), b"not mine");
+        dir.run(&format!("{again} --set law.attitude.bandwidth=0.06")).exits(0);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
+fn endless_inputs_are_refused_and_a_pipe_without_a_reader_can_be_left() {
+    let dir = Dir::with(&["relay-fixed"]);
+    dir.run("sweep relay-fixed.toml --points /dev/zero").exits(2).says(&["must have at most 67108864 bytes"]);
+    dir.run("export-fmu relay-fixed.toml --library /dev/zero -o a.fmu")
+        .exits(2)
+        .says(&["/dev/zero: not a file"]);
+    let made = std::process::Command::new("mkfifo").arg(dir.path("pipe")).status().expect("mkfifo starts");
+    assert!(made.success());
+    let waiting = dir.start("layout relay-fixed.toml -o pipe");
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let began = std::time::Instant::now();
+    waiting.signal("TERM").exits(130);
+    assert!(began.elapsed() < std::time::Duration::from_secs(1), "{:?}", began.elapsed());
+}

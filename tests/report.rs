@@ -57,3 +57,58 @@ fn what_has_no_numbers_has_a_reason() {
     }
     assert!(!dir.path("other.html").exists());
 }
+
+/// Returns the processes whose parent is this one.
+#[cfg(target_os = "linux")]
+fn children(parent: u32) -> Vec<u32> {
+    let all = std::fs::read_dir("/proc").expect("there").flatten();
+    let numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
+    let is_child = |number: &u32| {
+        let stat = std::fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
+        let after_name = stat.rsplit(')').next().unwrap_or_default();
+        after_name.split_whitespace().nth(1) == Some(&parent.to_string())
+    };
+    numbers.filter(is_child).collect()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_report_that_is_killed_takes_its_command_along() {
+    use std::time::{Duration, Instant};
+
+    let dir = Dir::with(&["earth-observer"]);
+    std::fs::create_dir(dir.path("tmp")).expect("made");
+    let begin = format!("export TMPDIR={}", dir.path("tmp").display());
+    let report = dir.start_by(&begin, "report earth-observer.toml --set duration=1e8 --runs 0 -o r.html");
+    let is_running = |pid: u32, word: &str| {
+        std::fs::read_to_string(format!("/proc/{pid}/cmdline")).is_ok_and(|line| line.contains(word))
+    };
+    let began = Instant::now();
+    // A run of this length takes minutes.
+    let child = loop {
+        let found = children(report.id()).into_iter().find(|pid| is_running(*pid, "simulate"));
+        if let Some(child) = found {
+            break child;
+        }
+        assert!(began.elapsed() < Duration::from_secs(60), "no run");
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    report.sends("KILL");
+    drop(report);
+    let began = Instant::now();
+    while is_running(child, "simulate") {
+        assert!(began.elapsed() < Duration::from_secs(5), "the run lives on");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(dir.names("tmp").len(), 1);
+    // The next report removes what that one has left.
+    let next = dir.start_by(&begin, "report earth-observer.toml --set duration=1e8 --runs 0 -o r.html");
+    let began = Instant::now();
+    while children(next.id()).is_empty() {
+        assert!(began.elapsed() < Duration::from_secs(60), "no command");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(dir.names("tmp").len(), 1);
+    next.signal("TERM").exits(130);
+    assert!(dir.names("tmp").is_empty());
+}

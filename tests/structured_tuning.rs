@@ -113,7 +113,7 @@ fn the_command_writes_a_tuned_scenario() {
         "tune earth-observer.toml --vary law.attitude.bandwidth=0.02:0.3 --vary law.attitude.damping=0.4:1.5";
     let told = dir.run(&format!("{line} --bandwidth 0.08 --save tuned.toml -o figures"));
     told.exits(0).says(&["least modulus margin of 1 plant", "law.attitude.damping", "tuned.toml"]);
-    assert!(dir.path("figures/margin.svg").exists());
+    assert!(dir.path("figures/earth-observer-tune-margin.svg").exists());
     let (before, after) = (modulus(&dir.path("earth-observer.toml")), modulus(&dir.path("tuned.toml")));
     assert!(after > before + 0.01, "{before} {after}");
     // The tuned scenario is a scenario of its own: a second search stays where it is.

@@ -115,7 +115,7 @@ fn the_verb_prints_judges_and_writes_the_witness() {
     dir.run(&format!("{all} -o points.csv")).exits(0);
     assert!((10..=41).contains(&dir.text("points.csv").lines().count()));
     dir.run(&format!("{all} -o figures --format svg")).exits(0);
-    assert!(dir.text("figures/worst-2.svg").contains("stability"));
+    assert!(dir.text("figures/slew-wheel-lqg-worst-2.svg").contains("stability"));
 }
 
 /// Kalman filter and gains of the example are for the nominal frequencies: 5 % off, a mode grows slowly.

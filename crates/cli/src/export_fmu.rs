@@ -1,6 +1,7 @@
 //! `flexsc export-fmu`: a scenario as a Functional Mock-up Unit, which other simulators import.
 
 use std::env;
+use std::fmt::Display;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -85,7 +86,9 @@ fn library(stated: Option<&Path>) -> Result<PathBuf, CliError> {
 }
 
 pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
-    out::file(&args.out, &["fmu"], &[&args.scenario])?;
+    let inputs: Vec<&Path> =
+        [&args.scenario].into_iter().chain(&args.library).map(PathBuf::as_path).collect();
+    out::file(&args.out, &["fmu"], &inputs)?;
     let part = FmuPart::from_name(match args.part {
         Part::Loop => "loop",
         Part::Plant => "plant",
@@ -102,9 +105,14 @@ pub fn run(args: &ExportFmuArgs) -> Result<(), CliError> {
     };
     let content = FmuContent::new(&scenario, part)?;
     let path = library(args.library.as_deref())?;
-    let library = fs::read(&path).map_err(|error| {
-        CliError::Arguments(format!("cannot read the library of FMUs, {}: {error}", path.display()))
-    })?;
+    let unread = |why: &dyn Display| {
+        CliError::Arguments(format!("cannot read the library of FMUs, {}: {why}", path.display()))
+    };
+    // A device may never end.
+    if !fs::metadata(&path).map_err(|error| unread(&error))?.is_file() {
+        return Err(unread(&"not a file"));
+    }
+    let library = fs::read(&path).map_err(|error| unread(&error))?;
     let bytes = fmu_bytes(&content, &library, version)?;
     files::write(&args.out, &bytes, args.force)?;
     say!("{}", args.out.display());

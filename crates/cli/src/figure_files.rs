@@ -1,12 +1,13 @@
 //! Figure files: SVG, PNG or PDF, each figure in a file of its own or all on one sheet.
 
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 #[cfg(feature = "png")]
 use flexsc_figure::Renderer;
-use flexsc_figure::{Named, Style, sheet};
+use flexsc_figure::{Named, Style, is_figure, sheet};
 use rayon::prelude::*;
 use serde_json::json;
 
@@ -29,7 +30,7 @@ pub struct FigureOutput {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
     pub format: Option<FigureFormat>,
-    /// Replace a FILE of other content
+    /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "figures")]
     pub force: bool,
 }
@@ -103,8 +104,8 @@ impl FigureFormat {
 pub enum FigureTarget {
     /// A file with its format, where several figures form a sheet; the flag is true if another file may be replaced.
     File(PathBuf, FigureFormat, bool),
-    /// A directory with a file for each figure and format.
-    Directory(PathBuf, FigureFormat),
+    /// A directory with a file for each figure and format; the flag is true if a file that is no figure may be replaced.
+    Directory(PathBuf, FigureFormat, bool),
 }
 
 impl FigureTarget {
@@ -118,7 +119,7 @@ impl FigureTarget {
     ) -> Result<Self, CliError> {
         let (out, ending) = match Out::new(out, &FIGURES, inputs)? {
             Out::File(out, ending) => (out, ending),
-            Out::Directory(out) => return Ok(Self::Directory(out, format.unwrap_or(EVERY))),
+            Out::Directory(out) => return Ok(Self::Directory(out, format.unwrap_or(EVERY), force)),
         };
         let every = [FigureFormat::Svg, FigureFormat::Png, FigureFormat::Pdf];
         let from_ending =
@@ -139,7 +140,9 @@ impl FigureTarget {
     /// A figure that cannot be drawn, and a file or a directory that cannot be written.
     pub fn save(&self, figures: &[Named], style: Style, json: bool) -> Result<(), CliError> {
         match self {
-            Self::Directory(directory, format) => save_each(directory, (*format, style), figures, json),
+            Self::Directory(directory, format, force) => {
+                save_each(directory, (*format, style), figures, (*force, json))
+            }
             Self::File(path, format, force) => {
                 let undrawn = |why| CliError::Draw { path: path.clone(), why };
                 let svg = sheet(figures.iter().map(|(_, figure)| figure), &style).map_err(undrawn)?;
@@ -157,7 +160,7 @@ fn save_each(
     directory: &Path,
     (format, style): (FigureFormat, Style),
     figures: &[Named],
-    json: bool,
+    (force, json): (bool, bool),
 ) -> Result<(), CliError> {
     files::make_directory(directory)?;
     let renderer = Renderer::default();
@@ -175,6 +178,12 @@ fn save_each(
     let names = figures.iter().flat_map(|(name, _)| format.files().iter().map(move |_| name));
     let names: Vec<&String> = names.collect();
     let all: Vec<_> = drawn.into_iter().flatten().collect();
+    for (path, bytes) in &all {
+        // A figure of before may be replaced: its name has that of its scenario.
+        if !fs::read(path).is_ok_and(|existing| is_figure(&existing)) {
+            files::refuse_other(path, bytes, force)?;
+        }
+    }
     files::write_within(&all)?;
     names.into_iter().zip(&all).try_for_each(|(name, file)| print_written(file, &[name], json))
 }

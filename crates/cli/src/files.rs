@@ -6,13 +6,16 @@ use std::path::{Path, PathBuf};
 use flexsc_core::record::atomic_file;
 
 use crate::error::CliError;
-use crate::stop;
+use crate::{out, stop};
 
 /// Writes a file that the user named, creating its directory. A file with other content is replaced only with `force`.
 pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
+    out::refuse_read(path)?;
     refuse_other(path, bytes, force)?;
     in_new_directories(&[path], || {
-        let _writing = stop::writing();
+        // A pipe waits for its reader, and is no file that is left half written.
+        let is_waiting = fs::metadata(path).is_ok_and(|entry| !entry.is_file());
+        let _writing = (!is_waiting).then(stop::writing);
         atomic_file::write(path, bytes).map_err(CliError::write(path))
     })
 }
@@ -48,6 +51,7 @@ pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), CliError> {
     let paths: Vec<&Path> = files.iter().map(|(path, _)| &**path).collect();
     in_new_directories(&paths, || {
         for path in &paths {
+            out::refuse_read(path)?;
             atomic_file::unlinked(path).map_err(CliError::write(path))?;
         }
         let _writing = stop::writing();

@@ -213,13 +213,41 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
+    stop::follow_stdin();
     stop::run_watched(move || match execute(cli.verb) {
         Ok(()) => 0,
         Err(failure) => failure.print(),
     })
 }
 
+impl Verb {
+    /// Returns the name of a verb that may take long and shows no progress of its own: a bar only on a terminal, or nothing.
+    fn silent_name(&self) -> Option<&'static str> {
+        match self {
+            Self::Plan(_) => Some("plan"),
+            Self::Tune(_) => Some("tune"),
+            Self::Map(_) => Some("map"),
+            Self::Margins(_) => Some("margins"),
+            Self::Report(_) => Some("report"),
+            Self::Spectrum(_) => Some("spectrum"),
+            Self::Budget(_) => Some("budget"),
+            Self::Bound(_) => Some("bound"),
+            Self::Worst(_) => Some("worst"),
+            Self::Damping(_) => Some("damping"),
+            Self::Identify(_) if terminal::is_plain() => Some("identify"),
+            Self::Observer(_) => Some("observer"),
+            Self::Plot(_) if terminal::is_plain() => Some("plot"),
+            Self::Reproduce(_) if terminal::is_plain() => Some("reproduce"),
+            Self::Export(_) => Some("export"),
+            Self::ExportC(_) => Some("export-c"),
+            Self::Vectors(_) => Some("vectors"),
+            _ => None,
+        }
+    }
+}
+
 fn execute(verb: Verb) -> Result<(), CliError> {
+    let _lines = verb.silent_name().map(progress::Heartbeat::start);
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Serve(args) => serve::run(&args),

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::formats::read_files::read_files;
+
 use crate::error::CliError;
 
 /// File extensions that flexsc or other programs write, and with which no directory is expected to be named.
@@ -52,9 +54,9 @@ fn for_path(
     inputs: &[&Path],
 ) -> Result<Option<&'static str>, CliError> {
     if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
-        let (path, input) = (path.display(), input.display());
-        return Err(CliError::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
+        return Err(lost(path, input));
     }
+    refuse_read(path)?;
     accepted_ending(path, accepted)
         .map_err(|why| CliError::Arguments(format!("-o {}: {why}", path.display())))
 }
@@ -79,6 +81,20 @@ pub fn accepted_ending(path: &Path, accepted: &[&'static str]) -> Result<Option<
             listed(accepted)
         )),
     }
+}
+
+/// Returns an error if a scenario, or a file that a scenario names, was read at a path.
+pub fn refuse_read(path: &Path) -> Result<(), CliError> {
+    match read_files().iter().find(|read| is_same(path, read)) {
+        Some(read) => Err(lost(path, read)),
+        None => Ok(()),
+    }
+}
+
+/// Returns the error of results in the place of an input.
+fn lost(path: &Path, input: &Path) -> CliError {
+    let (path, input) = (path.display(), input.display());
+    CliError::Arguments(format!("-o {path}: is the input {input}, which would be lost"))
 }
 
 /// Returns the file extension of a path, or `None` for a directory.

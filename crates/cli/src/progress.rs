@@ -1,6 +1,8 @@
 //! Progress of a long run or a campaign.
 
 use std::io::Write;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::dynamics::MotionPiece;
@@ -72,6 +74,42 @@ impl Lines {
     }
 }
 
+/// Lines on stderr of a command that shows no progress of its own: the first after 10 s, then one every 30 s, until it is dropped.
+pub struct Heartbeat {
+    /// Ends the thread when it is dropped.
+    _alive: Option<Sender<()>>,
+}
+
+impl Heartbeat {
+    /// Time until the first line.
+    const FIRST: Duration = Duration::from_secs(10);
+
+    /// Starts the lines of a command of this name.
+    pub fn start(verb: &'static str) -> Self {
+        let (alive, ended) = mpsc::channel();
+        let lines = move || {
+            let again = Duration::from_secs_f64(Lines::AGAIN);
+            beat(&ended, [Self::FIRST, again], |elapsed| {
+                say!("progress: {verb} has run for {}", seconds(elapsed))
+            });
+        };
+        // Without a thread there are no lines.
+        let started = thread::Builder::new().spawn(lines);
+        Self { _alive: started.is_ok().then_some(alive) }
+    }
+}
+
+/// Calls `show` with the time since the start (s) after the first of two intervals and then after each second one, until the
+/// sender is dropped.
+fn beat(ended: &Receiver<()>, [first, again]: [Duration; 2], mut show: impl FnMut(f64)) {
+    let began = WallInstant::now();
+    let mut wait = first;
+    while let Err(RecvTimeoutError::Timeout) = ended.recv_timeout(wait) {
+        show(began.elapsed().as_secs_f64());
+        wait = again;
+    }
+}
+
 /// Returns a line on the terminal with the current activity; invisible where a bar is.
 #[cfg(feature = "papers")]
 pub fn spinner() -> ProgressBar {
@@ -138,6 +176,20 @@ impl Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_heartbeat_comes_until_the_command_ends() {
+        let (alive, ended) = mpsc::channel::<()>();
+        let mut alive = Some(alive);
+        let mut times = Vec::new();
+        beat(&ended, [Duration::from_millis(40), Duration::from_millis(10)], |elapsed| {
+            times.push(elapsed);
+            if times.len() == 3 {
+                alive = None;
+            }
+        });
+        assert!(times.len() == 3 && times[0] >= 0.04 && times[2] >= 0.06, "{times:?}");
+    }
 
     #[test]
     fn a_pipe_gets_a_line_every_thirty_seconds() {

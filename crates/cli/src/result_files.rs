@@ -25,7 +25,7 @@ pub struct ResultOutput {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "out")]
     pub format: Option<FigureFormat>,
-    /// Replace a FILE of other content
+    /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "out")]
     pub force: bool,
 }

@@ -23,7 +23,7 @@ use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, stop_flag};
-use crate::{files, requirements, say, scenario, summary};
+use crate::{files, out, requirements, say, scenario, summary};
 
 #[derive(clap::Args)]
 pub struct SimulateArgs {
@@ -244,10 +244,10 @@ impl SimulateArgs {
         Ok(Place { path: path.clone(), kind, is_file })
     }
 
-    /// Creates the directory of the results.
+    /// Creates the directory of the results, whose file must not be one that the scenarios name.
     fn make_room(&self, place: &Place) -> Result<(), CliError> {
         match (&self.out, place.is_file) {
-            (Some(path), true) => files::make_parent(path),
+            (Some(path), true) => out::refuse_read(path).and_then(|()| files::make_parent(path)),
             (Some(path), false) => files::make_directory(path),
             (None, _) => Ok(()),
         }

@@ -3,12 +3,14 @@
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
-use crate::{Style, pdf};
+use crate::{Style, origin, pdf};
 
 /// Pixels of a PNG per pixel of the SVG, for screens.
 const SCALE: f64 = 2.0;
 /// Pixels of a PNG per pixel on paper: 600 per inch.
 const FINE: f64 = 600.0 / 96.0;
+/// Number of bytes of a PNG before its second chunk.
+const HEADER: usize = 33;
 /// Maximum number of pixels of a PNG.
 const MOST: u32 = 150_000_000;
 
@@ -38,7 +40,9 @@ impl Renderer {
         }
         let mut pixels = Pixmap::new(size.width(), size.height()).ok_or_else(too_large)?;
         resvg::render(&tree, Transform::from_scale(scale, scale), &mut pixels.as_mut());
-        pixels.encode_png().map_err(|error| error.to_string())
+        let mut png = pixels.encode_png().map_err(|error| error.to_string())?;
+        png.splice(HEADER..HEADER, origin::PNG.iter().copied());
+        Ok(png)
     }
 
     /// Renders the PDF of an SVG, with the glyphs that it uses.

@@ -8,6 +8,7 @@ mod draw;
 #[cfg(feature = "png")]
 mod image;
 mod line;
+mod origin;
 pub mod palette;
 #[cfg(feature = "png")]
 mod pdf;
@@ -22,6 +23,7 @@ pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
+pub use origin::is_figure;
 pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use style::Style;

@@ -7,6 +7,8 @@ use resvg::usvg::fontdb::ID;
 use resvg::usvg::{Fill, FillRule, Group, LineCap, LineJoin, Node, Paint, Path, Stroke, Text, Tree};
 use subsetter::{GlyphRemapper, subset};
 
+use crate::origin;
+
 /// Points (pt) per pixel.
 const POINTS: f32 = 0.75;
 
@@ -314,7 +316,7 @@ struct File {
 impl Default for File {
     fn default() -> Self {
         // The second line marks the file as binary.
-        Self { bytes: b"%PDF-1.5\n%\xe2\xe3\xcf\xd3\n".to_vec(), places: Vec::new() }
+        Self { bytes: [&b"%PDF-1.5\n%\xe2\xe3\xcf\xd3\n"[..], origin::PDF].concat(), places: Vec::new() }
     }
 }
 

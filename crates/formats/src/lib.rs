@@ -6,4 +6,5 @@ pub mod density_table;
 pub mod document;
 pub mod ephemeris;
 pub mod harmonic_table;
+pub mod read_files;
 pub mod structure;

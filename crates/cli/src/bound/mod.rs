@@ -159,7 +159,7 @@ impl Results for OutputBounds {
     }
 
     fn figures(&self) -> Vec<Named> {
-        vec![("bound".to_owned(), figures::figure(&self.name, &self.bounds))]
+        vec![(format!("{}-bound", self.name), figures::figure(&self.name, &self.bounds))]
     }
 
     fn table(&self) -> Option<NumberTable> {

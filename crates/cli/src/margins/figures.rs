@@ -46,9 +46,9 @@ pub fn figures(name: &str, loops: &[SignalMargins], period: f64) -> Vec<Named> {
         })
         .collect();
     vec![
-        ("bode".to_owned(), bode(title, &lines)),
-        ("nichols".to_owned(), nichols(title, &lines)),
-        ("nyquist".to_owned(), nyquist(title, loops)),
+        (format!("{name}-bode"), bode(title, &lines)),
+        (format!("{name}-nichols"), nichols(title, &lines)),
+        (format!("{name}-nyquist"), nyquist(title, loops)),
     ]
 }
 

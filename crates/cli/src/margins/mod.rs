@@ -290,13 +290,12 @@ impl Results for LoopMargins {
     }
 
     fn figures(&self) -> Vec<Named> {
+        let name = &self.name;
         let mut figures =
-            figures::figures(&self.name, &self.margins.stability.loops, self.margins.stability.period_s);
-        figures.push((
-            "singular-values".to_owned(),
-            figures::singular_values(&self.name, &self.margins.stability),
-        ));
-        figures.push(("root-locus".to_owned(), figures::root_locus(&self.name, &self.margins.cut)));
+            figures::figures(name, &self.margins.stability.loops, self.margins.stability.period_s);
+        let values = figures::singular_values(name, &self.margins.stability);
+        figures.push((format!("{name}-singular-values"), values));
+        figures.push((format!("{name}-root-locus"), figures::root_locus(name, &self.margins.cut)));
         figures
     }
 

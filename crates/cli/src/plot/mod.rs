@@ -84,7 +84,7 @@ pub struct PlotArgs {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<FigureFormat>,
-    /// Replace a FILE of other content
+    /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "out")]
     force: bool,
     /// Width of each figure on paper, such as 85 for one column [default: 800 px]

@@ -177,7 +177,8 @@ impl<'a> ReportRunner<'a> {
     fn command(&self) -> Command {
         let mut command = Command::new(&self.program[0]);
         command.args(&self.program[1..]).env("NO_COLOR", "1").env_remove("CLICOLOR_FORCE");
-        command.stdin(Stdio::null());
+        // The pipe is closed by the death of this process, with which the command ends.
+        command.stdin(Stdio::piped()).env(stop::UNTIL_STDIN_CLOSES, "1");
         command
     }
 

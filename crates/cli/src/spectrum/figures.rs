@@ -22,7 +22,7 @@ pub fn densities(name: &str, report: &NoiseReport, welch: &[WelchEstimate]) -> V
     }
     let figure = |output: &OutputNoise| {
         let estimate = welch.iter().find(|estimate| estimate.output == output.output);
-        (format!("density_{}", output.output), density_figure(name, report, output, estimate))
+        (format!("{name}-density_{}", output.output), density_figure(name, report, output, estimate))
     };
     report.outputs.iter().map(figure).collect()
 }
@@ -67,7 +67,7 @@ fn estimate_layer(estimate: &WelchEstimate) -> Layer {
 pub fn waterfalls(name: &str, report: &NoiseReport) -> Vec<Named> {
     let Some(wheels) = &report.wheels else { return Vec::new() };
     let figure = |(index, output): (usize, &OutputNoise)| {
-        (format!("waterfall_{}", output.output), waterfall(name, wheels, (index, output)))
+        (format!("{name}-waterfall_{}", output.output), waterfall(name, wheels, (index, output)))
     };
     report.outputs.iter().enumerate().map(figure).collect()
 }

@@ -287,7 +287,7 @@ impl Results for StructuredResults {
         let layers = layers.collect();
         let title = format!("{}: modulus margin before and after tuning", self.name);
         vec![(
-            "margin".to_owned(),
+            format!("{}-tune-margin", self.name),
             Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 },
         )]
     }

@@ -298,7 +298,8 @@ impl Results for WorstCases {
     fn figures(&self) -> Vec<Named> {
         let each = self.cases.iter().enumerate();
         each.map(|(index, (case, requirement))| {
-            let name = if index == 0 { "worst".to_owned() } else { format!("worst-{}", index + 1) };
+            let number = if index == 0 { String::new() } else { format!("-{}", index + 1) };
+            let name = format!("{}-worst{number}", self.name);
             let limit = requirement.as_ref().map(|requirement| requirement.limit);
             (name, figures::figure(&self.name, case, limit))
         })

@@ -31,6 +31,8 @@ use key::{bare_or_quoted, span_of};
 use messages::{diagnostic, mismatch, mismatch_at, parse_error};
 use mistake::shortened;
 
+use crate::read_files;
+
 /// Depth of an array that no key accepts.
 const UNFIT_DEPTH: usize = 4;
 
@@ -110,6 +112,7 @@ impl Document {
             return Err(unreadable(too_long(metadata.len())));
         }
         let bytes = fs::read(path).map_err(|error| unreadable(error.to_string()))?;
+        read_files::add(path);
         Self::read_bytes(path, bytes)
     }
 

@@ -4,6 +4,8 @@ use std::fs::{self, File};
 use std::io::{BufReader, Read, Take};
 use std::path::Path;
 
+use crate::read_files;
+
 /// Largest size of a file (bytes): a full matrix of the largest order takes half of it.
 const LONGEST: u64 = 256 << 20;
 
@@ -22,7 +24,9 @@ fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
     if metadata.len() > longest {
         return Err(format!("must have at most {longest} bytes, got {}", metadata.len()));
     }
-    File::open(path).map_err(reported)
+    let file = File::open(path).map_err(reported)?;
+    read_files::add(path);
+    Ok(file)
 }
 
 /// Opens a file for sequential reading, limited to the largest size.
