@@ -51,6 +51,7 @@ mod adaptive;
 mod attitude_filter;
 mod bearings;
 mod blinding;
+mod budget_levels;
 mod convergence;
 mod cycles;
 mod damaged_fe_results;

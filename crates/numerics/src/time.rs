@@ -43,6 +43,12 @@ impl Instant {
         (self.0.whole as u64, self.0.part as u64)
     }
 
+    /// Returns the instant in femtoseconds, without rounding.
+    pub fn femtoseconds(self) -> u128 {
+        let (whole, part) = self.parts();
+        u128::from(whole) * FEMTOSECONDS as u128 + u128::from(part)
+    }
+
     /// Creates the instant of a time that flight code counts.
     pub fn from_ticks(ticks: Ticks) -> Self {
         Self(ticks)

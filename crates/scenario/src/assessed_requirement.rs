@@ -100,6 +100,44 @@ impl IndexWindow {
             Self::Difference { window, shift, .. } => (samples + 1).saturating_sub(window + shift),
         }
     }
+
+    /// Returns the number of values that one set of samples gives: by the convention `uniform` one for each place of a
+    /// window, else 1. The next set begins as many samples later.
+    pub fn places(self) -> u64 {
+        match self {
+            Self::Relative { window, convention: WindowConvention::Uniform } => window,
+            _ => 1,
+        }
+    }
+
+    /// Returns the number of samples of a set, from which one value or those of all places follow.
+    pub fn reach(self) -> u64 {
+        match self {
+            Self::Absolute => 1,
+            Self::Mean { window } | Self::Relative { window, .. } => window,
+            Self::Difference { window, shift, .. } => window + shift,
+        }
+    }
+
+    /// Returns the weights on the samples of a set whose sum is the value of the index at one of its places.
+    pub fn weights(self, place: u64) -> Vec<f64> {
+        let mean = |window: u64, sign: f64| vec![sign / window as f64; window as usize];
+        match self {
+            Self::Absolute => vec![1.0],
+            Self::Mean { window } => mean(window, 1.0),
+            Self::Relative { window, convention } => {
+                let mut weights = mean(window, -1.0);
+                weights[convention.place(window).unwrap_or(place) as usize] += 1.0;
+                weights
+            }
+            Self::Difference { window, shift, .. } => {
+                let mut weights = mean(window, -1.0);
+                weights.resize(shift as usize, 0.0);
+                weights.extend(mean(window, 1.0));
+                weights
+            }
+        }
+    }
 }
 
 impl AssessedRequirement {
@@ -125,6 +163,19 @@ fn trimmed(value: f64) -> String {
 }
 
 impl SampledError {
+    /// Returns the time of the first sample (fs): `from`; of a line of sight, which is sampled from the start of the run
+    /// on, that of the first sample from then on.
+    pub fn first_sample(&self) -> u128 {
+        let from = self.from.femtoseconds();
+        match self.quantity {
+            SampledQuantity::PointingError | SampledQuantity::RateError => from,
+            SampledQuantity::LineOfSight(..) => {
+                let period = (Instant::START + self.period).femtoseconds().max(1);
+                from.div_ceil(period) * period
+            }
+        }
+    }
+
     /// Returns true if the error of a body with this number of axes has one component.
     pub fn is_component(&self, axes: usize) -> bool {
         self.axis.is_some() || axes == 1

@@ -131,6 +131,15 @@ impl WindowConvention {
             Self::Middle => "middle",
         }
     }
+
+    /// Returns the place of the instant in a window of a number of samples; `None` for every place of it.
+    pub fn place(self, window: u64) -> Option<u64> {
+        match self {
+            Self::Uniform => None,
+            Self::End => Some(window - 1),
+            Self::Middle => Some(window / 2),
+        }
+    }
 }
 
 /// Statistical interpretation of a level over time and over the ensemble of runs.

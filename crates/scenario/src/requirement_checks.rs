@@ -221,11 +221,7 @@ impl Context<'_> {
 
 /// Returns the number of samples in a span, at its start and after each period.
 fn count(span: Span, period: Span) -> u64 {
-    const FEMTOSECONDS: u128 = 1_000_000_000_000_000;
-    let femtoseconds = |span: Span| {
-        let (whole, part) = (Instant::START + span).parts();
-        u128::from(whole) * FEMTOSECONDS + u128::from(part)
-    };
+    let femtoseconds = |span: Span| (Instant::START + span).femtoseconds();
     u64::try_from(femtoseconds(span) / femtoseconds(period).max(1)).unwrap_or(u64::MAX - 1) + 1
 }
 

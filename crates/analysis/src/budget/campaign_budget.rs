@@ -1,12 +1,10 @@
 //! Budget of a requirement from the runs of a campaign: order statistics of all values of its pointing index, and the levels of
 //! the sources that the runs show.
 
+use super::shown_sources::{IndexRun, ValueTimes, shown_sources};
 use super::{ErrorSources, LEVELS};
 use flexsc_numerics::order_statistics::order_statistic;
-use flexsc_scenario::{AssessedRequirement, Interpretation};
-
-/// Bias, relative to the random part, that is rounding.
-const ROUNDING: f64 = 1e-9;
+use flexsc_scenario::{AssessedRequirement, Interpretation, SampledError};
 
 /// Interpretations of a level, in the order in which they are reported.
 pub const INTERPRETATIONS: [Interpretation; 3] =
@@ -27,6 +25,8 @@ pub struct CampaignBudget {
     pub linear_noise: Option<f64>,
     /// Sources of an error about one axis by the linear loop; `None` without one.
     pub linear_sources: Option<ErrorSources>,
+    /// Mixed levels of these at [`LEVELS`].
+    pub linear_levels: Option<[f64; 3]>,
 }
 
 /// Level of the magnitude of an index at a probability, in three ways.
@@ -41,17 +41,27 @@ pub struct BudgetLevel {
 }
 
 impl CampaignBudget {
-    /// Returns the budget from the values of the index in each run, with their sign if `is_signed`.
-    pub fn new(requirement: AssessedRequirement, runs: &[Vec<f64>], is_signed: bool) -> Self {
-        let sources = (is_signed && runs.iter().all(|run| !run.is_empty())).then(|| shown_sources(runs));
+    /// Returns the budget from the values of the index in each run, for the error that is sampled; `is_signed` if the values
+    /// have their sign, and `cycle` is the number of values after which the noise repeats.
+    pub fn new(
+        requirement: AssessedRequirement,
+        error: &SampledError,
+        runs: &[IndexRun],
+        is_signed: bool,
+        cycle: usize,
+    ) -> Self {
+        let (period, window) = (error.period.seconds(), error.index.places() as usize);
+        let times = ValueTimes { period, window, cycle };
+        let is_complete = runs.iter().all(|run| !run.values.is_empty());
+        let sources = (is_signed && is_complete).then(|| shown_sources(runs, times));
         let sorted = |values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<f64> = values.map(f64::abs).collect();
             values.sort_by(f64::total_cmp);
             values
         };
-        let each: Vec<Vec<f64>> = runs.iter().map(|run| sorted(&mut run.iter().copied())).collect();
+        let each: Vec<Vec<f64>> = runs.iter().map(|run| sorted(&mut run.values.iter().copied())).collect();
         let most = sorted(&mut each.iter().filter_map(|run| run.last().copied()));
-        let magnitudes = sorted(&mut runs.iter().flatten().copied());
+        let magnitudes = sorted(&mut runs.iter().flat_map(|run| &run.values).copied());
         let campaign = |probability: f64, interpretation: Interpretation| match interpretation {
             Interpretation::Temporal => {
                 each.iter().map(|run| order_statistic(run, probability)).fold(f64::NAN, f64::max)
@@ -59,30 +69,15 @@ impl CampaignBudget {
             Interpretation::Ensemble => order_statistic(&most, probability),
             Interpretation::Mixed => order_statistic(&magnitudes, probability),
         };
+        let convolved = INTERPRETATIONS.map(|interpretation| sources.as_ref().map(|of| of.distribution(interpretation)));
         let level = |probability: f64| {
-            INTERPRETATIONS.map(|interpretation| BudgetLevel {
-                campaign: campaign(probability, interpretation),
-                convolution: sources.as_ref().map(|of| of.level(probability, interpretation)),
-                rule: sources.as_ref().map(|of| of.rule(probability, interpretation)),
+            [0, 1, 2].map(|place| BudgetLevel {
+                campaign: campaign(probability, INTERPRETATIONS[place]),
+                convolution: convolved[place].as_ref().map(|of| of.level(probability)),
+                rule: sources.as_ref().map(|of| of.rule(probability, INTERPRETATIONS[place])),
             })
         };
         let levels = LEVELS.into_iter().map(level).collect();
-        Self { requirement, sources, levels, magnitudes, linear_noise: None, linear_sources: None }
+        Self { requirement, sources, levels, magnitudes, linear_noise: None, linear_sources: None, linear_levels: None }
     }
-}
-
-/// Returns the sources that runs show: a bias that is uniform over the ensemble with the root mean square of the runs' means, and
-/// a random part with the variance within the runs.
-fn shown_sources(runs: &[Vec<f64>]) -> ErrorSources {
-    let (mut means, mut within) = (0.0, 0.0);
-    for run in runs {
-        let mean = run.iter().sum::<f64>() / run.len() as f64;
-        means += mean * mean;
-        within += run.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / run.len() as f64;
-    }
-    let count = runs.len() as f64;
-    let (bias, noise) = (f64::sqrt(3.0 * means / count), f64::sqrt(within / count));
-    // The mean of a uniform relative error is 0 but for rounding.
-    let bias = if bias < ROUNDING * noise { 0.0 } else { bias };
-    ErrorSources { biases: vec![bias], amplitudes: Vec::new(), noise }
 }

@@ -1,4 +1,4 @@
-//! Distribution of a sum of an offset, uniform numbers, sines of random phase and a Gaussian number.
+//! Distribution of a mixture of sums of an offset, sines of random phase and a Gaussian number.
 
 use std::f64::consts::PI;
 
@@ -11,102 +11,111 @@ const FARTHEST: f64 = 9.0;
 /// Smallest standard deviation, relative to the largest value, with which the series is summed: a smaller one changes no level
 /// by more than a part of it.
 const SMALLEST: f64 = 1e-5;
+/// Smallest standard deviation for each sum of a mixture, relative to the largest value: it bounds the terms of all.
+const SMALLEST_SHARE: f64 = 2.5e-7;
+/// Negative exponent of a factor below the rounding of a double.
+const VANISHING: f64 = 37.0;
 
 /// Number of rotations after which phasors are computed anew, before their rounding errors grow.
 const RESTART: usize = 64;
 
-/// Sum of independent parts.
+/// Sum of independent parts, which occurs with a probability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
+    /// Probability of the sum.
+    pub weight: f64,
     /// Constant.
     pub offset: f64,
-    /// Half widths of the uniform parts.
-    pub uniform: Vec<f64>,
     /// Amplitudes of the sines.
     pub sines: Vec<f64>,
     /// Standard deviation of the Gaussian part.
     pub noise: f64,
 }
 
-impl Sum {
-    /// Returns the standard deviation of all parts but the offset.
-    pub fn deviation(&self) -> f64 {
-        let squares = |parts: &[f64]| parts.iter().map(|part| part * part).sum::<f64>();
-        f64::sqrt(squares(&self.uniform) / 3.0 + squares(&self.sines) / 2.0 + self.noise * self.noise)
-    }
+/// Mixture of sums, and the Fourier series of the density of its magnitude.
+#[derive(Clone, Debug)]
+pub struct Mixture {
+    sums: Vec<Sum>,
+    /// Half of the series' period, in which the density vanishes at the ends.
+    half: f64,
+    /// Real parts of the characteristic function.
+    coefficients: Vec<f64>,
+}
 
+impl Sum {
     /// Returns the largest magnitude; of a Gaussian part, that which is practically never exceeded.
     fn largest(&self) -> f64 {
-        let all = self.uniform.iter().chain(&self.sines).sum::<f64>();
-        self.offset.abs() + all + FARTHEST * self.noise
+        self.offset.abs() + self.sines.iter().sum::<f64>() + FARTHEST * self.noise
     }
+}
 
-    /// Returns the probability that the magnitude is at most `most`.
-    pub fn probability(&self, most: f64) -> f64 {
-        self.series().probability(self.offset, most)
+impl Mixture {
+    /// Creates a mixture of sums, whose weights add up to 1.
+    pub fn new(sums: impl Iterator<Item = Sum>) -> Self {
+        let mut all: Vec<Sum> = Vec::new();
+        for own in sums {
+            match all.last_mut() {
+                Some(last) if Sum { weight: last.weight, ..own.clone() } == *last => last.weight += own.weight,
+                _ => all.push(own),
+            }
+        }
+        let largest = all.iter().map(Sum::largest).fold(0.0, f64::max);
+        let (half, coefficients) = series(&all, largest.max(f64::MIN_POSITIVE));
+        Self { sums: all, half, coefficients }
     }
 
     /// Returns the level of the magnitude at a probability.
     pub fn level(&self, probability: f64) -> f64 {
-        let largest = self.largest();
+        let largest = self.sums.iter().map(Sum::largest).fold(0.0, f64::max);
         if largest == 0.0 || probability >= 1.0 {
             return largest;
         }
-        match (self.offset == 0.0, &self.uniform[..], &self.sines[..], self.noise > 0.0) {
-            (true, [half], [], false) => return half * probability,
-            (true, [], [amplitude], false) => return amplitude * libm::sin(0.5 * PI * probability),
-            (true, [], [], true) => return self.noise * gaussian(probability),
-            (false, [], [], false) => return self.offset.abs(),
-            _ => {}
+        if let [Sum { offset, sines, noise, .. }] = &self.sums[..] {
+            match (*offset == 0.0, &sines[..], *noise > 0.0) {
+                (true, [amplitude], false) => return amplitude * libm::sin(0.5 * PI * probability),
+                (true, [], true) => return noise * gaussian(probability),
+                (false, [], false) => return offset.abs(),
+                _ => {}
+            }
         }
-        let series = self.series();
-        bisect(probability, largest, |most| series.probability(self.offset, most))
+        bisect(probability, largest, |most| self.probability(most))
     }
 
-    /// Returns the Fourier series of the density without the offset, of a period in which it vanishes at the ends.
-    fn series(&self) -> Series {
-        let largest = self.largest().max(f64::MIN_POSITIVE);
-        let noise = self.noise.max(SMALLEST * largest);
-        // The magnitude of what is compared is at most the largest value plus the offset.
-        let half = 2.0 * (largest + FARTHEST * noise);
-        let step = PI / half;
-        // exp(-37) is below the rounding of a double.
-        let count = (f64::sqrt(2.0 * 37.0) / (noise * step)) as usize + 1;
-        let coefficient = |index: usize| {
-            let t = step * index as f64;
-            let uniform = |half: &f64| libm::sin(half * t) / (half * t);
-            let flat: f64 = self.uniform.iter().filter(|half| **half > 0.0).map(uniform).product();
-            let wave: f64 = self.sines.iter().map(|amplitude| libm::j0(amplitude * t)).product();
-            flat * wave * libm::exp(-0.5 * noise * noise * t * t)
-        };
-        Series { half, coefficients: (1..=count).map(coefficient).collect() }
-    }
-}
-
-/// Fourier series of a symmetric density.
-struct Series {
-    /// Half of the period.
-    half: f64,
-    /// Values of the characteristic function.
-    coefficients: Vec<f64>,
-}
-
-impl Series {
-    /// Returns the probability that the magnitude of the sum with an offset is at most `most`.
-    fn probability(&self, offset: f64, most: f64) -> f64 {
-        let step = PI / self.half;
-        let ends = [most - offset, -most - offset].map(|end| step * end);
+    /// Returns the probability that the magnitude is at most `most`.
+    pub fn probability(&self, most: f64) -> f64 {
+        let angle = PI / self.half * most;
         // Rotations in place of sines, of which a series has half a million.
-        let turns = ends.map(|angle| polar(1.0, angle));
+        let turn = polar(1.0, angle);
         let mut sum = 0.0;
         for (chunk, coefficients) in self.coefficients.chunks(RESTART).enumerate() {
             let first = chunk * RESTART + 1;
-            let [mut high, mut low] = ends.map(|angle| polar(1.0, angle * first as f64));
+            let mut point = polar(1.0, angle * first as f64);
             for (index, coefficient) in coefficients.iter().enumerate() {
-                sum += coefficient * (high.im - low.im) / (first + index) as f64;
-                (high, low) = (high * turns[0], low * turns[1]);
+                sum += coefficient * point.im / (first + index) as f64;
+                point *= turn;
             }
         }
-        (most / self.half + sum / PI).clamp(0.0, 1.0)
+        (most / self.half + 2.0 * sum / PI).clamp(0.0, 1.0)
     }
+}
+
+/// Returns half of the period and the coefficients of the Fourier series of sums whose magnitudes are at most `largest`.
+fn series(sums: &[Sum], largest: f64) -> (f64, Vec<f64>) {
+    let smallest = SMALLEST.max(SMALLEST_SHARE * sums.len() as f64) * largest;
+    let half = 2.0 * (largest + FARTHEST * smallest);
+    let step = PI / half;
+    let noise = |sum: &Sum| sum.noise.max(smallest);
+    let count = |noise: f64| (f64::sqrt(2.0 * VANISHING) / (noise * step)) as usize + 1;
+    let most = sums.iter().map(|sum| count(noise(sum))).max().unwrap_or(0);
+    let mut coefficients = vec![0.0; most];
+    for sum in sums {
+        let noise = noise(sum);
+        for (index, coefficient) in coefficients[..count(noise)].iter_mut().enumerate() {
+            let t = step * (index + 1) as f64;
+            let wave: f64 = sum.sines.iter().map(|amplitude| libm::j0(amplitude * t)).product();
+            let damped = sum.weight * libm::exp(-0.5 * noise * noise * t * t);
+            *coefficient += damped * wave * libm::cos(sum.offset * t);
+        }
+    }
+    (half, coefficients)
 }

@@ -1,19 +1,28 @@
-//! Noise of a pointing index, exact from the linear loop of a scenario about its target at rest.
+//! Noise of the pointing indices of a sampled error under the noise of the linear loop, exact from its covariance.
 
 use flexsc_numerics::attitude::AXES;
 
-use crate::noise::{NoisyLoop, Window, WindowVariances};
-use flexsc_scenario::{ErrorAxis, IndexWindow, SampledError, SampledQuantity, WindowConvention};
+use crate::noise::{NoisyLoop, OutputSamples, SampleSets, SampleTimes};
+use flexsc_scenario::{ErrorAxis, SampledError, SampledQuantity};
+
+/// Largest number of periods of the loop in a window.
+const MOST_PERIODS: f64 = 1e6;
+/// Largest number of states and draws, over all periods of a window whose places all count.
+const MOST_NUMBERS: f64 = 1e8;
 
 /// Returns the rms of the index of an error under the noise of the loop, of the norm if the error has several components;
-/// `None` if the loop has no such output, or for a window that it does not have.
+/// `None` if the loop has no such output, or for a window that is too long for it.
 pub fn linear_noise(noisy: &NoisyLoop, error: &SampledError) -> Option<f64> {
     let outputs: Vec<usize> = output_names(error).iter().filter_map(|name| noisy.output(name)).collect();
     if outputs.is_empty() {
         return None;
     }
-    let variances = outputs.into_iter().map(|output| index_variance(noisy, output, error));
-    Some(f64::sqrt(variances.sum::<Option<f64>>()?))
+    let mut sum = 0.0;
+    for output in outputs {
+        let each = index_variances(noisy, output, error)?;
+        sum += each.iter().sum::<f64>() / each.len() as f64;
+    }
+    Some(f64::sqrt(sum))
 }
 
 /// Returns the names that the outputs of an error may have: about each axis, and of a body with one angle.
@@ -21,8 +30,8 @@ pub(super) fn output_names(error: &SampledError) -> Vec<String> {
     let each = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(AXES);
     let chosen = each.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
     let (single, about): (&str, Vec<String>) = match &error.quantity {
-        SampledQuantity::PointingError => ("angle", chosen.map(|(_, name)| (*name).to_owned()).collect()),
-        SampledQuantity::RateError => ("rate", chosen.map(|(_, name)| format!("{name}_rate")).collect()),
+        SampledQuantity::PointingError => ("angle", chosen.map(|(_, name)| format!("{name}_error")).collect()),
+        SampledQuantity::RateError => ("rate", chosen.map(|(_, name)| format!("rigid_{name}_rate")).collect()),
         SampledQuantity::LineOfSight(line, _) => {
             let axes = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(["x", "y", "z"]);
             let own = axes.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
@@ -32,22 +41,36 @@ pub(super) fn output_names(error: &SampledError) -> Vec<String> {
     about.into_iter().chain([single.to_owned()]).collect()
 }
 
-/// Returns the variance of an index of an output; `None` for a window that the loop does not have.
-fn index_variance(noisy: &NoisyLoop, output: usize, error: &SampledError) -> Option<f64> {
-    let seconds = |samples: u64| samples as f64 * error.period.seconds();
-    let (length, separation) = match error.index {
-        IndexWindow::Absolute => return Some(noisy.mean_variances(&[output])[0].iter().sum()),
-        IndexWindow::Mean { window } | IndexWindow::Relative { window, .. } => (seconds(window), None),
-        IndexWindow::Difference { window, shift, .. } => (seconds(window), Some(seconds(shift))),
+/// Returns the times of the samples of an error, and the first sample of each set whose index may differ from that of others
+/// in a loop of a period (fs).
+pub(super) fn set_starts(error: &SampledError, period: i64) -> (SampleTimes, Vec<u64>) {
+    let times = SampleTimes { first: error.first_sample(), apart: error.period };
+    let stride = error.index.places();
+    let count = error.index.values(error.samples).div_ceil(stride);
+    let starts = times.starts(SampleSets { length: error.index.reach(), stride, count }, period);
+    (times, starts)
+}
+
+/// Returns the number of values of the index of an error after which its noise repeats, in a loop if there is one.
+pub fn noise_cycle(noisy: Option<&NoisyLoop>, error: &SampledError) -> usize {
+    let sets = noisy.map_or(1, |noisy| set_starts(error, noisy.period_ticks()).1.len());
+    sets * error.index.places() as usize
+}
+
+/// Returns the variances of an index of an output: for each set of samples that differs from others, at each place of the
+/// index; `None` for a window that is too long for the loop.
+pub(super) fn index_variances(noisy: &NoisyLoop, output: usize, error: &SampledError) -> Option<Vec<f64>> {
+    let periods = error.index.reach() as f64 * error.period.seconds() / noisy.period;
+    let is_uniform = error.index.places() > 1;
+    if periods > MOST_PERIODS || is_uniform && periods * noisy.size() as f64 > MOST_NUMBERS {
+        return None;
+    }
+    let mut samples = OutputSamples::new(noisy, output);
+    let weights = error.index.weights(0);
+    let (times, starts) = set_starts(error, noisy.period_ticks());
+    let of_set = |start: u64| {
+        let places: Vec<_> = times.places(start, error.index.reach(), noisy.period_ticks()).collect();
+        if is_uniform { samples.variances_about_mean(&places) } else { vec![samples.variance(&places, &weights)] }
     };
-    let by_source = noisy.window_variances(output, Window { length, separation }).ok()?;
-    let variance = |of: &WindowVariances| match error.index {
-        IndexWindow::Absolute => of.total,
-        IndexWindow::Mean { .. } => of.mpe,
-        IndexWindow::Relative { convention: WindowConvention::Uniform, .. } => of.rpe_uniform,
-        IndexWindow::Relative { convention: WindowConvention::End, .. } => of.rpe_end,
-        IndexWindow::Relative { convention: WindowConvention::Middle, .. } => of.rpe_middle,
-        IndexWindow::Difference { .. } => of.pde,
-    };
-    Some(by_source.iter().map(variance).sum())
+    Some(starts.into_iter().flat_map(of_set).collect())
 }

@@ -1,108 +1,183 @@
-//! Sources of a pointing index by the linear loop of a scenario: the deviation under steady disturbances, the sines under
-//! periodic ones, and noise.
+//! Sources of a pointing index by the linear loop of a scenario: the bias under steady disturbances, the sines under
+//! periodic ones, and noise, each at every place of the index and for every point of an ensemble.
 
+use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 
 use flexsc_spacecraft::axes::Axis;
+use flexsc_spacecraft::disturbance::Disturbance;
 use nalgebra::Complex;
 
-use super::ErrorSources;
-use super::linear_noise::{linear_noise, output_names};
+use super::linear_noise::{index_variances, output_names, set_starts};
+use super::{ErrorSources, SourceCombination};
 use crate::margins::frequency_response::{modulus, unit_circle};
-use crate::noise::{LineLoop, NoisyLoop};
-use flexsc_scenario::{IndexWindow, SampledError, Scenario, WindowConvention};
+use crate::noise::{LineLoop, NoisyLoop, TurningMotion};
+use flexsc_scenario::{SampledError, Scenario};
 
-/// Returns the sources of the index of one component of an error about the target at rest: the deviation under the steady
-/// torques of all disturbances together, the amplitude under each of their sines and under the periodic torque of the body, and the rms of the noise. `None` if the
-/// loop has no such output or is not linear. Pulses, forces and the imbalance of wheels are left out.
-pub fn linear_sources(scenario: &Scenario, noisy: &NoisyLoop, error: &SampledError) -> Option<ErrorSources> {
-    let noise = linear_noise(noisy, error)?;
-    let lines = LineLoop::from_scenario(scenario).ok()?;
-    let outputs: Vec<usize> = output_names(error).iter().filter_map(|name| noisy.output(name)).collect();
-    let &[output] = &outputs[..] else { return None };
-    // Deviation, or amplitude, under torques amplitude sin(w t + phase) together.
-    let amplitude = |frequency: f64, torques: &[(usize, f64, f64)]| -> Option<f64> {
-        let found = lines.lines(frequency, &[lines.torques(torques)], &[output]).ok()?;
-        Some(window_factor(error, frequency) * found.first()?.first()?.direct.amplitude)
+/// Value of an index, relative to its largest sample, that is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// Torque amplitude sin(w t + phase) about an axis of the body (N m, rad).
+type AxisSine = (usize, f64, f64);
+
+/// Linear loop of a scenario under its noise and its disturbances.
+pub struct DisturbedLoop<'a> {
+    noisy: NoisyLoop,
+    lines: LineLoop<'a>,
+}
+
+/// Index of one component of an error in a linear loop.
+struct DisturbedIndex<'a> {
+    within: &'a DisturbedLoop<'a>,
+    error: &'a SampledError,
+    output: usize,
+    /// Variance under the noise at each place of each set of samples.
+    variances: Vec<f64>,
+    /// Index at each place under a torque cos w t of 1 N m, by the frequency w and the axis.
+    responses: BTreeMap<(u64, usize), Vec<Complex<f64>>>,
+}
+
+impl<'a> DisturbedLoop<'a> {
+    /// Returns the loop of a scenario; `None` if it is not linear, or not stable.
+    pub fn from_scenario(scenario: &'a Scenario) -> Option<Self> {
+        let noisy = NoisyLoop::from_scenario(scenario).ok()?;
+        Some(Self { noisy, lines: LineLoop::from_scenario(scenario).ok()? })
+    }
+
+    /// Returns the loop under its noise.
+    pub fn noisy(&self) -> &NoisyLoop {
+        &self.noisy
+    }
+
+    fn index(&'a self, error: &'a SampledError) -> Option<DisturbedIndex<'a>> {
+        let names = output_names(error);
+        let outputs: Vec<usize> = names.iter().filter_map(|name| self.noisy.output(name)).collect();
+        let &[output] = &outputs[..] else { return None };
+        let variances = index_variances(&self.noisy, output, error)?;
+        Some(DisturbedIndex { within: self, error, output, variances, responses: BTreeMap::new() })
+    }
+}
+
+/// Returns the sources of the indices of some components of errors about the target at rest: the bias under the steady
+/// torques of all disturbances together, the amplitude under each of their sines and under the periodic torque of the body,
+/// and the rms of the noise. `points` are the equally likely scenarios of an ensemble, whose loop is that of the `nominal`
+/// one if they share it. `None` for an index that the loop of a point does not have. Pulses, forces and the imbalance of wheels are left out.
+pub fn linear_sources(
+    nominal: &DisturbedLoop<'_>,
+    points: &[Scenario],
+    share_loop: bool,
+    errors: &[&SampledError],
+) -> Vec<Option<ErrorSources>> {
+    let mut found: Vec<Option<Vec<SourceCombination>>> = vec![Some(Vec::new()); errors.len()];
+    let mut add = |indices: &mut [Option<DisturbedIndex<'_>>], scenario: &Scenario| {
+        for (sum, index) in found.iter_mut().zip(indices) {
+            let own = index.as_mut().and_then(|index| index.combinations(scenario));
+            *sum = sum.take().zip(own).map(|(sum, own)| [sum, own].concat());
+        }
     };
+    if share_loop {
+        let mut indices: Vec<_> = errors.iter().map(|error| nominal.index(error)).collect();
+        points.iter().for_each(|scenario| add(&mut indices, scenario));
+    } else {
+        for scenario in points {
+            let Some(own) = DisturbedLoop::from_scenario(scenario) else { return vec![None; errors.len()] };
+            let mut indices: Vec<_> = errors.iter().map(|error| own.index(error)).collect();
+            add(&mut indices, scenario);
+        }
+    }
+    found.into_iter().map(|all| all.map(ErrorSources::new)).collect()
+}
+
+/// Returns the torques among a scenario's disturbances, each with the index of its axis, without pulses.
+fn torques(scenario: &Scenario) -> impl Iterator<Item = (usize, &Disturbance)> {
     let torques = scenario.disturbance.iter().filter(|own| own.force.is_none() && own.pulse.is_none());
-    let axis = |about: Option<Axis>| about.map_or(0, Axis::index);
+    torques.map(|own| (own.about.map_or(0, Axis::index), own))
+}
+
+/// Returns the steady torques on a scenario's body.
+fn steady_torques(scenario: &Scenario) -> Vec<AxisSine> {
     let own = scenario.model.three_axis().and_then(|body| body.disturbance);
-    let mut steady: Vec<(usize, f64, f64)> =
-        torques.clone().map(|own| (axis(own.about), own.torque.get(), FRAC_PI_2)).collect();
-    steady.extend(own.iter().flat_map(|own| (0..3).map(|axis| (axis, own.constant[axis], FRAC_PI_2))));
-    let mut biases = Vec::new();
-    if steady.iter().any(|(_, torque, _)| *torque != 0.0) {
-        biases.push(amplitude(0.0, &steady)?);
-    }
-    let mut amplitudes = Vec::new();
-    for disturbance in torques {
-        for sine in &disturbance.sines {
-            let torque = (axis(disturbance.about), sine.amplitude.get(), 0.0);
-            amplitudes.push(amplitude(sine.frequency.get(), &[torque])?);
-        }
-    }
-    if let Some(own) = own.filter(|own| own.amplitude.norm() > 0.0) {
-        let torques = [0, 1, 2].map(|axis| (axis, own.amplitude[axis], own.phase[axis]));
-        amplitudes.push(amplitude(own.frequency(), &torques)?);
-    }
-    Some(ErrorSources { biases, amplitudes, noise })
+    let constant = own.into_iter().flat_map(|own| (0..3).map(move |axis| (axis, own.constant[axis])));
+    let all = torques(scenario).map(|(axis, own)| (axis, own.torque.get())).chain(constant);
+    all.map(|(axis, torque)| (axis, torque, FRAC_PI_2)).collect()
 }
 
-/// Returns the factor of an index on the amplitude of a sine of a frequency (rad/s); of a uniform relative error, that on its
-/// rms.
-fn window_factor(error: &SampledError, frequency: f64) -> f64 {
-    let length = |samples: u64| samples as f64 * error.period.seconds();
-    // Mean of exp(j w t) over a window about its middle.
-    let mean = |samples: u64| {
-        let half = 0.5 * frequency * length(samples);
-        if half.abs() < 1e-8 { 1.0 } else { libm::sin(half) / half }
+/// Returns the sines of the torques on a scenario's body, those of one frequency (rad/s) together.
+fn sine_torques(scenario: &Scenario) -> Vec<(f64, Vec<AxisSine>)> {
+    let mut all: Vec<(f64, Vec<AxisSine>)> = Vec::new();
+    let mut add = |frequency: f64, torque: AxisSine| match all.iter_mut().find(|own| own.0 == frequency) {
+        Some((_, torques)) => torques.push(torque),
+        None => all.push((frequency, vec![torque])),
     };
-    match error.index {
-        IndexWindow::Absolute => 1.0,
-        IndexWindow::Mean { window } => mean(window).abs(),
-        IndexWindow::Relative { window, convention } => match convention {
-            WindowConvention::Uniform => f64::sqrt((1.0 - mean(window) * mean(window)).max(0.0)),
-            WindowConvention::Middle => (1.0 - mean(window)).abs(),
-            WindowConvention::End => {
-                let late = unit_circle(-0.5 * frequency * length(window)) * mean(window);
-                modulus(Complex::new(1.0, 0.0) - late)
-            }
-        },
-        IndexWindow::Difference { window, shift, .. } => {
-            let apart = Complex::new(1.0, 0.0) - unit_circle(frequency * length(shift));
-            mean(window).abs() * modulus(apart)
+    for (axis, disturbance) in torques(scenario) {
+        for sine in &disturbance.sines {
+            add(sine.frequency.get(), (axis, sine.amplitude.get(), sine.phase.get()));
         }
     }
+    let own = scenario.model.three_axis().and_then(|body| body.disturbance);
+    if let Some(own) = own.filter(|own| own.amplitude.norm() > 0.0) {
+        (0..3).for_each(|axis| add(own.frequency(), (axis, own.amplitude[axis], own.phase[axis])));
+    }
+    all
 }
 
-#[cfg(test)]
-mod tests {
-    use flexsc_numerics::time::{Instant, Span};
+/// Returns the frequencies (rad/s) of the sines of the torques on a scenario's body.
+pub fn sine_frequencies(scenario: &Scenario) -> Vec<f64> {
+    sine_torques(scenario).into_iter().map(|(frequency, _)| frequency).collect()
+}
 
-    use super::*;
-    use flexsc_scenario::SampledQuantity;
-
-    /// Amplitude 1, w = 2 rad/s, T = 10 s, S = 60 s: rms of MPE, uniform RPE and PDE, by spectrum and by quadrature in time.
-    #[test]
-    fn a_sine_in_windows() {
-        let error = |index: IndexWindow| SampledError {
-            quantity: SampledQuantity::PointingError,
-            axis: None,
-            index,
-            period: Span::from_seconds(0.1),
-            from: Instant::START,
-            to: Instant::START,
-            samples: 1,
+impl DisturbedIndex<'_> {
+    /// Returns the sources at each place of each set of samples under the disturbances of a scenario with this loop.
+    fn combinations(&mut self, scenario: &Scenario) -> Option<Vec<SourceCombination>> {
+        let bias = self.values(0.0, &steady_torques(scenario))?;
+        let sines = sine_torques(scenario);
+        let sines = sines.iter().map(|(frequency, torques)| self.values(*frequency, torques));
+        let sines = sines.collect::<Option<Vec<_>>>()?;
+        let combination = |(place, variance): (usize, &f64)| SourceCombination {
+            weight: 1.0,
+            bias: bias[place].re,
+            amplitudes: sines.iter().map(|sine| modulus(sine[place])).collect(),
+            noise: f64::sqrt(*variance),
         };
-        let rms = |index: IndexWindow| window_factor(&error(index), 2.0) / std::f64::consts::SQRT_2;
-        let relative = |convention| IndexWindow::Relative { window: 100, convention };
-        for (found, expected) in [
-            (rms(IndexWindow::Absolute), std::f64::consts::FRAC_1_SQRT_2),
-            (rms(IndexWindow::Mean { window: 100 }), 0.038_468_101_661_9),
-            (rms(relative(WindowConvention::Uniform)), 0.706_059_632_86),
-        ] {
-            assert!((found / expected - 1.0).abs() < 1e-10, "{found} {expected}");
+        Some(self.variances.iter().enumerate().map(combination).collect())
+    }
+
+    /// Returns the complex values of the index at each place under torques of one frequency (rad/s) together.
+    fn values(&mut self, frequency: f64, torques: &[AxisSine]) -> Option<Vec<Complex<f64>>> {
+        let mut sum = vec![Complex::ZERO; self.variances.len()];
+        for (axis, amplitude, phase) in torques.iter().filter(|(_, amplitude, _)| *amplitude != 0.0) {
+            // sin(w t + phase) is the real part of -j exp(j phase) exp(j w t).
+            let factor = unit_circle(phase - FRAC_PI_2) * *amplitude;
+            let key = (frequency.to_bits(), *axis);
+            if !self.responses.contains_key(&key) {
+                let load = self.within.lines.torque(*axis);
+                let motion = self.within.lines.motion(frequency, &load).ok()?;
+                self.responses.insert(key, self.response(&motion));
+            }
+            for (sum, value) in sum.iter_mut().zip(&self.responses[&key]) {
+                *sum += value * factor;
+            }
         }
+        Some(sum)
+    }
+
+    /// Returns the complex values of the index at each place under the load of a motion.
+    fn response(&self, motion: &TurningMotion) -> Vec<Complex<f64>> {
+        let (times, starts) = set_starts(self.error, self.within.noisy.period_ticks());
+        let (index, length) = (self.error.index, self.error.index.reach());
+        let weights = index.weights(0);
+        let of_set = |start: u64| {
+            let places = times.places(start, length, motion.period);
+            let values = motion.values(self.output, places);
+            let rounding = ROUNDING * values.iter().map(|value| modulus(*value)).fold(0.0, f64::max);
+            let exact = |value: Complex<f64>| if modulus(value) > rounding { value } else { Complex::ZERO };
+            if index.places() == 1 {
+                let sum: Complex<f64> = values.iter().zip(&weights).map(|(value, weight)| value * *weight).sum();
+                return vec![exact(sum)];
+            }
+            let mean = values.iter().sum::<Complex<f64>>() / values.len() as f64;
+            values.into_iter().map(|value| exact(value - mean)).collect()
+        };
+        starts.into_iter().flat_map(of_set).collect()
     }
 }

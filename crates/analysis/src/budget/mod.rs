@@ -1,69 +1,124 @@
-//! Pointing budget: levels of an error that is the sum of constant, harmonic and random parts, by convolution of their
+//! Pointing budget: levels of an error that is the sum of a bias, sines and a random part, by convolution of their
 //! distributions, and by the rule of k sigma.
 //!
-//! Constant parts (biases) are uniform over the ensemble of runs, harmonic parts have a random phase in time, and random parts
-//! are Gaussian. The three interpretations of a level (ECSS-E-ST-60-10C) differ in what is taken at its worst: the
-//! biases (temporal), the harmonics (ensemble), or nothing (mixed).
+//! A bias is constant in a run and may differ from run to run, sines have a random phase in time, and random parts are
+//! Gaussian. The three interpretations of a level (ECSS-E-ST-60-10C) differ in what is taken at its worst: the
+//! bias (temporal), the sines (ensemble), or nothing (mixed).
 
 mod campaign_budget;
 mod convolution;
 mod linear_noise;
 mod linear_sources;
+mod shown_sources;
 
 use flexsc_scenario::Interpretation;
 
 pub use campaign_budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS};
-pub use convolution::Sum;
-pub use linear_noise::linear_noise;
-pub use linear_sources::linear_sources;
+pub use convolution::{Mixture, Sum};
+pub use linear_noise::{linear_noise, noise_cycle};
+pub use linear_sources::{DisturbedLoop, linear_sources, sine_frequencies};
+pub use shown_sources::IndexRun;
 
 /// Levels at which a budget is stated: those of one, two and three standard deviations of a Gaussian number.
 pub const LEVELS: [f64; 3] = [0.683, 0.955, 0.997];
 
-/// Parts of an error about one axis.
+/// Sources of an error about one axis: the combinations in which they occur, over the ensemble of runs and over the places of
+/// an index in its window.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ErrorSources {
-    /// Largest values of the biases, each uniform between plus and minus this value over the ensemble.
-    pub biases: Vec<f64>,
-    /// Amplitudes of the harmonic parts.
+    /// Combinations, whose weights add up to 1.
+    pub combinations: Vec<SourceCombination>,
+}
+
+/// Sources that act together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SourceCombination {
+    /// Probability of the combination.
+    pub weight: f64,
+    /// Bias, with its sign.
+    pub bias: f64,
+    /// Amplitudes of the sines.
     pub amplitudes: Vec<f64>,
     /// Standard deviation of the random part.
     pub noise: f64,
 }
 
 impl ErrorSources {
-    /// Returns the level of the error's magnitude at a probability, by convolution.
-    pub fn level(&self, probability: f64, interpretation: Interpretation) -> f64 {
-        self.sum(interpretation).level(probability)
+    /// Creates the sources from combinations, whose weights are relative.
+    pub fn new(mut combinations: Vec<SourceCombination>) -> Self {
+        let total: f64 = combinations.iter().map(|own| own.weight).sum();
+        combinations.iter_mut().for_each(|own| own.weight /= total);
+        Self { combinations }
     }
 
-    /// Returns the probability that the error's magnitude is at most `most`.
-    pub fn probability(&self, most: f64, interpretation: Interpretation) -> f64 {
-        self.sum(interpretation).probability(most)
+    fn mean(&self, value: impl Fn(&SourceCombination) -> f64) -> f64 {
+        self.combinations.iter().map(|own| own.weight * value(own)).sum()
+    }
+
+    /// Returns the mean of the bias over the ensemble.
+    pub fn bias(&self) -> f64 {
+        self.mean(|own| own.bias)
+    }
+
+    /// Returns the standard deviation of the bias over the ensemble.
+    pub fn bias_spread(&self) -> f64 {
+        let mean = self.bias();
+        f64::sqrt(self.mean(|own| (own.bias - mean) * (own.bias - mean)))
+    }
+
+    /// Returns the largest magnitude of the bias in the ensemble.
+    pub fn largest_bias(&self) -> f64 {
+        self.combinations.iter().map(|own| own.bias.abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns the root mean square amplitude of each sine.
+    pub fn amplitudes(&self) -> Vec<f64> {
+        let count = self.combinations.iter().map(|own| own.amplitudes.len()).max().unwrap_or(0);
+        let square = |own: &SourceCombination, sine: usize| {
+            own.amplitudes.get(sine).map_or(0.0, |amplitude| amplitude * amplitude)
+        };
+        (0..count).map(|sine| f64::sqrt(self.mean(|own| square(own, sine)))).collect()
+    }
+
+    /// Returns the root mean square of the random part.
+    pub fn noise(&self) -> f64 {
+        f64::sqrt(self.mean(|own| own.noise * own.noise))
+    }
+
+    /// Returns the distribution of the error, by convolution.
+    pub fn distribution(&self, interpretation: Interpretation) -> Mixture {
+        let (largest, side) = (self.largest_bias(), if self.bias() < 0.0 { -1.0 } else { 1.0 });
+        let sum = |own: &SourceCombination| {
+            let crests = own.amplitudes.iter().sum::<f64>();
+            let (offset, sines) = match interpretation {
+                Interpretation::Mixed => (own.bias, own.amplitudes.clone()),
+                Interpretation::Temporal => (largest, own.amplitudes.clone()),
+                Interpretation::Ensemble => (own.bias + side * crests, Vec::new()),
+            };
+            Sum { weight: own.weight, offset, sines, noise: own.noise }
+        };
+        Mixture::new(self.combinations.iter().map(sum))
+    }
+
+    /// Returns the mixed levels of the error's magnitude at [`LEVELS`], by convolution.
+    pub fn mixed_levels(&self) -> [f64; 3] {
+        let distribution = self.distribution(Interpretation::Mixed);
+        LEVELS.map(|level| distribution.level(level))
     }
 
     /// Returns the level of the error's magnitude by the rule of k sigma: the parts that are taken at their worst, and k
     /// times the root sum of the other variances. k is 1, 2 or 3 for the [`LEVELS`], else the Gaussian quantile of
     /// the probability.
     pub fn rule(&self, probability: f64, interpretation: Interpretation) -> f64 {
-        let sum = self.sum(interpretation);
-        sum.offset + sigmas(probability) * sum.deviation()
-    }
-
-    fn sum(&self, interpretation: Interpretation) -> Sum {
-        let total = |parts: &[f64]| parts.iter().sum::<f64>();
-        let (biases, amplitudes) = (self.biases.clone(), self.amplitudes.clone());
-        match interpretation {
-            Interpretation::Mixed => {
-                Sum { offset: 0.0, uniform: biases, sines: amplitudes, noise: self.noise }
-            }
-            Interpretation::Temporal => {
-                Sum { offset: total(&biases), uniform: Vec::new(), sines: amplitudes, noise: self.noise }
-            }
-            Interpretation::Ensemble => {
-                Sum { offset: total(&amplitudes), uniform: biases, sines: Vec::new(), noise: self.noise }
-            }
-        }
+        let (bias, spread, noise) = (self.bias().abs(), self.bias_spread(), self.noise());
+        let amplitudes = self.amplitudes();
+        let waves = amplitudes.iter().map(|amplitude| 0.5 * amplitude * amplitude).sum::<f64>();
+        let (worst, variance) = match interpretation {
+            Interpretation::Mixed => (bias, spread * spread + waves),
+            Interpretation::Temporal => (self.largest_bias(), waves),
+            Interpretation::Ensemble => (bias + amplitudes.iter().sum::<f64>(), spread * spread),
+        };
+        worst + sigmas(probability) * f64::sqrt(variance + noise * noise)
     }
 }
 

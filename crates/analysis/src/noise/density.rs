@@ -38,7 +38,7 @@ impl NoisyLoop {
     /// Computes the densities of outputs at frequencies (Hz) up to the Nyquist frequency.
     pub fn densities(&self, outputs: &[usize], frequencies: &[f64]) -> Vec<OutputDensity> {
         let (order, step) = (self.a.nrows(), self.sample_period());
-        let at = |sample: usize| self.motion.rows_at_start(outputs, self.step * sample as i64);
+        let at = |sample: usize| self.motion.rows_at_ticks(outputs, self.step * sample as i64);
         let rows: Vec<DMatrix<f64>> = (0..self.samples).map(at).collect();
         // The transposed system has a right-hand side for each output instead of one for each draw.
         let transposed = TransferMatrices {

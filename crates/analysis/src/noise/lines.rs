@@ -4,15 +4,18 @@
 //! length P. An output therefore has lines at w + 2 pi n/P for every n. Those below the Nyquist frequency of the law may
 //! excite a mode.
 
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use flexsc_formats::document::ConfigError;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 use serde::Serialize;
 
-use super::motion::OutputRow;
+use super::motion::{Motion, OutputRow};
 use super::output::outputs;
 use super::period_rows::{PeriodRows, Piece};
+use super::sample_times::SamplePlace;
 use super::schedule::PeriodTimes;
 use crate::margins::frequency_response::{modulus, unit_circle};
 use crate::open_loop::attitude_rows::seconds;
@@ -114,30 +117,10 @@ impl<'a> LineLoop<'a> {
         let end = driven.body.a.nrows();
         let period_rows = PeriodRows::driven(&driven, &[], &oscillators)?;
         let kept = &period_rows.kept;
-        let within: Vec<usize> =
-            (0..kept.len()).filter(|place| !(order..end).contains(&kept[*place])).collect();
-        let turn = unit_circle(frequency * seconds(period_rows.period));
         let a = period_rows.a.map(|entry| Complex::new(entry, 0.0));
-        let own = -a.select_rows(&within).select_columns(&within);
-        let factors = (own + DMatrix::from_diagonal_element(within.len(), within.len(), turn)).lu();
+        let states = loop_states(&period_rows, &oscillators, order..end, frequency)?;
         let mut found = Vec::with_capacity(loads.len());
-        for load in 0..loads.len() {
-            // cos w t and sin w t are the real parts of exp(j w t) and -j exp(j w t).
-            let mut state = DVector::<Complex<f64>>::zeros(kept.len());
-            for (place, index) in kept.iter().enumerate() {
-                if *index == order + 2 * load {
-                    state[place] = Complex::new(1.0, 0.0);
-                } else if *index == order + 2 * load + 1 {
-                    state[place] = Complex::new(0.0, -1.0);
-                }
-            }
-            let forced = &a * &state;
-            let forced = DVector::from_fn(within.len(), |row, _| forced[within[row]]);
-            let Some(loop_state) = factors.solve(&forced) else {
-                let why = format!("has an undamped motion at {frequency} rad/s, the frequency of a load");
-                return Err(ConfigError::new("body", why));
-            };
-            within.iter().zip(&loop_state).for_each(|(place, value)| state[*place] = *value);
+        for state in states {
             let after = &a * &state;
             // A meter that no load reaches is not kept.
             let metered = |index: usize| {
@@ -159,6 +142,24 @@ impl<'a> LineLoop<'a> {
             found.push(lines.collect());
         }
         Ok(found)
+    }
+
+    /// Returns the periodic motion of the loop under a load of a frequency (rad/s).
+    ///
+    /// # Errors
+    /// See [`Self::lines`].
+    pub fn motion(&self, frequency: f64, load: &SineLoad) -> Result<TurningMotion, ConfigError> {
+        let order = self.parts.body.a.nrows();
+        let driven = self.driven(frequency, std::slice::from_ref(load));
+        let period_rows = PeriodRows::driven(&driven, &[], &[order, order + 1])?;
+        let state = loop_states(&period_rows, &[order, order + 1], order..order + 2, frequency)?.remove(0);
+        let whole = |row: &OutputRow| match row {
+            OutputRow::Body(row) => OutputRow::Body(row.clone().resize_horizontally(order + 2, 0.0)),
+            command @ OutputRow::Command(_) => command.clone(),
+        };
+        let rows = self.rows.iter().map(whole).collect();
+        let motion = Motion::new((&driven.body.a, &driven.body.b), period_rows.pieces, rows);
+        Ok(TurningMotion { motion, state, period: period_rows.period, frequency })
     }
 
     /// Returns the frequencies of the lines below the Nyquist frequency of the law, and last that of the load.
@@ -185,6 +186,34 @@ impl<'a> LineLoop<'a> {
             (body.a[(place, place + 1)], body.a[(place + 1, place)]) = (-frequency, frequency);
         }
         parts
+    }
+}
+
+/// Motion of a loop under a load that turns: from period to period it is multiplied by exp(j w P).
+pub struct TurningMotion {
+    motion: Motion,
+    /// States at the start of a period, as complex amplitudes.
+    state: DVector<Complex<f64>>,
+    /// Length of the period (fs).
+    pub period: i64,
+    /// Frequency of the load (rad/s).
+    frequency: f64,
+}
+
+impl TurningMotion {
+    /// Returns the complex values of an output at samples, whose real parts are its values under cosine cos w t + sine sin w t
+    /// but for the phase at the start of the samples' first period.
+    pub fn values(&self, output: usize, places: impl IntoIterator<Item = SamplePlace>) -> Vec<Complex<f64>> {
+        let mut known: BTreeMap<i64, Complex<f64>> = BTreeMap::new();
+        let turn = self.frequency * seconds(self.period);
+        let value = |place: SamplePlace| {
+            let own = *known.entry(place.time).or_insert_with(|| {
+                let row = self.motion.rows_at_ticks(&[output], place.time);
+                row.row(0).iter().zip(&self.state).map(|(entry, state)| state * *entry).sum()
+            });
+            own * unit_circle(turn * place.period as f64)
+        };
+        places.into_iter().map(value).collect()
     }
 }
 
@@ -231,6 +260,42 @@ impl LineFrequencies {
         };
         pieces.iter().map(part).sum()
     }
+}
+
+/// Returns the states at the start of a period, as complex amplitudes, of a loop that two oscillators drive for each load:
+/// `oscillators` and all indices in `outside` are no states of the loop itself.
+fn loop_states(
+    period_rows: &PeriodRows,
+    oscillators: &[usize],
+    outside: Range<usize>,
+    frequency: f64,
+) -> Result<Vec<DVector<Complex<f64>>>, ConfigError> {
+    let kept = &period_rows.kept;
+    let within: Vec<usize> = (0..kept.len()).filter(|place| !outside.contains(&kept[*place])).collect();
+    let turn = unit_circle(frequency * seconds(period_rows.period));
+    let a = period_rows.a.map(|entry| Complex::new(entry, 0.0));
+    let own = -a.select_rows(&within).select_columns(&within);
+    let factors = (own + DMatrix::from_diagonal_element(within.len(), within.len(), turn)).lu();
+    let state_under = |pair: &[usize]| {
+        // cos w t and sin w t are the real parts of exp(j w t) and -j exp(j w t).
+        let mut state = DVector::<Complex<f64>>::zeros(kept.len());
+        for (place, index) in kept.iter().enumerate() {
+            if *index == pair[0] {
+                state[place] = Complex::new(1.0, 0.0);
+            } else if *index == pair[1] {
+                state[place] = Complex::new(0.0, -1.0);
+            }
+        }
+        let forced = &a * &state;
+        let forced = DVector::from_fn(within.len(), |row, _| forced[within[row]]);
+        let Some(loop_state) = factors.solve(&forced) else {
+            let why = format!("has an undamped motion at {frequency} rad/s, the frequency of a load");
+            return Err(ConfigError::new("body", why));
+        };
+        within.iter().zip(&loop_state).for_each(|(place, value)| state[*place] = *value);
+        Ok(state)
+    };
+    oscillators.chunks(2).map(state_under).collect()
 }
 
 /// Adds states without effect to a body, up to a number of states.

@@ -8,7 +8,8 @@
 //! - the power spectral density at the samples: [`NoisyLoop::densities`], and [`cumulative_rms`];
 //! - the autocovariance, and the expectation of Welch's estimate of the density: [`NoisyLoop::autocovariance`],
 //!   [`NoisyLoop::welch_expectation`];
-//! - pointing indices over windows: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities.
+//! - the variance of a weighted sum of samples, as a pointing index is: [`OutputSamples`];
+//! - pointing indices over windows in continuous time: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities.
 //!
 //! [`LineLoop`] has the lines of the loop under loads that turn, [`WheelImbalance`] those of wheels over their speed.
 //! [`NoiseReport`] has all of them for some outputs.
@@ -22,15 +23,19 @@ mod noisy_loop;
 mod output;
 mod period_rows;
 mod report;
+mod sample_times;
 mod schedule;
 mod source;
+mod weighted_samples;
 mod welch;
 mod windows;
 
 pub use density::{OutputDensity, cumulative_rms};
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
-pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine};
+pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use report::{NoiseReport, NoiseRequest, OutputNoise, WindowRms};
+pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
+pub use weighted_samples::OutputSamples;
 pub use welch::NarrowestPeak;
 pub use windows::{Window, WindowVariances, WindowWeights};

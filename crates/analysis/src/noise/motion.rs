@@ -47,14 +47,14 @@ impl Motion {
         Self { a: a.clone(), b: b.clone(), pieces, outputs, fastest }
     }
 
-    /// Returns the rows of outputs at a time (fs) at which a piece begins.
-    pub fn rows_at_start(&self, outputs: &[usize], time: i64) -> DMatrix<f64> {
+    /// Returns the rows of outputs at a time within the period (fs).
+    pub fn rows_at_ticks(&self, outputs: &[usize], time: i64) -> DMatrix<f64> {
         let place = self.pieces.partition_point(|piece| piece.from <= time);
         let piece = &self.pieces[place.max(1) - 1];
         self.rows(outputs, piece, &held(&self.a, &self.b, seconds(time - piece.from)))
     }
 
-    /// Returns the rows of outputs at a time within the period (s).
+    /// Returns the rows of outputs at a time within the period (s), which need not be a whole number of femtoseconds.
     pub fn rows_at(&self, outputs: &[usize], time: f64) -> DMatrix<f64> {
         let place = self.pieces.partition_point(|piece| seconds(piece.from) <= time);
         let piece = &self.pieces[place.max(1) - 1];

@@ -139,13 +139,32 @@ impl NoisyLoop {
         self.outputs.iter().position(|output| output.name == name)
     }
 
+    /// Returns the length of the period (fs).
+    pub(crate) fn period_ticks(&self) -> i64 {
+        self.step * self.samples as i64
+    }
+
+    /// Returns the number of states and of draws in a period.
+    pub(crate) fn size(&self) -> usize {
+        self.a.nrows() + self.drawn_by.len()
+    }
+
     /// Returns the indices of the outputs that a user looks at first: measured angles, and lines of sight.
     pub fn first_outputs(&self) -> Vec<usize> {
-        let is_first = |signal: &Signal| {
-            ["angle", "roll", "pitch", "yaw"].contains(&signal.name.as_str())
-                || signal.name.starts_with("line_of_sight")
+        self.named_or_sights(&["angle", "roll", "pitch", "yaw"])
+    }
+
+    /// Returns the indices of the outputs that a user compares with a log first: the angle or the pointing error about
+    /// each axis, and lines of sight.
+    pub fn compared_outputs(&self) -> Vec<usize> {
+        self.named_or_sights(&["angle", "roll_error", "pitch_error", "yaw_error"])
+    }
+
+    fn named_or_sights(&self, names: &[&str]) -> Vec<usize> {
+        let is_chosen = |signal: &Signal| {
+            names.contains(&signal.name.as_str()) || signal.name.starts_with("line_of_sight")
         };
-        (0..self.outputs.len()).filter(|index| is_first(&self.outputs[*index])).collect()
+        (0..self.outputs.len()).filter(|index| is_chosen(&self.outputs[*index])).collect()
     }
 
     /// Returns the time between samples of the law (s).
@@ -162,7 +181,7 @@ impl NoisyLoop {
     pub fn sample_variances(&self, outputs: &[usize]) -> Vec<Vec<f64>> {
         let mut sums = vec![vec![0.0; self.sources.len()]; outputs.len()];
         for sample in 0..self.samples {
-            let rows = self.motion.rows_at_start(outputs, self.step * sample as i64);
+            let rows = self.motion.rows_at_ticks(outputs, self.step * sample as i64);
             self.add_variances(&mut sums, &rows, 1.0 / self.samples as f64);
         }
         sums
@@ -183,7 +202,7 @@ impl NoisyLoop {
         let (count, order) = (self.samples, self.a.nrows());
         let covariance: DMatrix<f64> =
             self.covariances.iter().fold(DMatrix::zeros(order, order), |sum, own| sum + own);
-        let at = |sample: usize| self.motion.rows_at_start(&[output], self.step * sample as i64);
+        let at = |sample: usize| self.motion.rows_at_ticks(&[output], self.step * sample as i64);
         let rows: Vec<DMatrix<f64>> = (0..count).map(at).collect();
         let mut found = vec![0.0; lags + 1];
         for first in 0..count {

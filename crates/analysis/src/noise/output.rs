@@ -1,4 +1,4 @@
-//! Outputs of a loop: angles, rates, coordinates of the body, lines of sight, and commands.
+//! Outputs of a loop: angles, rates, pointing errors, coordinates of the body, lines of sight, and commands.
 
 use flexsc_numerics::attitude::{AXES, Vector};
 use nalgebra::RowDVector;
@@ -19,9 +19,24 @@ pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
     all.extend(
         parts.signals().into_iter().enumerate().map(|(axis, signal)| (signal, OutputRow::Command(axis))),
     );
+    all.extend(error_rows(parts.scenario, order));
     all.extend(line_of_sight_rows(parts.scenario, order));
     all.extend((measured..model.outputs.len()).map(|place| (model.outputs[place].clone(), row(place))));
     all.into_iter().unzip()
+}
+
+/// Returns the pointing error about each of three axes: the rotation of the hub, or, where the modes do not act back on
+/// the rotation, that of the mean axes.
+fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
+    let Some(body) = scenario.model.three_axis() else { return Vec::new() };
+    let hub = body.coupling.as_ref().map_or(&[][..], |coupling| &coupling.rotations);
+    let row = |(axis, name): (usize, &&str)| {
+        let mut row = RowDVector::zeros(order);
+        row[axis] = 1.0;
+        hub.iter().enumerate().for_each(|(mode, rotation)| row[6 + 2 * mode] = rotation[axis]);
+        (Signal { name: format!("{name}_error"), unit: "rad".to_owned() }, OutputRow::Body(row))
+    };
+    AXES.iter().enumerate().map(row).collect()
 }
 
 /// Returns the error of each line of sight about the axes of the body: the rotation of its point perpendicular to it.

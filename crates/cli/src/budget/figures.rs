@@ -19,7 +19,8 @@ pub fn named(scenario: &str, budget: &CampaignBudget) -> Named {
     });
     let mut layers = vec![Layer::new("runs", colour::BLUE, LayerShape::Line(1.6), shown.collect())];
     if let Some(sources) = &budget.sources {
-        let convolved = points().map(|most| (most, 100.0 * sources.probability(most, Interpretation::Mixed)));
+        let distribution = sources.distribution(Interpretation::Mixed);
+        let convolved = points().map(|most| (most, 100.0 * distribution.probability(most)));
         layers.push(Layer::new("convolved", colour::ORANGE, LayerShape::Dashes, convolved.collect()));
     }
     let limit = vec![(requirement.limit, 0.0), (requirement.limit, 100.0)];

@@ -1,6 +1,7 @@
 //! `flexsc budget`: levels of the pointing indices that a scenario's requirements limit, by a campaign, by convolution and by
 //! the rule of k sigma.
 
+mod ensemble;
 mod figures;
 
 use std::collections::BTreeMap;
@@ -8,17 +9,18 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use flexsc_core::analysis::budget::{
-    CampaignBudget, ErrorSources, INTERPRETATIONS, LEVELS, linear_noise, linear_sources,
+    CampaignBudget, DisturbedLoop, ErrorSources, INTERPRETATIONS, IndexRun, LEVELS, linear_noise,
+    linear_sources, noise_cycle, sine_frequencies,
 };
-use flexsc_core::analysis::noise::NoisyLoop;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::IndexRecord;
 use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
-use flexsc_core::scenario::{Interpretation, RequirementSource, Scenario};
+use flexsc_core::scenario::{AssessedRequirement, RequirementSource, SampledError, Scenario};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use self::ensemble::Ensemble;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, columns, digits};
@@ -141,7 +143,10 @@ impl CampaignSetup {
             move |run: &flexsc_core::campaign::CampaignRun| {
                 let mut record = IndexRecord::new(&run.scenario);
                 let metrics = Campaign::simulate(run, (&mut record, stop_flag()))?;
-                kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, record.finish());
+                let frequencies = sine_frequencies(&run.scenario);
+                let index_run = |values| IndexRun { values, frequencies: frequencies.clone() };
+                let runs: Vec<IndexRun> = record.finish().into_iter().map(index_run).collect();
+                kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, runs);
                 Ok(metrics)
             }
         };
@@ -165,24 +170,41 @@ impl CampaignSetup {
             Ok(())
         })?;
         let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
-        let scenario = campaign.scenario();
-        // A loop that is not linear has the runs alone.
-        let noisy = NoisyLoop::from_scenario(scenario).ok();
-        let mut budgets = Vec::new();
-        for (index, requirement) in scenario.study.requirements.iter().enumerate() {
-            let RequirementSource::Error(error) = &requirement.source else { continue };
-            let values: Vec<Vec<f64>> = all.values().map(|run| run[index].clone()).collect();
-            let is_signed = error.is_component(scenario.axis_count());
-            budgets.push(CampaignBudget {
-                linear_noise: noisy.as_ref().and_then(|noisy| linear_noise(noisy, error)),
-                linear_sources: noisy
-                    .as_ref()
-                    .filter(|_| is_signed)
-                    .and_then(|noisy| linear_sources(scenario, noisy, error)),
-                ..CampaignBudget::new(requirement.clone(), &values, is_signed)
-            });
-        }
+        let budgets = self.index_budgets(campaign.scenario(), all.into_values().collect());
         Ok(Budgets { name, runs: self.runs, indices: budgets, verdicts: runs.finish(), units: self.units })
+    }
+
+    /// Returns the budget of each requirement on a pointing index, from the values of all requirements in each run.
+    fn index_budgets(&self, scenario: &Scenario, mut all: Vec<Vec<IndexRun>>) -> Vec<CampaignBudget> {
+        let axes = scenario.axis_count();
+        let requirements = scenario.study.requirements.iter().enumerate();
+        let indices: Vec<_> = requirements
+            .filter_map(|(place, requirement)| match &requirement.source {
+                RequirementSource::Metric(..) => None,
+                RequirementSource::Error(error) => Some((place, requirement, error)),
+            })
+            .collect();
+        // A loop that is not linear has the runs alone.
+        let disturbed = DisturbedLoop::from_scenario(scenario);
+        let errors: Vec<_> = indices.iter().map(|(_, _, error)| *error).collect();
+        let sources = disturbed.as_ref().and_then(|disturbed| {
+            let Ensemble { points, shares_loop } = Ensemble::from_scenario(scenario, &self.origin, self.runs)?;
+            Some(linear_sources(disturbed, &points, shares_loop, &errors))
+        });
+        let mut sources = sources.unwrap_or_else(|| vec![None; errors.len()]).into_iter();
+        let noisy = disturbed.as_ref().map(DisturbedLoop::noisy);
+        let budget = |(place, requirement, error): (usize, &AssessedRequirement, &SampledError)| {
+            let runs: Vec<IndexRun> = all.iter_mut().map(|run| std::mem::take(&mut run[place])).collect();
+            let (is_signed, cycle) = (error.is_component(axes), noise_cycle(noisy, error));
+            let sources = sources.next().flatten().filter(|_| is_signed);
+            CampaignBudget {
+                linear_noise: noisy.and_then(|noisy| linear_noise(noisy, error)),
+                linear_levels: sources.as_ref().map(ErrorSources::mixed_levels),
+                linear_sources: sources,
+                ..CampaignBudget::new(requirement.clone(), error, &runs, is_signed, cycle)
+            }
+        };
+        indices.into_iter().map(budget).collect()
     }
 }
 
@@ -201,12 +223,18 @@ impl Results for Budgets {
                 }
                 object
             };
-            let sources = |of: &ErrorSources| json!({ "biases": of.biases, "amplitudes": of.amplitudes, "noise": of.noise });
-            let linear_levels = budget.linear_sources.as_ref().map(|of| {
-                LEVELS.map(
-                    |level| json!({ "level": level, "convolution": of.level(level, Interpretation::Mixed) }),
-                )
-            });
+            let sources = |of: &ErrorSources| {
+                json!({
+                    "bias": of.bias(),
+                    "bias_spread": of.bias_spread(),
+                    "largest_bias": of.largest_bias(),
+                    "amplitudes": of.amplitudes(),
+                    "noise": of.noise(),
+                })
+            };
+            let linear_level = |(level, value): (&f64, f64)| json!({ "level": level, "convolution": value });
+            let linear_levels =
+                budget.linear_levels.map(|levels| LEVELS.iter().zip(levels).map(linear_level).collect::<Vec<_>>());
             json!({
                 "name": budget.requirement.name,
                 "description": budget.requirement.description(),
@@ -270,22 +298,14 @@ impl Budgets {
         let (factor, unit) = self.units.common(&[largest], requirement.unit);
         say!("\n  {}: {} ({unit})", requirement.name, requirement.description());
         if let Some(sources) = &budget.sources {
-            let bias = sources.biases.iter().sum::<f64>();
-            let [bias, noise] = [bias, sources.noise].map(|value| digits(value * factor));
-            say!("  sources by the runs: bias within ±{bias}, random part of {noise} rms");
+            say!("  sources by the runs: {}", source_text(sources, factor));
         }
         if let Some(noise) = budget.linear_noise {
             say!("  noise of the linear loop at rest: {} rms", digits(noise * factor));
         }
-        if let Some(sources) = &budget.linear_sources {
-            let deviation = digits(factor * sources.biases.iter().sum::<f64>());
-            let sines: Vec<String> = sources.amplitudes.iter().map(|value| digits(value * factor)).collect();
-            let sines = if sines.is_empty() { "none".to_owned() } else { sines.join(", ") };
-            let levels = LEVELS.map(|level| digits(factor * sources.level(level, Interpretation::Mixed)));
-            say!(
-                "  linear loop under its disturbances: deviation {deviation}, sines {sines}; with the noise {} (mixed)",
-                levels.join(", ")
-            );
+        if let Some((sources, levels)) = budget.linear_sources.as_ref().zip(budget.linear_levels) {
+            let levels = levels.map(|level| digits(factor * level)).join(", ");
+            say!("  linear loop under its disturbances: {}: {levels} (mixed)", source_text(sources, factor));
         }
         let mut rows = vec![
             ["level", "temporal", "", "", "ensemble", "", "", "mixed", "", ""].map(str::to_owned).to_vec(),
@@ -317,4 +337,16 @@ impl Budgets {
             say!("  {line}");
         }
     }
+}
+
+/// Returns the text of the sources of an error, whose numbers are multiplied by a factor.
+fn source_text(sources: &ErrorSources, factor: f64) -> String {
+    let [bias, spread, largest, noise] =
+        [sources.bias(), sources.bias_spread(), sources.largest_bias(), sources.noise()]
+            .map(|value| digits(value * factor));
+    let from_run_to_run =
+        if sources.bias_spread() > 0.0 { format!(", {spread} rms from run to run, at most {largest}") } else { String::new() };
+    let sines: Vec<String> = sources.amplitudes().iter().map(|value| digits(value * factor)).collect();
+    let sines = if sines.is_empty() { "none".to_owned() } else { sines.join(", ") };
+    format!("bias {bias}{from_run_to_run}; sines {sines}; random part {noise} rms")
 }

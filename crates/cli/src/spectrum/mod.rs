@@ -30,7 +30,7 @@ use welch::{LogPart, WelchEstimate, estimates};
 pub struct SpectrumArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
-    /// Outputs of the loop, or `all` [default: measured angles and lines of sight]
+    /// Outputs of the loop, or `all` [default: measured angles, with --log pointing errors, and lines of sight]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     signal: Vec<String>,
     /// Length of the windows of pointing indices (s), such as an exposure time
@@ -69,11 +69,6 @@ pub struct SpectrumResults {
 /// Computes the noise of a scenario's loop.
 pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResults, CliError> {
     let name = scenario.name.clone();
-    let request = NoiseRequest {
-        signals: args.signal.clone(),
-        window: args.window.map(|length| Window { length, separation: args.separation }),
-        speeds: args.speeds.clone().map(|PositiveGrid(speeds)| speeds),
-    };
     let refused = |fault: NoiseError| match fault {
         NoiseError::Key(fault) => {
             ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why }.into()
@@ -81,11 +76,23 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
         NoiseError::Request(why) => CliError::Arguments(format!("--{why}")),
         fault => CliError::Arguments(format!("{name}: {fault}")),
     };
+    let mut request = NoiseRequest {
+        signals: args.signal.clone(),
+        window: args.window.map(|length| Window { length, separation: args.separation }),
+        speeds: args.speeds.clone().map(|PositiveGrid(speeds)| speeds),
+    };
+    let compared = match &args.log {
+        None => None,
+        Some(path) => Some((path, NoisyLoop::from_scenario(scenario).map_err(refused)?)),
+    };
+    if let Some((_, noisy)) = compared.as_ref().filter(|_| args.signal.is_empty()) {
+        let name = |output: usize| noisy.outputs[output].name.clone();
+        request.signals = noisy.compared_outputs().into_iter().map(name).collect();
+    }
     let report = NoiseReport::from_scenario(scenario, &request).map_err(refused)?;
-    let welch = match &args.log {
+    let welch = match compared {
         None => Vec::new(),
-        Some(path) => {
-            let noisy = NoisyLoop::from_scenario(scenario).map_err(refused)?;
+        Some((path, noisy)) => {
             let outputs: Vec<usize> =
                 report.outputs.iter().filter_map(|output| noisy.output(&output.output)).collect();
             let part = LogPart { path, from: args.from, segment: args.segment };

@@ -81,7 +81,7 @@ fn column_of(output: &str) -> Option<(&'static str, String)> {
     match output {
         "angle" => Some(("/attitude", "angle_rad".to_owned())),
         "rate" => Some(("/rate", "rate_rad_s".to_owned())),
-        "roll" | "pitch" | "yaw" => Some(("/pointing", format!("{output}_error_rad"))),
+        "roll_error" | "pitch_error" | "yaw_error" => Some(("/pointing", format!("{output}_rad"))),
         _ => None,
     }
 }
@@ -109,7 +109,8 @@ pub fn estimates(
         found.push(WelchEstimate { column: format!("{topic} {column}"), ..estimate });
     }
     if found.is_empty() {
-        let why = "has no column of these outputs: angle, rate, roll, pitch and yaw have one in a full log";
+        let why = "has no column of these outputs: angle, rate, roll_error, pitch_error and yaw_error have one in a \
+                   full log";
         return Err(refused(part.path, why));
     }
     Ok(found)

@@ -6,7 +6,7 @@ use std::collections::{BinaryHeap, VecDeque};
 use flexsc_numerics::attitude::Vector;
 
 use flexsc_numerics::order_statistics::order_rank;
-use flexsc_scenario::{IndexWindow, WindowConvention};
+use flexsc_scenario::IndexWindow;
 
 /// Pointing index of an error that is sampled.
 #[derive(Clone, Debug)]
@@ -37,19 +37,20 @@ impl IndexStream {
                     give(mean);
                 }
             }
-            IndexWindow::Relative { window, convention: WindowConvention::Uniform } => {
-                self.recent.push_back(error);
-                if self.recent.len() as u64 == window {
-                    let mean = self.recent.iter().sum::<Vector>() / window as f64;
-                    self.recent.drain(..).for_each(|error| give(error - mean));
+            IndexWindow::Relative { window, convention } => match convention.place(window) {
+                None => {
+                    self.recent.push_back(error);
+                    if self.recent.len() as u64 == window {
+                        let mean = self.recent.iter().sum::<Vector>() / window as f64;
+                        self.recent.drain(..).for_each(|error| give(error - mean));
+                    }
                 }
-            }
-            IndexWindow::Relative { window, convention } => {
-                if let Some(mean) = self.slide(error, window) {
-                    let at = if convention == WindowConvention::End { window - 1 } else { window / 2 };
-                    give(self.recent[at as usize] - mean);
+                Some(place) => {
+                    if let Some(mean) = self.slide(error, window) {
+                        give(self.recent[place as usize] - mean);
+                    }
                 }
-            }
+            },
             IndexWindow::Difference { window, shift, .. } => {
                 if let Some(mean) = self.slide(error, window) {
                     self.means.push_back(mean);

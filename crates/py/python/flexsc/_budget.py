@@ -92,11 +92,12 @@ class IndexBudget(Compared):
     True
     """
     sources: dict[str, Any] | None
-    """Error sources: `biases`, half widths of uniform errors; `amplitudes` of harmonic ones; `noise`, the rms
-    of the random part. None for an index without sources.
+    """Error sources that the runs show: `bias`, its mean over the runs; `bias_spread`, its standard deviation from
+    run to run; `largest_bias`; `amplitudes` of sines; `noise`, the rms of the random part. None for an index
+    without sources.
 
     >>> list(index.sources)
-    ['biases', 'amplitudes', 'noise']
+    ['bias', 'bias_spread', 'largest_bias', 'amplitudes', 'noise']
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
