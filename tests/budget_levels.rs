@@ -37,7 +37,7 @@ fn sources_and_levels_of_the_linear_loop_are_those_of_scipy() {
     }
     let mut count = 0;
     for (scenario, rows) in golden {
-        let found = budgets(&dir(scenario), "--runs 1 --set duration=130");
+        let found = budgets(&dir(scenario), "--runs 1 --set duration=80");
         for [requirement, quantity, value] in rows {
             let budget = found.iter().find(|own| own["name"] == requirement).expect("a requirement");
             let sources = &budget["linear_sources"];
@@ -52,10 +52,10 @@ fn sources_and_levels_of_the_linear_loop_are_those_of_scipy() {
             };
             let expected: f64 = value.parse().expect("a number");
             let noise = number(&sources["noise"]);
-            // An ensemble is a thousand points; a level of sines is smoothed by a part of the largest value.
-            let part = if scenario == "uncertain" { 1e-3 } else { 1e-7 };
+            // An ensemble is a thousand points.
+            let part = if scenario == "uncertain" { 1e-3 } else { 1e-9 };
             assert!(
-                (found - expected).abs() < part * expected.abs() + 1e-12 * noise,
+                (found - expected).abs() < part * (expected.abs() + noise),
                 "{scenario} {requirement} {quantity}: {found:e}, expected {expected:e}"
             );
             if quantity == "noise" {
@@ -65,6 +65,17 @@ fn sources_and_levels_of_the_linear_loop_are_those_of_scipy() {
         }
     }
     assert!(count > 80, "{count}");
+}
+
+/// The least rms of an index by samples, within a modulus margin of 0.6, by a search in Python with SciPy's Lyapunov
+/// equations. In windows of continuous time it would be elsewhere, at 2 N m s.
+#[test]
+fn a_tuned_index_is_that_of_samples() {
+    let line = "tune budget.toml --vary law.pd.k_p=0.3:5 --vary law.pd.k_d=2:20 --objective middle4";
+    let tuned = dir("windows").run(&format!("{line} --keep margin>=0.6 --json")).exits(0).json();
+    let measure = &tuned["measures"][0];
+    assert!((number(&measure["before"]) / 7.400_353_821_5e-9 - 1.0).abs() < 1e-9, "{measure}");
+    assert!((number(&measure["after"]) / 3.216_842_35e-9 - 1.0).abs() < 1e-4, "{measure}");
 }
 
 /// Mean of some values and its standard error.
@@ -106,7 +117,7 @@ fn windows_of_few_samples_agree() {
 
 #[test]
 fn a_steady_torque_and_sines_agree() {
-    compare("bias", 10);
+    compare("bias", 40);
 }
 
 #[test]
@@ -126,5 +137,5 @@ fn modes_that_do_not_act_back_agree() {
 
 #[test]
 fn panels_that_act_back_agree() {
-    compare("elastic", 4);
+    compare("elastic", 16);
 }

@@ -11,6 +11,7 @@ use flexsc_core::record::Detail;
 use crate::margins::wheel_loop;
 use crate::open_loops::scenario;
 use crate::traces::{column, flown};
+use crate::util::Dir;
 
 /// Returns the loop over four undamped modes with further keys of its sensor, and disturbances.
 fn noisy_wheel(sensor: &str, disturbances: &str) -> NoisyLoop {
@@ -303,4 +304,33 @@ fn unbalanced_wheels_excite_a_mode_at_its_frequency() {
     assert_eq!((strongest.speed_rad_s, strongest.order, strongest.wheel), (92.9, 1.0, 1));
     // The Nyquist frequency of the law is 12.566 rad/s.
     assert!(strongest.outputs[yaw].aliases[0].frequency_rad_s < 12.567);
+}
+
+/// The pointing errors of a log are those of the mean axes of this body, and not the angles at its sensor, which modes turn.
+#[test]
+fn a_log_on_three_axes_has_the_density_of_its_own_angle() {
+    let dir = Dir::with(&["attitude-hold"]);
+    dir.run(
+        "simulate attitude-hold.toml --set target=[] --set duration=3000 --set log.period=0.2 --log full",
+    )
+    .exits(0);
+    let line = "spectrum attitude-hold.toml --log attitude-hold.mcap --from 100 --segment 512 --json";
+    let compared = dir.run(line).exits(0).json();
+    for (axis, name) in ["roll", "pitch", "yaw"].into_iter().enumerate() {
+        let estimate = &compared["welch"][axis];
+        assert_eq!(estimate["output"], format!("{name}_error"));
+        assert_eq!(estimate["column"], format!("/pointing {name}_error_rad"));
+        let list = |of: &serde_json::Value| -> Vec<f64> {
+            of.as_array().expect("a list").iter().map(|value| value.as_f64().expect("finite")).collect()
+        };
+        let (density, expected) = (list(&estimate["density"]), list(&estimate["expectation"]));
+        let interval = list(&estimate["interval"]);
+        let is_within = |(found, exact): (&f64, &f64)| (interval[0]..interval[1]).contains(&(exact / found));
+        let within = density.iter().zip(&expected).filter(|pair| is_within(*pair)).count();
+        let part = within as f64 / density.len() as f64;
+        assert!((0.84..0.96).contains(&part), "{name}: {part}");
+    }
+    dir.run(&format!("{line} --signal roll"))
+        .exits(2)
+        .says(&["has no column of these outputs", "roll_error"]);
 }

@@ -1,7 +1,7 @@
 //! Budget of a requirement from the runs of a campaign: order statistics of all values of its pointing index, and the levels of
 //! the sources that the runs show.
 
-use super::shown_sources::{IndexRun, ValueTimes, shown_sources};
+use super::run_sources::{IndexRun, ValueTimes, fit_sources};
 use super::{ErrorSources, LEVELS};
 use flexsc_numerics::order_statistics::order_statistic;
 use flexsc_scenario::{AssessedRequirement, Interpretation, SampledError};
@@ -53,7 +53,7 @@ impl CampaignBudget {
         let (period, window) = (error.period.seconds(), error.index.places() as usize);
         let times = ValueTimes { period, window, cycle };
         let is_complete = runs.iter().all(|run| !run.values.is_empty());
-        let sources = (is_signed && is_complete).then(|| shown_sources(runs, times));
+        let sources = (is_signed && is_complete).then(|| fit_sources(runs, times));
         let sorted = |values: &mut dyn Iterator<Item = f64>| {
             let mut values: Vec<f64> = values.map(f64::abs).collect();
             values.sort_by(f64::total_cmp);
@@ -69,7 +69,8 @@ impl CampaignBudget {
             Interpretation::Ensemble => order_statistic(&most, probability),
             Interpretation::Mixed => order_statistic(&magnitudes, probability),
         };
-        let convolved = INTERPRETATIONS.map(|interpretation| sources.as_ref().map(|of| of.distribution(interpretation)));
+        let convolved =
+            INTERPRETATIONS.map(|interpretation| sources.as_ref().map(|of| of.distribution(interpretation)));
         let level = |probability: f64| {
             [0, 1, 2].map(|place| BudgetLevel {
                 campaign: campaign(probability, INTERPRETATIONS[place]),
@@ -78,6 +79,14 @@ impl CampaignBudget {
             })
         };
         let levels = LEVELS.into_iter().map(level).collect();
-        Self { requirement, sources, levels, magnitudes, linear_noise: None, linear_sources: None, linear_levels: None }
+        Self {
+            requirement,
+            sources,
+            levels,
+            magnitudes,
+            linear_noise: None,
+            linear_sources: None,
+            linear_levels: None,
+        }
     }
 }

@@ -51,11 +51,13 @@ impl Sum {
 
 impl Mixture {
     /// Creates a mixture of sums, whose weights add up to 1.
-    pub fn new(sums: impl Iterator<Item = Sum>) -> Self {
+    pub(super) fn new(sums: impl Iterator<Item = Sum>) -> Self {
         let mut all: Vec<Sum> = Vec::new();
         for own in sums {
             match all.last_mut() {
-                Some(last) if Sum { weight: last.weight, ..own.clone() } == *last => last.weight += own.weight,
+                Some(last) if Sum { weight: last.weight, ..own.clone() } == *last => {
+                    last.weight += own.weight;
+                }
                 _ => all.push(own),
             }
         }

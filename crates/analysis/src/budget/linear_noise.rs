@@ -30,8 +30,12 @@ pub(super) fn output_names(error: &SampledError) -> Vec<String> {
     let each = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(AXES);
     let chosen = each.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
     let (single, about): (&str, Vec<String>) = match &error.quantity {
-        SampledQuantity::PointingError => ("angle", chosen.map(|(_, name)| format!("{name}_error")).collect()),
-        SampledQuantity::RateError => ("rate", chosen.map(|(_, name)| format!("rigid_{name}_rate")).collect()),
+        SampledQuantity::PointingError => {
+            ("angle", chosen.map(|(_, name)| format!("{name}_error")).collect())
+        }
+        SampledQuantity::RateError => {
+            ("rate", chosen.map(|(_, name)| format!("rigid_{name}_rate")).collect())
+        }
         SampledQuantity::LineOfSight(line, _) => {
             let axes = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z].into_iter().zip(["x", "y", "z"]);
             let own = axes.filter(|(axis, _)| error.axis.is_none_or(|own| own == *axis));
@@ -70,7 +74,11 @@ pub(super) fn index_variances(noisy: &NoisyLoop, output: usize, error: &SampledE
     let (times, starts) = set_starts(error, noisy.period_ticks());
     let of_set = |start: u64| {
         let places: Vec<_> = times.places(start, error.index.reach(), noisy.period_ticks()).collect();
-        if is_uniform { samples.variances_about_mean(&places) } else { vec![samples.variance(&places, &weights)] }
+        if is_uniform {
+            samples.variances_about_mean(&places)
+        } else {
+            vec![samples.variance(&places, &weights)]
+        }
     };
     Some(starts.into_iter().flat_map(of_set).collect())
 }

@@ -172,7 +172,8 @@ impl DisturbedIndex<'_> {
             let rounding = ROUNDING * values.iter().map(|value| modulus(*value)).fold(0.0, f64::max);
             let exact = |value: Complex<f64>| if modulus(value) > rounding { value } else { Complex::ZERO };
             if index.places() == 1 {
-                let sum: Complex<f64> = values.iter().zip(&weights).map(|(value, weight)| value * *weight).sum();
+                let sum: Complex<f64> =
+                    values.iter().zip(&weights).map(|(value, weight)| value * *weight).sum();
                 return vec![exact(sum)];
             }
             let mean = values.iter().sum::<Complex<f64>>() / values.len() as f64;

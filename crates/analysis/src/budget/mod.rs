@@ -9,15 +9,16 @@ mod campaign_budget;
 mod convolution;
 mod linear_noise;
 mod linear_sources;
-mod shown_sources;
+mod run_sources;
 
 use flexsc_scenario::Interpretation;
 
 pub use campaign_budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS};
-pub use convolution::{Mixture, Sum};
+pub use convolution::Mixture;
+use convolution::Sum;
 pub use linear_noise::{linear_noise, noise_cycle};
 pub use linear_sources::{DisturbedLoop, linear_sources, sine_frequencies};
-pub use shown_sources::IndexRun;
+pub use run_sources::IndexRun;
 
 /// Levels at which a budget is stated: those of one, two and three standard deviations of a Gaussian number.
 pub const LEVELS: [f64; 3] = [0.683, 0.955, 0.997];

@@ -21,12 +21,13 @@ mod lines;
 mod motion;
 mod noisy_loop;
 mod output;
+mod output_samples;
+
 mod period_rows;
 mod report;
 mod sample_times;
 mod schedule;
 mod source;
-mod weighted_samples;
 mod welch;
 mod windows;
 
@@ -34,8 +35,8 @@ pub use density::{OutputDensity, cumulative_rms};
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
+pub use output_samples::OutputSamples;
 pub use report::{NoiseReport, NoiseRequest, OutputNoise, WindowRms};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
-pub use weighted_samples::OutputSamples;
 pub use welch::NarrowestPeak;
 pub use windows::{Window, WindowVariances, WindowWeights};

@@ -44,11 +44,17 @@ impl SampleTimes {
     pub fn starts(&self, sets: SampleSets, period: i64) -> Vec<u64> {
         let (apart, whole) = ((Instant::START + self.apart).femtoseconds(), period.unsigned_abs());
         let step = ((apart * u128::from(sets.stride)) % u128::from(whole.max(1))) as i64;
-        let cycle = if step == 0 { 1 } else { common_multiple(step, period).map_or(u64::MAX, |all| (all / step) as u64) };
+        let cycle = if step == 0 {
+            1
+        } else {
+            common_multiple(step, period).map_or(u64::MAX, |all| (all / step) as u64)
+        };
         let all = sets.count.clamp(1, cycle.max(1));
         let most = (MOST_SAMPLES / sets.length.max(1)).clamp(1, MOST_STARTS);
         let chosen = all.min(most);
-        (0..chosen).map(|index| sets.stride * (u128::from(index) * u128::from(all) / u128::from(chosen)) as u64).collect()
+        (0..chosen)
+            .map(|index| sets.stride * (u128::from(index) * u128::from(all) / u128::from(chosen)) as u64)
+            .collect()
     }
 
     /// Returns the places of the samples of a set that begins at sample `start`, in periods of the loop (fs).

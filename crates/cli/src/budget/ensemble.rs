@@ -26,7 +26,8 @@ impl Ensemble {
         let design = Design { draws: Sampling::Sobol, ..Design::default() };
         let campaign = Campaign::from_design(scenario.clone(), origin, design).ok()?;
         let count = if shares_loop { POINTS } else { runs.clamp(LOOPS[0], LOOPS[1]) };
-        let points = (0..count).map(|point| Some(campaign.run(point).ok()?.scenario)).collect::<Option<_>>()?;
+        let points =
+            (0..count).map(|point| Some(campaign.run(point).ok()?.scenario)).collect::<Option<_>>()?;
         Some(Self { points, shares_loop })
     }
 }

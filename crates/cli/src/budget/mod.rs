@@ -188,7 +188,8 @@ impl CampaignSetup {
         let disturbed = DisturbedLoop::from_scenario(scenario);
         let errors: Vec<_> = indices.iter().map(|(_, _, error)| *error).collect();
         let sources = disturbed.as_ref().and_then(|disturbed| {
-            let Ensemble { points, shares_loop } = Ensemble::from_scenario(scenario, &self.origin, self.runs)?;
+            let Ensemble { points, shares_loop } =
+                Ensemble::from_scenario(scenario, &self.origin, self.runs)?;
             Some(linear_sources(disturbed, &points, shares_loop, &errors))
         });
         let mut sources = sources.unwrap_or_else(|| vec![None; errors.len()]).into_iter();
@@ -233,8 +234,9 @@ impl Results for Budgets {
                 })
             };
             let linear_level = |(level, value): (&f64, f64)| json!({ "level": level, "convolution": value });
-            let linear_levels =
-                budget.linear_levels.map(|levels| LEVELS.iter().zip(levels).map(linear_level).collect::<Vec<_>>());
+            let linear_levels = budget
+                .linear_levels
+                .map(|levels| LEVELS.iter().zip(levels).map(linear_level).collect::<Vec<_>>());
             json!({
                 "name": budget.requirement.name,
                 "description": budget.requirement.description(),
@@ -344,8 +346,11 @@ fn source_text(sources: &ErrorSources, factor: f64) -> String {
     let [bias, spread, largest, noise] =
         [sources.bias(), sources.bias_spread(), sources.largest_bias(), sources.noise()]
             .map(|value| digits(value * factor));
-    let from_run_to_run =
-        if sources.bias_spread() > 0.0 { format!(", {spread} rms from run to run, at most {largest}") } else { String::new() };
+    let from_run_to_run = if sources.bias_spread() > 0.0 {
+        format!(", {spread} rms from run to run, at most {largest}")
+    } else {
+        String::new()
+    };
     let sines: Vec<String> = sources.amplitudes().iter().map(|value| digits(value * factor)).collect();
     let sines = if sines.is_empty() { "none".to_owned() } else { sines.join(", ") };
     format!("bias {bias}{from_run_to_run}; sines {sines}; random part {noise} rms")

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::*;
 use flexsc_numerics::order_statistics::order_statistic;
-use flexsc_scenario::PointingIndex;
+use flexsc_scenario::{PointingIndex, WindowConvention};
 
 const SAMPLES: u64 = 600;
 
@@ -123,4 +123,36 @@ fn rounding_errors_of_a_sliding_mean_do_not_grow() {
         stream.push(Vector::new(value, 0.0, 0.0), |mean| last = mean.x);
     }
     assert!((last - 0.1).abs() < 1e-15, "{last:e}");
+}
+
+/// Each value of a stream is the sum of its samples with the weights of the index.
+#[test]
+fn values_are_weighted_sums_of_samples() {
+    let relative = |window, convention| IndexWindow::Relative { window, convention };
+    for index in [
+        IndexWindow::Absolute,
+        IndexWindow::Mean { window: 5 },
+        relative(2, WindowConvention::End),
+        relative(4, WindowConvention::Middle),
+        relative(5, WindowConvention::Middle),
+        relative(3, WindowConvention::Uniform),
+        IndexWindow::Difference { window: 2, shift: 3, index: PointingIndex::Drift },
+    ] {
+        let errors: Vec<Vector> = (0..60).map(|sample| error(7, sample)).collect();
+        let mut stream = IndexStream::new(index);
+        let mut found = Vec::new();
+        errors.iter().for_each(|error| stream.push(*error, |value| found.push(value)));
+        assert_eq!(found.len() as u64, index.values(60));
+        for (number, value) in found.iter().enumerate() {
+            let (set, place) = (number as u64 / index.places(), number as u64 % index.places());
+            let weights = index.weights(place);
+            assert_eq!(weights.len() as u64, index.reach());
+            let samples = &errors[(set * index.places()) as usize..];
+            let sum = samples
+                .iter()
+                .zip(&weights)
+                .fold(Vector::zeros(), |sum, (error, weight)| sum + error * *weight);
+            assert!((sum - value).norm() < 1e-18, "{index:?} {number}");
+        }
+    }
 }

@@ -16,6 +16,10 @@ const MOST_COMBINATIONS: usize = 8192;
 const VALUES_AT_PLACES: usize = 400;
 const PLACE_GROUPS: usize = 64;
 
+/// Two standard deviations of the quotient of two variances of variances, times the root of the number of runs, where a run
+/// has some ten independent values.
+const SAMPLING_ERROR: f64 = 5.0;
+
 /// Values of an index in one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct IndexRun {
@@ -49,7 +53,7 @@ struct RunFit {
 }
 
 /// Returns the sources that runs show.
-pub fn shown_sources(runs: &[IndexRun], times: ValueTimes) -> ErrorSources {
+pub fn fit_sources(runs: &[IndexRun], times: ValueTimes) -> ErrorSources {
     let mut fits: Vec<RunFit> = runs.iter().map(|run| RunFit::new(run, times)).collect();
     shrink(&mut fits);
     let total = fits.iter().map(|fit| fit.residual.len()).sum::<usize>();
@@ -65,7 +69,9 @@ pub fn shown_sources(runs: &[IndexRun], times: ValueTimes) -> ErrorSources {
         let sines = runs.first().map_or(0, |fit| fit.amplitudes.len());
         for (group, share) in shares.iter().enumerate() {
             let square = |fit: &RunFit, sine: usize| {
-                fit.amplitudes[sine] * fit.amplitudes[sine] * mean_square(&fit.factors[sine], times.cycle, (group, groups))
+                fit.amplitudes[sine]
+                    * fit.amplitudes[sine]
+                    * mean_square(&fit.factors[sine], times.cycle, (group, groups))
             };
             let amplitude = |sine: usize| f64::sqrt(mean(&|fit| square(fit, sine)));
             combinations.push(SourceCombination {
@@ -114,7 +120,8 @@ fn place_shares(fits: &[RunFit], times: ValueTimes, groups: usize) -> Vec<PlaceS
             *sum = (sum.0 + 1.0, sum.1 + value * value);
         }
     }
-    let (count, square) = sums.iter().fold((0.0, 0.0), |(count, square), own| (count + own.0, square + own.1));
+    let (count, square) =
+        sums.iter().fold((0.0, 0.0), |(count, square), own| (count + own.0, square + own.1));
     let share = |(own, own_square): &(f64, f64)| PlaceShare {
         weight: own / count,
         variance: if square > 0.0 && *own > 0.0 { own_square / own / (square / count) } else { 1.0 },
@@ -122,8 +129,8 @@ fn place_shares(fits: &[RunFit], times: ValueTimes, groups: usize) -> Vec<PlaceS
     sums.iter().map(share).collect()
 }
 
-/// Moves the variances of the runs towards their mean, by the part of their differences that the difference of the halves of
-/// a run explains.
+/// Moves the variances of the runs towards their mean, by the part of their differences that the differences of the halves of
+/// runs explain, with its sampling error.
 fn shrink(fits: &mut [RunFit]) {
     let count = fits.len() as f64;
     let mean = fits.iter().map(|fit| fit.variance).sum::<f64>() / count;
@@ -134,7 +141,8 @@ fn shrink(fits: &mut [RunFit]) {
         let difference = square(first) - square(second);
         0.25 * difference * difference
     };
-    let explained = fits.iter().map(within).sum::<f64>() / count;
+    let sampling_error = SAMPLING_ERROR / f64::sqrt(count);
+    let explained = fits.iter().map(within).sum::<f64>() / count * (1.0 + sampling_error);
     let kept = if spread > explained { f64::sqrt(1.0 - explained / spread) } else { 0.0 };
     fits.iter_mut().for_each(|fit| fit.variance = mean + kept * (fit.variance - mean));
 }
@@ -185,7 +193,8 @@ impl RunFit {
             angles[sine] >= least && PI - angles[sine] >= least && (0..angles.len()).all(apart)
         };
         let shown: Vec<usize> = (0..angles.len()).filter(|sine| is_shown(*sine)).collect();
-        let factors: Vec<Vec<Complex<f64>>> = angles.iter().map(|angle| window_factors(*angle, times.window)).collect();
+        let factors: Vec<Vec<Complex<f64>>> =
+            angles.iter().map(|angle| window_factors(*angle, times.window)).collect();
         // Columns: the bias, then cosine and sine of each sine, as an index has them.
         let row = |index: usize| {
             let (window, place) = (index / times.window, index % times.window);
