@@ -84,6 +84,7 @@ mod several_actuators;
 mod several_sensors;
 mod shaped;
 mod spectra;
+mod stability_limit;
 mod stage_actuators;
 mod state_space;
 mod station;

@@ -1,6 +1,8 @@
 //! Settling times of linear loops, and the delay of all actuators together, against independent numbers.
 
 use flexsc_core::Scenario;
+use flexsc_core::analysis::open_loop::LoopBreak;
+use flexsc_core::analysis::scenario_margins::ScenarioMargins;
 use flexsc_core::analysis::settling_time::settling_times;
 
 use crate::margins::wheel_loop;
@@ -58,13 +60,52 @@ fn the_common_delay_is_the_limit_of_stability() {
         let margins = dir.run(&format!("margins {name}.toml --json")).exits(0).json();
         assert_eq!(margins["samples"], samples);
         let delay = margins["common_delay_s"].as_f64().expect("unstable with a long delay");
-        for (factor, code) in [(0.999, 0), (1.001, 2)] {
+        for (factor, code) in [(1.0 - 1e-6, 0), (1.0 + 1e-6, 2)] {
             let late = delay * factor;
             let told = dir.run(&format!("margins {name}.toml --set {key}={late}")).exits(code);
             if code == 2 {
                 told.says(&["not stable"]);
             }
         }
+    }
+}
+
+/// Returns a rigid body with PD laws about three axes: its tensor, the gains about each axis, the period, and the delay.
+fn rigid(tensor: [[f64; 3]; 3], gains: [[f64; 2]; 3], period: f64, delay: f64) -> Scenario {
+    let law = |(axis, [k_p, k_d]): (&str, [f64; 2])| {
+        format!("[law.per_axis.{axis}.pd]\nk_p = {k_p}\nk_d = {k_d}\nperiod = {period}\n")
+    };
+    let laws: String = ["roll", "pitch", "yaw"].into_iter().zip(gains).map(law).collect();
+    let text = format!(
+        "duration = 10.0\n[body.spatial]\ninertia = {tensor:?}\npoints = [{{ name = \"hub\" }}]\n[sensor.sampled]\n\
+         period = {period}\nrate_noise = 1e-6\n{laws}[actuator.wheel]\ngain = 1.0\ndelay = {delay}\n"
+    );
+    Scenario::parse("rigid.toml", &text).expect("valid")
+}
+
+/// Slow loops whose delay is thousands of periods, and coupled ones whose delay is a part of a period: 40 digits,
+/// `tests/golden/common_delay_oracle.py`.
+#[test]
+fn the_common_delay_of_slow_and_of_coupled_loops() {
+    let delay = |scenario: &Scenario| {
+        let margins = ScenarioMargins::from_scenario(scenario, LoopBreak::Command).expect("stable");
+        margins.common_delay_s.expect("unstable with a long delay")
+    };
+    let diagonal = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 120.0]];
+    for (bandwidth, period, expected) in [
+        (0.03, 0.1, 24.520_379_006_776_409),
+        (0.01, 0.1, 73.661_105_124_742_667),
+        (0.002, 0.01, 368.550_500_941_274_45),
+    ] {
+        let gains = [100.0, 80.0, 120.0].map(|own| [own * bandwidth * bandwidth, 1.4 * own * bandwidth]);
+        let found = delay(&rigid(diagonal, gains, period, 0.0));
+        assert!((found / expected - 1.0).abs() < 1e-9, "{bandwidth}: {found:.15}, expected {expected:.15}");
+    }
+    let tensor = [[100.0, 8.0, -5.0], [8.0, 80.0, 6.0], [-5.0, 6.0, 120.0]];
+    let gains = [[81.0, 126.0], [28.8, 67.2], [10.8, 50.4]];
+    for own in [0.0, 0.2, 0.5] {
+        let (found, expected) = (delay(&rigid(tensor, gains, 0.5, own)), 0.573_728_430_446_654_67 - own);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{own}: {found:.15}, expected {expected:.15}");
     }
 }
 

@@ -12,7 +12,7 @@ use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
 use super::eigenvalues::eigenvalues;
-use super::margins::{FrequencyResponse, ResidueResponse, modulus};
+use super::margins::{FrequencyResponse, ResidueResponse, modulus, steady_change};
 use super::open_loop::{LoopBreak, LoopParts, OpenLoop, TransferMatrices};
 use flexsc_scenario::Scenario;
 
@@ -25,8 +25,6 @@ const DOUBLINGS: usize = 60;
 const STEP_WEIGHT: f64 = 1e3;
 /// Singular values below this part of the largest one are rounding.
 const LEAST_SINGULAR: f64 = 1e-12;
-/// Decay in a period up to which a pole counts as lasting.
-const STEADY: f64 = 1e-10;
 /// Change of a defective state matrix, relative to its size, that gives it a basis of eigenvectors.
 const SPLITTING: f64 = 1e-13;
 /// Distance within which poles are equal; those of a defective pole are apart by the root of a rounding.
@@ -75,7 +73,7 @@ impl LoopParts<'_> {
             .map(|(step, angle)| SettlingTime {
                 step: name(step),
                 angle: name(angle),
-                time_s: opened.period * settling(&terms, step * count + angle),
+                time_s: opened.period * settling(&terms, step * count + angle, steady_change(opened.period)),
             })
             .collect())
     }
@@ -174,13 +172,14 @@ fn followed(mut a: DMatrix<f64>, mut b: DMatrix<f64>) -> Option<DMatrix<f64>> {
     None
 }
 
-/// Returns the number of periods after which the sum of the terms of a response stays within the band.
-fn settling(terms: &[Term], response: usize) -> f64 {
+/// Returns the number of periods after which the sum of the terms of a response stays within the band. Poles that decay by at
+/// most `steady` in a period last.
+fn settling(terms: &[Term], response: usize, steady: f64) -> f64 {
     let decay = |pole: Complex<f64>| (-libm::log(modulus(pole))).min(FASTEST);
     let sizes: Vec<(f64, f64)> =
         terms.iter().map(|(pole, residues)| (modulus(residues[response]), decay(*pole))).collect();
     let bound = |time: f64| sizes.iter().map(|(size, decay)| size * libm::exp(-decay * time)).sum::<f64>();
-    let lasting = sizes.iter().filter(|(_, decay)| *decay <= STEADY).map(|(size, _)| size).sum::<f64>();
+    let lasting = sizes.iter().filter(|(_, decay)| *decay <= steady).map(|(size, _)| size).sum::<f64>();
     if lasting >= SETTLING_BAND || lasting.is_nan() {
         return f64::INFINITY;
     }

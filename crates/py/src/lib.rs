@@ -87,7 +87,7 @@ mod _native {
     #[pymodule_export]
     use super::linear::{
         bounds_json, budget_json, exponential, linear_json, loop_json, margins_json, spectrum_json,
-        tuned_json,
+        steady_change, tuned_json,
     };
     #[pymodule_export]
     use super::log::Log;

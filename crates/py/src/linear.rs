@@ -4,7 +4,7 @@ use flexsc_core::ScenarioError;
 use flexsc_core::analysis::bound::{OutputBound, RangeRow};
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
-use flexsc_core::analysis::margins::SingularValues;
+use flexsc_core::analysis::margins::{self, SingularValues};
 use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
@@ -177,4 +177,10 @@ pub fn exponential<'py>(
     let found = of_matrix(&DMatrix::from_fn(order, order, |row, column| matrix[(row, column)]));
     let flat: Vec<f64> = (0..order * order).map(|index| found[(index / order, index % order)]).collect();
     flat.to_pyarray(py).reshape([order, order])
+}
+
+/// The change of a motion, as the logarithm of its size, up to which it neither grows nor decays over a period (s).
+#[pyfunction]
+pub fn steady_change(period: f64) -> f64 {
+    margins::steady_change(period)
 }

@@ -107,7 +107,11 @@ impl Crossings {
 
     fn add_phase_crossing(&mut self, transfer: &SampledTransfer<'_>, segment: &LocusSegment<'_>) {
         let [(low, first), (high, last)] = segment.ends;
-        if (first.im > 0.0) == (last.im > 0.0) || (first.re > 0.0 && last.re > 0.0) {
+        // At the Nyquist frequency, an imaginary part is rounding, and the end is added by itself.
+        if (first.im > 0.0) == (last.im > 0.0)
+            || (first.re > 0.0 && last.re > 0.0)
+            || (high == PI && is_real(high, last))
+        {
             return;
         }
         let angle = root(|angle| segment.at(angle).im, low, high);
@@ -116,8 +120,7 @@ impl Crossings {
 
     /// Adds the end of a locus, an angle and a value, if it is real there.
     fn add_end(&mut self, transfer: &SampledTransfer<'_>, (angle, value): (f64, Complex<f64>)) {
-        let is_real = value.im.abs() <= 10.0 * (angle.min(PI - angle) + 1e-9) * value.re.abs();
-        if is_real && modulus(value) < 1e6 {
+        if is_real(angle, value) && modulus(value) < 1e6 {
             self.add_real(transfer, angle, Complex::new(value.re, 0.0));
         }
     }
@@ -131,6 +134,11 @@ impl Crossings {
             self.phase.push(PhaseCrossing { frequency_rad_s: frequency, factor: -1.0 / value.re });
         }
     }
+}
+
+/// Returns true if a value is real but for rounding and for its distance from the angle 0 or pi.
+fn is_real(angle: f64, value: Complex<f64>) -> bool {
+    value.im.abs() <= 10.0 * (angle.min(PI - angle) + 1e-9) * value.re.abs()
 }
 
 impl SampledTransfer<'_> {

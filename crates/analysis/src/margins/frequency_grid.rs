@@ -46,10 +46,10 @@ pub fn coarse_frequency_grid(closed: &[Complex<f64>], others: &[Complex<f64>]) -
 
 impl Density {
     fn grid(&self, closed: &[Complex<f64>], others: &[Complex<f64>]) -> Vec<f64> {
-        let sizes = resonances(closed).into_iter().map(|(angle, width)| libm::hypot(angle, width));
+        let sizes = resonances(closed, APART).into_iter().map(|(angle, width)| libm::hypot(angle, width));
         // Several poles of rigid motion, which only an open loop has, are far from 1 by rounding.
         let smallest = sizes.filter(|size| *size > STILL).fold(PI, f64::min);
-        let lasting = resonances(&[closed, others].concat());
+        let lasting = resonances(&[closed, others].concat(), APART);
         let low = LOWEST * smallest;
         let count = libm::ceil(self.decade * libm::log10(PI / low)) as u32;
         let step = libm::log(PI / low) / f64::from(count);
@@ -73,8 +73,9 @@ impl Density {
     }
 }
 
-/// Returns the angles and half widths of the resonances of these poles, each once.
-fn resonances(poles: &[Complex<f64>]) -> Vec<(f64, f64)> {
+/// Returns the angles and half widths of the resonances of these poles, in increasing order of the angle: one of those that differ by
+/// less than `apart` of their half widths.
+pub fn resonances(poles: &[Complex<f64>], apart: f64) -> Vec<(f64, f64)> {
     let resonance = |pole: &Complex<f64>| (libm::atan2(pole.im, pole.re), libm::log(modulus(*pole)).abs());
     let mut all: Vec<(f64, f64)> = poles
         .iter()
@@ -84,15 +85,15 @@ fn resonances(poles: &[Complex<f64>]) -> Vec<(f64, f64)> {
         .filter(|(angle, _)| *angle >= 0.0)
         .collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut apart: Vec<(f64, f64)> = Vec::with_capacity(all.len());
+    let mut known: Vec<(f64, f64)> = Vec::with_capacity(all.len());
     for (angle, width) in all {
-        let near = APART * width.max(NARROWEST);
-        let mut before = apart.iter().rev().take_while(|(own, _)| angle - own <= near);
+        let near = apart * width.max(NARROWEST);
+        let mut before = known.iter().rev().take_while(|(own, _)| angle - own <= near);
         if !before.any(|(_, own)| (own - width).abs() <= near) {
-            apart.push((angle, width));
+            known.push((angle, width));
         }
     }
-    apart
+    known
 }
 
 #[cfg(test)]

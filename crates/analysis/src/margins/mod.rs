@@ -4,6 +4,7 @@
 //! modulus margin 1/max s1(S) and a disk margin 1/max s1((S - T)/2), with the largest singular value s1, for any
 //! perturbation of the matrix of loop gains \[SeilerPackardGahinet20\].
 
+mod common_delay;
 mod crossings;
 mod frequency_grid;
 pub(crate) mod frequency_response;
@@ -24,13 +25,14 @@ pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
 pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
 pub use loci::LociValues;
-pub use poles::UnstableLoop;
+pub use poles::{UnstableLoop, steady_change};
 pub use root_locus::{GainPoles, root_locus};
 
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
-pub(super) use frequency_grid::coarse_frequency_grid;
+pub(super) use common_delay::common_delay;
+pub(super) use frequency_grid::{coarse_frequency_grid, resonances};
 pub(super) use frequency_response::{largest_direction, largest_gain, modulus, unit_circle};
-pub(super) use poles::ROUNDING;
+pub(super) use poles::{is_stable, magnitude_text};
 pub(super) use residue_response::ResidueResponse;
 pub(super) use sample_components::LoopSamples;
 

@@ -1,4 +1,4 @@
-//! Poles of a loop, and the one that makes a closed loop unstable.
+//! Poles of a loop, the one limit of stability, and the pole that makes a closed loop unstable.
 
 use std::f64::consts::TAU;
 use std::fmt;
@@ -11,14 +11,34 @@ use super::sample_components::LoopSamples;
 use crate::eigenvalues::eigenvector;
 use crate::open_loop::OpenLoop;
 
-/// Poles this near to the unit circle are on it, within rounding.
-pub const ROUNDING: f64 = 1e-8;
+/// Rate (1/s) below which a motion neither grows nor decays: by a factor e in three years.
+const STEADY_RATE: f64 = 1e-8;
+/// Distance of a pole from the unit circle that may be rounding, for periods shorter than 1 ms.
+const ROUNDING: f64 = 1e-11;
+
+/// Returns the change of a motion, as the logarithm of its size, up to which it neither grows nor decays over a period (s).
+pub fn steady_change(period: f64) -> f64 {
+    (STEADY_RATE * period).max(ROUNDING)
+}
+
+/// Returns true if a loop is stable whose poles over a period (s) have at most this magnitude.
+pub fn is_stable(spectral_radius: f64, period: f64) -> bool {
+    libm::log(spectral_radius) <= steady_change(period)
+}
+
+/// Returns the text of the magnitude of a pole outside the unit circle, in which it differs from 1.
+pub fn magnitude_text(magnitude: f64) -> String {
+    let beyond = magnitude - 1.0;
+    if beyond < 1e-6 { format!("1 + {beyond:.1e}") } else { format!("{magnitude:.7}") }
+}
 
 /// Loop without margins.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnstableLoop {
     /// Largest magnitude of a pole of the closed loop; infinite if its poles cannot be computed.
     pub spectral_radius: f64,
+    /// Time in which the motion of that pole grows by a factor e (s).
+    pub growth_time_s: f64,
     /// Frequency of that pole (rad/s).
     pub frequency_rad_s: f64,
     /// Damping ratio of that pole, negative.
@@ -32,6 +52,7 @@ impl UnstableLoop {
     pub fn with_unknown_poles(signal: &str) -> Self {
         Self {
             spectral_radius: f64::INFINITY,
+            growth_time_s: 0.0,
             frequency_rad_s: 0.0,
             damping: -1.0,
             signal: signal.to_owned(),
@@ -39,24 +60,28 @@ impl UnstableLoop {
     }
 }
 
-impl fmt::Display for UnstableLoop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl UnstableLoop {
+    /// Returns the reason why a loop without `results`, such as margins, has none.
+    pub fn reason(&self, results: &str) -> String {
         if self.spectral_radius.is_infinite() {
-            return write!(
-                f,
-                "the poles of the closed loop cannot be computed, so that its margins are not known"
+            return format!(
+                "the poles of the closed loop cannot be computed, and without them it has no {results}"
             );
         }
-        write!(
-            f,
-            "the closed loop is not stable and has no margins: a pole of magnitude {:.7} at {:.4} rad/s ({:.4} Hz), damping \
-             {:.3e}, is largest in `{}`",
-            self.spectral_radius,
-            self.frequency_rad_s,
-            self.frequency_rad_s / TAU,
-            self.damping,
-            self.signal
+        let Self { growth_time_s, frequency_rad_s, damping, signal, .. } = self;
+        format!(
+            "the closed loop is not stable and has no {results}: a pole of magnitude {} at \
+             {frequency_rad_s:.4} rad/s ({:.4} Hz), damping {damping:.3e}, grows by e in {growth_time_s:.3e} s and is \
+             largest in `{signal}`",
+            magnitude_text(self.spectral_radius),
+            frequency_rad_s / TAU,
         )
+    }
+}
+
+impl fmt::Display for UnstableLoop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.reason("margins"))
     }
 }
 
@@ -71,7 +96,7 @@ pub fn require_stable(
     let largest = poles.iter().copied().max_by(|a, b| a.norm_sqr().total_cmp(&b.norm_sqr()));
     let Some(worst) = largest else { return Ok(0.0) };
     let radius = modulus(worst);
-    if radius <= 1.0 + ROUNDING {
+    if is_stable(radius, opened.period) {
         return Ok(radius);
     }
     let vector = eigenvector(closed, worst);
@@ -83,6 +108,7 @@ pub fn require_stable(
     let size = modulus(growth);
     Err(UnstableLoop {
         spectral_radius: radius,
+        growth_time_s: opened.period / libm::log(radius),
         frequency_rad_s: size,
         damping: -growth.re / size,
         signal: largest_signal(opened, motion).unwrap_or_default(),
@@ -95,4 +121,20 @@ fn largest_signal(opened: &OpenLoop, motion: &[Complex<f64>]) -> Option<String> 
     let size = |signal: usize| motion.iter().skip(signal).step_by(count).map(Complex::norm_sqr).sum::<f64>();
     let largest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
     Some(opened.signals[largest].name.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_is_one_of_time() {
+        for period in [1e-3, 0.1, 20.0] {
+            let at = |rate: f64| is_stable(libm::exp(rate * period), period);
+            assert!(at(-1.0) && at(0.9e-8) && !at(1.1e-8), "{period}");
+        }
+        // A rounding of the poles is no growth.
+        assert!(is_stable(1.0 + 5e-12, 1e-5) && !is_stable(1.0 + 2e-11, 1e-5));
+        assert_eq!([magnitude_text(1.0 + 4.2e-9), magnitude_text(1.25)], ["1 + 4.2e-9", "1.2500000"]);
+    }
 }

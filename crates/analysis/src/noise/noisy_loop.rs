@@ -68,11 +68,7 @@ impl fmt::Display for NoiseError {
         match self {
             Self::Key(fault) => write!(f, "{fault}"),
             Self::Request(why) => f.write_str(why),
-            Self::Unstable(UnstableLoop { spectral_radius, frequency_rad_s, damping, signal }) => write!(
-                f,
-                "the closed loop is not stable and has no spectrum: a pole of magnitude {spectral_radius:.7} at \
-                 {frequency_rad_s:.4} rad/s, damping {damping:.3e}, is largest in `{signal}`"
-            ),
+            Self::Unstable(unstable) => f.write_str(&unstable.reason("spectrum")),
             Self::Unsettled(key) => write!(
                 f,
                 "the noise of `{key}` drives a motion that the loop does not damp: its variance grows without limit"

@@ -6,7 +6,7 @@ use super::goal::TuningGoal;
 use super::linear_step::{PENALTY, Slope};
 use super::sensitivity_minima::LoopSensitivity;
 use super::{TunedParameter, TuningFault};
-use crate::margins::{ROUNDING, modulus};
+use crate::margins::{is_stable, modulus};
 use crate::open_loop::OpenLoop;
 
 /// Values that exceed the least one by more than this are not linearised: they do not become the least in a step.
@@ -125,10 +125,13 @@ impl LoopSet<'_> {
             let PlantModel { sensitivity, measures } = self.model(values, plant)?;
             let closed = sensitivity.closed_poles().ok_or(TuningFault::Unstable(plant, f64::INFINITY))?;
             let spectral_radius = closed.iter().map(|pole| modulus(*pole)).fold(0.0, f64::max);
-            let is_stable = spectral_radius <= 1.0 + ROUNDING;
             let period = sensitivity.samples.period;
             let angle = self.constrained_angle(plant, period);
-            let minima = if is_stable { sensitivity.minima(&closed, TRACKED) } else { Vec::new() };
+            let minima = if is_stable(spectral_radius, period) {
+                sensitivity.minima(&closed, TRACKED)
+            } else {
+                Vec::new()
+            };
             let least = minima.iter().min_by(|a, b| a.1.total_cmp(&b.1));
             Ok(PlantLoop {
                 period,

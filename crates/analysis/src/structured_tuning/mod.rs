@@ -27,6 +27,8 @@ pub use sensitivity_minima::LoopSensitivity;
 
 use loop_set::Evaluation;
 
+use crate::margins::magnitude_text;
+
 /// Narrow and wide trust region at the start, relative to the ranges.
 const TRUSTS: [f64; 2] = [0.1, 0.4];
 /// Number of points of the ranges from which searches start.
@@ -99,8 +101,9 @@ impl fmt::Display for TuningFault {
         match self {
             Self::Unstable(plant, radius) => write!(
                 f,
-                "the closed loop of plant {plant} is not stable at the start: its spectral radius is {radius:.7}; a search for \
-                 margins starts from a stable loop"
+                "the closed loop of plant {plant} is not stable at the start: its spectral radius is {}; a search for margins \
+                 starts from a stable loop",
+                magnitude_text(*radius)
             ),
             Self::Key(fault) => write!(f, "`{}`: {}", fault.key, fault.why),
             Self::Loop(why) => f.write_str(why),

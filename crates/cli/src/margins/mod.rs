@@ -12,7 +12,7 @@ use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::settling_time::SETTLING_BAND;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
-use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase};
+use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase, uncertain_box};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -82,6 +82,9 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
     let key = |fault: ConfigError| {
         CliError::from(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
     };
+    if args.worst {
+        uncertain_box(scenario).map_err(key)?;
+    }
     let margins =
         ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
             MarginsFault::Key(fault) => key(fault),

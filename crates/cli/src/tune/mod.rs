@@ -7,6 +7,8 @@ mod table;
 mod tuned;
 mod tuning;
 
+use clap::builder::Resettable;
+use clap::{ArgGroup, Id};
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{ModelUncertainty, RobustGoal, RobustSearch, optimize};
 
@@ -22,6 +24,10 @@ use tuned::{TuneMethodResults, TuneResults};
 use tuning::TuneSetup;
 
 #[derive(clap::Args)]
+#[command(
+    group(ArgGroup::new("written").args(["figures", "save"]).multiple(true)),
+    mut_arg("force", |force| force.requires(Resettable::<Id>::Reset).requires("written"))
+)]
 pub struct TuneArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,

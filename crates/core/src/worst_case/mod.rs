@@ -108,7 +108,10 @@ impl WorstCase {
 }
 
 /// Returns the box of a scenario that has uncertain keys.
-fn uncertain_box(scenario: &Scenario) -> Result<UncertainBox, ConfigError> {
+///
+/// # Errors
+/// A scenario without uncertain keys.
+pub fn uncertain_box(scenario: &Scenario) -> Result<UncertainBox, ConfigError> {
     let ranges = UncertainBox::new(&scenario.uncertain, &scenario.self_contained().to_table());
     if ranges.keys.is_empty() {
         let why = "is missing: the worst case is searched for over the ranges of its keys";

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import TYPE_CHECKING
 
+from flexsc import _native as engine
 from flexsc._equality import Compared
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Linear
 
-# Poles this near to the limit of stability are on it, to rounding.
-_ROUNDING = 1e-8
 _LARGEST = 1e4
 
 
@@ -24,8 +23,8 @@ _LARGEST = 1e4
 class Margins(Compared):
     """Margins of a loop: how far the commands may be off before the closed loop is unstable.
 
-    They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones.
-    Where a pole lies on the limit at the nominal gain, as of an undamped mode, they may be up to 2e-6 larger.
+    They end where a motion decays by less than 1e-8 of itself in a second, and so are smaller than the true
+    ones. Where one does not decay at the nominal gain, as an undamped mode, they may be as much larger.
 
     >>> flexsc.Scenario.example("rotation-robust").linearise(loop="command").margins().gain_below
     0.0
@@ -74,11 +73,13 @@ def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
         found = poles(factor)
         return float(found.real.max() if opened.period is None else np.abs(found).max() - 1.0)
 
+    # One limit in time, also for a loop without a period.
+    steady = engine.steady_change(opened.period or 1.0)
     nominal = beyond(1.0)
-    if nominal > _ROUNDING:
+    if nominal > steady:
         raise ValueError(_unstable_text(poles(1.0), opened.period))
     # A pole that the loop leaves on the limit, such as an undamped mode, stays there.
-    limit = -_ROUNDING if nominal < -2.0 * _ROUNDING else _ROUNDING
+    limit = -steady if nominal < -2.0 * steady else steady
 
     def unstable(factor: complex) -> bool:
         return beyond(factor) > limit
