@@ -59,7 +59,7 @@ fn craft(imbalance: &str) -> (FlexibleBody, Vec<Bearing>, Vec<Vector>) {
         there.dot(&coupling.rotations[mode]).signum()
     };
     let damping = DMatrix::from_fn(8, 8, |row, column| rows[row + 1][17 + column] * sign(row) * sign(column));
-    coupling.damping = Some(damping);
+    (coupling.damping, coupling.couples_by_damping) = (damping, true);
     coupling.moments.fill(Matrix3::zeros());
     let flexible = model.flexible().expect("two-way");
     let wheels = wheels(imbalance);

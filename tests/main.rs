@@ -62,6 +62,7 @@ mod envelopes;
 mod exposure;
 mod filters;
 mod goals;
+mod isolators;
 mod jets;
 mod linear_budgets;
 mod loops;

@@ -143,10 +143,10 @@ impl LinearModel {
             let (q, w) = (6 + 2 * index, mode.frequency.get());
             a[(q, q + 1)] = 1.0;
             a[(q + 1, q)] -= w * w;
-            match coupling.and_then(|coupling| coupling.damping.as_ref()) {
-                Some(damping) => {
+            match coupling {
+                Some(coupling) => {
                     for other in 0..modes {
-                        a[(q + 1, 7 + 2 * other)] -= damping[(index, other)];
+                        a[(q + 1, 7 + 2 * other)] -= coupling.damping[(index, other)];
                     }
                 }
                 None => a[(q + 1, q + 1)] -= 2.0 * mode.damping.get() * w,

@@ -26,6 +26,8 @@ pub struct SpacecraftModes {
     pub inertia_kg_m2: [[f64; 3]; 3],
     /// Off-diagonal damping of the free modes.
     pub damping_coupling: f64,
+    /// True if runs keep the whole damping matrix of the free modes, as linear models do; false if they keep its diagonal.
+    pub whole_damping: bool,
     /// Modes with the roots held, appendage by appendage.
     pub clamped: Vec<ClampedModeRow>,
     /// Response at each point to a torque on the hub.
@@ -116,6 +118,8 @@ impl SpacecraftModes {
             centre_m: three(&craft.centre),
             inertia_kg_m2: [0, 1, 2].map(|row| three(&inertia.row(row).transpose())),
             damping_coupling: craft.damping_coupling,
+            whole_damping: craft.model.articulation.is_some()
+                || craft.model.coupling.as_ref().is_some_and(|coupling| coupling.couples_by_damping),
             clamped: clamped.collect(),
             points: points.collect(),
             turned: scenario

@@ -77,9 +77,10 @@ pub struct ModalCoupling {
     pub rotations: Vec<Vector>,
     /// Change of the inertia tensor per unit of each mode (sqrt(kg) m).
     pub moments: Vec<Matrix3<f64>>,
-    /// Damping matrix of all modes (1/s) if its off-diagonal entries matter; its diagonal then replaces the modes'
-    /// damping ratios.
-    pub damping: Option<DMatrix<f64>>,
+    /// Damping matrix of all modes (1/s), with the damping ratios of the modes on its diagonal. Linear models have it whole.
+    pub damping: DMatrix<f64>,
+    /// True if runs have the damping matrix whole too; with its diagonal alone, the modes are uncoupled.
+    pub couples_by_damping: bool,
 }
 
 impl ThreeAxisModel {
@@ -118,7 +119,7 @@ impl ThreeAxisModel {
 
     /// Returns the body as the integrator takes it; `None` if the modes do not act back on the rotation.
     pub fn flexible(&self) -> Option<FlexibleBody> {
-        let ModalCoupling { rotations, moments, damping } = self.coupling.as_ref()?;
+        let ModalCoupling { rotations, moments, damping, couples_by_damping } = self.coupling.as_ref()?;
         let effects = rotations.iter().zip(moments);
         let modes = self.modes.iter().zip(effects).map(|(mode, (rotation, moments))| FreeMode {
             frequency: mode.frequency.get(),
@@ -126,6 +127,7 @@ impl ThreeAxisModel {
             rotation: *rotation,
             moments: *moments,
         });
-        Some(FlexibleBody { inertia: self.inertia, modes: modes.collect(), damping: damping.clone() })
+        let damping = couples_by_damping.then(|| damping.clone());
+        Some(FlexibleBody { inertia: self.inertia, modes: modes.collect(), damping })
     }
 }

@@ -47,10 +47,11 @@ impl ScenarioSpec {
             return Some((format!("appendage[{index}].{key}"), why));
         }
         let coupling = model.three_axis().and_then(|body| body.coupling.as_ref());
-        let damping = coupling.and_then(|coupling| coupling.damping.as_ref());
-        let is_asked = self.spacecraft.as_ref().is_some_and(|craft| craft.whole_damping);
+        let is_coupled = coupling.is_some_and(|coupling| coupling.couples_by_damping);
+        let is_asked = self.spacecraft.as_ref().is_some_and(|craft| craft.whole_damping == Some(true));
         let key = if is_asked { "spacecraft.whole_damping" } else { "spacecraft.small_angles" };
-        damping.map(|_| (key.to_owned(), "needs uncoupled free modes, and the damping matrix couples them"))
+        is_coupled
+            .then(|| (key.to_owned(), "needs uncoupled free modes, and the damping matrix couples them"))
     }
 
     /// Returns the key of a torque that depends on attitude or time, with the reason.

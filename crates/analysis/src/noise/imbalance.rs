@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::lines::{LineLoop, OutputLines, SineLoad};
+use super::speed_grid::{ResonantSpeed, resonant_speeds};
 use flexsc_scenario::Scenario;
 
 /// Lines of the outputs under one harmonic of one wheel at one speed.
@@ -38,15 +39,45 @@ pub struct WheelSpectrum {
     pub lines: Vec<WheelLines>,
 }
 
-/// Number of speeds up to the largest, and the smallest of them relative to the largest.
+/// Number of equal steps up to the largest speed, and the smallest of them relative to the largest.
 const SPEEDS: u32 = 48;
 const LOWEST: f64 = 0.05;
+
+/// Rise of an rms above the level between two steps that makes a peak.
+const RISE: f64 = 1.2;
+/// Speeds beside a peak, in half widths.
+const FLANKS: [f64; 2] = [-1.5, 1.5];
 
 /// Harmonic of a wheel: loads per square of the speed.
 struct WheelHarmonic {
     wheel: usize,
     order: f64,
     load: SineLoad,
+}
+
+impl WheelSpectrum {
+    /// Returns the lines at some of the speeds.
+    fn selected(&self, places: &[usize]) -> Self {
+        let each = self.lines.len() / self.speed_rad_s.len().max(1);
+        let of = |values: &Vec<f64>| places.iter().map(|place| values[*place]).collect();
+        let lines = places.iter().flat_map(|place| &self.lines[place * each..(place + 1) * each]);
+        Self {
+            speed_rad_s: of(&self.speed_rad_s),
+            rms: self.rms.iter().map(of).collect(),
+            lines: lines.cloned().collect(),
+        }
+    }
+
+    /// Returns the lines at the speeds of two spectra, in increasing order of the speed.
+    fn merged(mut self, other: Self) -> Self {
+        self.speed_rad_s.extend(other.speed_rad_s);
+        self.rms.iter_mut().zip(other.rms).for_each(|(rms, more)| rms.extend(more));
+        self.lines.extend(other.lines);
+        let mut places: Vec<usize> = (0..self.speed_rad_s.len()).collect();
+        places.sort_by(|a, b| self.speed_rad_s[*a].total_cmp(&self.speed_rad_s[*b]));
+        places.dedup_by(|a, b| self.speed_rad_s[*a] == self.speed_rad_s[*b]);
+        self.selected(&places)
+    }
 }
 
 /// Imbalance of a scenario's wheels.
@@ -80,13 +111,6 @@ impl WheelImbalance {
         Ok(None)
     }
 
-    /// Returns speeds (rad/s) up to the largest that the scenario gives; `None` if it gives none.
-    pub fn speeds(&self) -> Option<Vec<f64>> {
-        let largest = self.largest_speed?;
-        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
-        Some((0..SPEEDS).map(|k| largest * part(k)).collect())
-    }
-
     /// Computes the lines of some outputs at speeds of the wheels (rad/s), and their rms.
     ///
     /// # Errors
@@ -94,10 +118,10 @@ impl WheelImbalance {
     pub fn spectrum(
         &self,
         lines: &LineLoop<'_>,
-        speeds: Vec<f64>,
+        speeds: &[f64],
         outputs: &[usize],
     ) -> Result<WheelSpectrum, ConfigError> {
-        let lines = self.lines(lines, &speeds, outputs)?;
+        let lines = self.lines(lines, speeds, outputs)?;
         let each = lines.len() / speeds.len().max(1);
         let rms = |output: usize| {
             let at = |own: &[WheelLines]| {
@@ -105,7 +129,48 @@ impl WheelImbalance {
             };
             lines.chunks(each.max(1)).map(at).collect()
         };
-        Ok(WheelSpectrum { rms: (0..outputs.len()).map(rms).collect(), speed_rad_s: speeds, lines })
+        Ok(WheelSpectrum { rms: (0..outputs.len()).map(rms).collect(), speed_rad_s: speeds.to_vec(), lines })
+    }
+
+    /// Computes the lines of some outputs at equal steps up to the largest speed that the scenario gives, and at the peaks between
+    /// them; `None` if it gives none.
+    ///
+    /// # Errors
+    /// See [`LineLoop::lines`].
+    pub fn refined_spectrum(
+        &self,
+        lines: &LineLoop<'_>,
+        outputs: &[usize],
+    ) -> Result<Option<WheelSpectrum>, ConfigError> {
+        let Some(largest) = self.largest_speed else { return Ok(None) };
+        let part = |k: u32| LOWEST + (1.0 - LOWEST) * f64::from(k) / f64::from(SPEEDS - 1);
+        let steps: Vec<f64> = (0..SPEEDS).map(|k| largest * part(k)).collect();
+        let orders: Vec<f64> =
+            self.harmonics.chunk_by(|a, b| a.order == b.order).map(|same| same[0].order).collect();
+        let range = [steps[0], largest];
+        let resonant = resonant_speeds(&lines.parts, &orders, range, steps[1] - steps[0])?;
+        let own = self.spectrum(lines, &steps, outputs)?;
+        let examined: Vec<f64> = resonant.iter().map(|peak| peak.speed).collect();
+        let tops = self.spectrum(lines, &examined, outputs)?;
+        let rises = |place: usize| {
+            let speed = examined[place];
+            let after = steps.partition_point(|step| *step < speed).clamp(1, steps.len() - 1);
+            let share = (speed - steps[after - 1]) / (steps[after] - steps[after - 1]);
+            own.rms.iter().zip(&tops.rms).any(|(rms, tops)| {
+                let level = libm::pow(rms[after - 1], 1.0 - share) * libm::pow(rms[after], share);
+                tops[place] > RISE * level
+            })
+        };
+        let beside = |place: usize| {
+            let ResonantSpeed { speed, width } = resonant[place];
+            FLANKS.map(|part| speed + part * width)
+        };
+        let risen: Vec<usize> = (0..examined.len()).filter(|place| rises(*place)).collect();
+        let mut flanks: Vec<f64> = risen.iter().flat_map(|place| beside(*place)).collect();
+        flanks.retain(|speed| (range[0]..range[1]).contains(speed));
+        let flanks = self.spectrum(lines, &flanks, outputs)?;
+        let tops = tops.selected(&risen);
+        Ok(Some(own.merged(tops).merged(flanks)))
     }
 
     /// Computes the lines of some outputs at speeds of the wheels (rad/s): each harmonic of each wheel alone.

@@ -59,7 +59,7 @@ impl OutputLines {
 
 /// Closed loop to which loads that turn are applied.
 pub struct LineLoop<'a> {
-    parts: LoopParts<'a>,
+    pub(super) parts: LoopParts<'a>,
     /// Outputs as rows over the states of the body.
     rows: Vec<OutputRow>,
 }

@@ -28,6 +28,7 @@ mod report;
 mod sample_times;
 mod schedule;
 mod source;
+mod speed_grid;
 mod welch;
 mod windows;
 

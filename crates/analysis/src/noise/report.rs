@@ -20,7 +20,7 @@ pub struct NoiseRequest {
     pub signals: Vec<String>,
     /// Window of the indices, if there is one.
     pub window: Option<Window>,
-    /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for those up to their largest.
+    /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for steps up to their largest and the peaks between.
     pub speeds: Option<Vec<f64>>,
 }
 
@@ -190,12 +190,16 @@ fn wheel_spectrum(
             return Err(NoiseError::Request(why));
         }
     }
-    let Some(speeds) = speeds.or_else(|| imbalance.speeds()) else {
+    let lines = LineLoop::from_scenario(scenario)?;
+    let found = match speeds {
+        Some(speeds) => Some(imbalance.spectrum(&lines, &speeds, outputs)?),
+        None => imbalance.refined_spectrum(&lines, outputs)?,
+    };
+    let Some(found) = found else {
         let why = "speeds must be given: the scenario gives no largest speed of its wheels";
         return Err(NoiseError::Request(why.to_owned()));
     };
-    let lines = LineLoop::from_scenario(scenario)?;
-    Ok(Some(imbalance.spectrum(&lines, speeds, outputs)?))
+    Ok(Some(found))
 }
 
 impl WindowRms {

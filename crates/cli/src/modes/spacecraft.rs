@@ -43,8 +43,9 @@ impl Results for Spacecraft {
         if is_flexible {
             self.print_clamped();
             say!(
-                "  modes of the complete spacecraft, hub free; off-diagonal damping {}",
-                digits(parts.damping_coupling)
+                "  modes of the complete spacecraft, hub free; off-diagonal damping {}: {}",
+                digits(parts.damping_coupling),
+                if parts.whole_damping { "kept" } else { "kept in linear loops, left out in runs" }
             );
         }
         print_influences(&parts.free, *jets, *style);

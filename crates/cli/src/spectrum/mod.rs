@@ -39,7 +39,7 @@ pub struct SpectrumArgs {
     /// Time from the start of a window to that of the next (s), for differences of their means
     #[arg(long, value_name = "TIME", requires = "window", value_parser = in_unit("s"))]
     separation: Option<f64>,
-    /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: up to their largest, 48 speeds]
+    /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: 48 up to their largest, and the peaks between]
     #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     speeds: Option<PositiveGrid>,
     /// Full log of a run of the scenario, whose densities by Welch's method are compared

@@ -3496,8 +3496,8 @@ class Spacecraft(Part):
             those of the target; without vibration they are the rates of the hub.
         rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
-        whole_damping: Whether the full damping matrix of the free modes is kept even if its off-diagonal
-            terms are negligible.
+        whole_damping: Whether runs keep the full damping matrix of the free modes; default: if its
+            off-diagonal terms are not negligible.
         points: Named points of the hub, at which jets and sensors are mounted; default: one at O, named
             `hub`.
     """
@@ -3527,8 +3527,8 @@ class Spacecraft(Part):
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     whole_damping: bool | None = None
-    """Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are
-    negligible.
+    """Whether runs keep the full damping matrix of the free modes; default: if its off-diagonal terms are
+    not negligible.
     """
     points: Sequence[NamedPoint] | None = None
     """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""

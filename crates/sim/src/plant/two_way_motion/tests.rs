@@ -9,7 +9,7 @@ use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::gauss_legendre::{NODES, WEIGHTS};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::Spatial;
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::{DMatrix, DVector, Matrix3, Quaternion};
 
 use crate::plant::{Plant, ThreeAxisQuantities};
 use flexsc_scenario::ResolvedScenario;
@@ -48,7 +48,10 @@ fn two_way(body: &ThreeAxisModel) -> ThreeAxisModel {
     let moments =
         |rotation: &Vector| Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 });
     let moments = rotations.iter().map(moments).collect();
-    ThreeAxisModel { coupling: Some(ModalCoupling { rotations, moments, damping: None }), ..body.clone() }
+    let own = body.modes.iter().map(|mode| 2.0 * mode.damping.get() * mode.frequency.get());
+    let damping = DMatrix::from_diagonal(&DVector::from_iterator(body.modes.len(), own));
+    let coupling = ModalCoupling { rotations, moments, damping, couples_by_damping: false };
+    ThreeAxisModel { coupling: Some(coupling), ..body.clone() }
 }
 
 fn study(sensed_at: &str) -> ResolvedScenario {

@@ -105,7 +105,8 @@ impl AssembledSpacecraft {
                 coupling: Some(ModalCoupling {
                     rotations: (0..free.frequencies.len()).map(|mode| free.rotation(mode)).collect(),
                     moments: moments(&parts, &free),
-                    damping: damping.full_matrix(spacecraft.whole_damping),
+                    couples_by_damping: spacecraft.whole_damping.unwrap_or_else(|| damping.couples_modes()),
+                    damping: damping.matrix,
                 }),
                 articulation: articulation(spacecraft, appendages, &spinning),
             },

@@ -5,6 +5,8 @@ use nalgebra::DMatrix;
 
 /// Off-diagonal damping coupling below which neglecting it causes only a small error of the response.
 const SMALL: f64 = 0.05;
+/// Ratio of two clamped damping ratios up to which little passes a damper that the diagonal does not have.
+const ALIKE: f64 = 10.0;
 
 /// Damping matrix of free modes, Dq = Y' D Y with D = 2 zeta O of the clamped ones.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +17,8 @@ pub struct FreeModeDamping {
     pub ratios: Vec<f64>,
     /// Largest |Dq_ij| W/|W_i² - W_j²|: the approximate relative error of a mode if only the diagonal is kept.
     pub coupling: f64,
+    /// True if a clamped damping ratio is more than [`ALIKE`] times another: the modes of an isolator.
+    has_isolator: bool,
 }
 
 impl FreeModeDamping {
@@ -38,12 +42,14 @@ impl FreeModeDamping {
                 }
             }
         }
+        let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
+        let has_isolator = ratios.iter().any(|ratio| *ratio > ALIKE * least);
         let ratios = own.iter().enumerate().map(|(mode, frequency)| matrix[(mode, mode)] / (2.0 * frequency));
-        Self { ratios: ratios.collect(), coupling, matrix }
+        Self { ratios: ratios.collect(), coupling, has_isolator, matrix }
     }
 
-    /// Returns the full matrix if the coupling is not small, or if `asked` requires it.
-    pub fn full_matrix(&self, requested: bool) -> Option<DMatrix<f64>> {
-        (requested || self.coupling > SMALL).then(|| self.matrix.clone())
+    /// Returns true if the entries of the matrix off its diagonal are not negligible.
+    pub fn couples_modes(&self) -> bool {
+        self.coupling > SMALL || self.has_isolator
     }
 }

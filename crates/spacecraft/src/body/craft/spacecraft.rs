@@ -39,9 +39,9 @@ pub struct Spacecraft {
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,
-    /// Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are negligible.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub whole_damping: bool,
+    /// Whether runs keep the full damping matrix of the free modes; default: if its off-diagonal terms are not negligible.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whole_damping: Option<bool>,
     /// Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
