@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
 use crate::util::Dir;
 
 /// A rigid body that rotates freely: its attitude and its orbit are known in closed form.
@@ -39,6 +41,14 @@ fn near(found: &[f64], exact: &[f64], within: f64) {
     }
 }
 
+/// Returns the matrix from the mean axes of 2026-03-20T14:46:00Z to those of a frame: `tests/golden/precession.csv`.
+fn from_date(frame: &str) -> Matrix3<f64> {
+    let golden = include_str!("golden/precession.csv");
+    let row = golden.lines().find(|row| row.starts_with(&format!("1774017960,{frame},"))).expect("a date");
+    let cells = row.split(',').skip(2).map(|cell| cell.parse().expect("a number"));
+    Matrix3::from_row_iterator(cells).transpose()
+}
+
 #[test]
 fn an_attitude_message_has_the_free_rotation() {
     let dir = Dir::holding("free.toml", FREE);
@@ -51,7 +61,7 @@ fn an_attitude_message_has_the_free_rotation() {
         ("CREATION_DATE", "2026-03-20T14:46:00.000000000"),
         ("OBJECT_NAME", "free"),
         ("OBJECT_ID", "UNKNOWN"),
-        ("REF_FRAME_A", "TOD_EARTH"),
+        ("REF_FRAME_A", "EME2000"),
         ("REF_FRAME_B", "SC_BODY_1"),
         ("TIME_SYSTEM", "UTC"),
         ("START_TIME", "2026-03-20T14:46:00.000000000"),
@@ -64,11 +74,13 @@ fn an_attitude_message_has_the_free_rotation() {
         assert_eq!(keys.get(key), Some(&value), "{key}");
     }
     assert_eq!(rows.len(), 121);
+    let turn = UnitQuaternion::from_matrix(&from_date("EME2000"));
     for (index, row) in rows.iter().enumerate() {
         let half = 0.5 * 0.02 * 0.5 * index as f64;
+        let q = turn.quaternion() * Quaternion::new(half.cos(), 0.0, 0.0, half.sin());
         // 0.02 rad/s in degrees per second.
-        let exact = [0.0, 0.0, half.sin(), half.cos(), 0.0, 0.0, 1.145_915_590_261_646_5];
-        near(&numbers(row), &exact, 1e-12);
+        let exact = [q.i, q.j, q.k, q.w, 0.0, 0.0, 1.145_915_590_261_646_5];
+        near(&numbers(row), &exact, 1e-10);
     }
     assert_eq!(rows[119][0], "2026-03-20T14:46:59.500000000");
     assert!(!text.contains("-0.0000000000000000 "), "no zero has a sign");
@@ -85,7 +97,7 @@ fn an_orbit_message_has_the_circular_orbit() {
         ("CCSDS_OEM_VERS", "2.0"),
         ("OBJECT_ID", "2026-012A"),
         ("CENTER_NAME", "EARTH"),
-        ("REF_FRAME", "TOD"),
+        ("REF_FRAME", "EME2000"),
         ("TIME_SYSTEM", "UTC"),
         ("INTERPOLATION", "LAGRANGE"),
         ("INTERPOLATION_DEGREE", "7"),
@@ -99,11 +111,78 @@ fn an_orbit_message_has_the_circular_orbit() {
         let (sin, cos) = (rate * 0.5 * index as f64).sin_cos();
         let ((tilt, flat), (node, x)) = (0.9_f64.sin_cos(), 0.4_f64.sin_cos());
         let at = |c: f64, s: f64| [c * x - s * flat * node, c * node + s * flat * x, s * tilt];
-        let position = at(a * cos, a * sin);
-        let velocity = at(-a * rate * sin, a * rate * cos);
+        let turn = from_date("EME2000");
+        let position = turn * Vector3::from(at(a * cos, a * sin));
+        let velocity = turn * Vector3::from(at(-a * rate * sin, a * rate * cos));
         let row = numbers(row);
-        near(&row[..3], &position, 1e-8);
-        near(&row[3..], &velocity, 1e-11);
+        near(&row[..3], position.as_slice(), 1e-6);
+        near(&row[3..], velocity.as_slice(), 1e-9);
+    }
+}
+
+/// Every frame that a run can be rotated into is named with the rows rotated into it, and no other is.
+#[test]
+fn the_frame_of_a_message_is_that_of_its_rows() {
+    let tle = "orbit = { tle = [\"1 28057U 03049A   06177.78615833  .00000060  00000-0  35940-4 0  1836\", \
+               \"2 28057  98.4283 247.6961 0000884  88.1964 271.9322 14.35478080140550\"] }";
+    let orbit = FREE.lines().find(|line| line.starts_with("orbit")).expect("an orbit");
+    let undated = FREE.replace("epoch = 2026-03-20T14:46:00Z\n", "");
+    let elements = undated.replace(orbit, tle);
+    let dir = Dir::new();
+    for (name, text) in [("free", FREE), ("undated", &undated), ("elements", &elements)] {
+        dir.write(&format!("{name}.toml"), text);
+        dir.run(&format!("simulate {name}.toml --log full --set duration=10")).exits(0);
+    }
+    let export = |name: &str, options: &str| {
+        let epoch = if name == "undated" { "--epoch 2026-03-20T14:46:00Z" } else { "" };
+        let message_of = |format: &str| {
+            dir.run(&format!("export {name}.mcap --format {format} {epoch} {options}")).printed()
+        };
+        let (orbit, attitude) = (message_of("oem"), message_of("aem"));
+        let ((orbit, positions), (attitude, quaternions)) = (message(&orbit), message(&attitude));
+        let names = format!("{} {}", orbit["REF_FRAME"], attitude["REF_FRAME_A"]);
+        (names, Vector3::from_row_slice(&numbers(&positions[3])[..3]), numbers(&quaternions[3])[..4].to_vec())
+    };
+    let logged = |name: &str| {
+        let log = dir.run(&format!("export {name}.mcap --topic /orbit --format jsonl")).printed();
+        let row: serde_json::Value = serde_json::from_str(log.lines().nth(3).expect("a row")).expect("JSON");
+        Vector3::from_fn(|axis, _| 1e-3 * row[format!("axes[{axis}].position_m")].as_f64().expect("a number"))
+    };
+    let own = logged("free");
+    for (options, names, turn) in [
+        ("", "EME2000 EME2000", from_date("EME2000")),
+        ("--frame EME2000", "EME2000 EME2000", from_date("EME2000")),
+        ("--frame GCRF", "GCRF GCRF", from_date("GCRF")),
+        ("--frame ICRF", "ICRF ICRF", from_date("GCRF")),
+    ] {
+        let (found, position, q) = export("free", options);
+        assert_eq!(found, names);
+        near(position.as_slice(), (turn * own).as_slice(), 1e-6);
+        let half = 0.5 * 0.02 * 1.5_f64;
+        let exact = UnitQuaternion::from_matrix(&turn).quaternion()
+            * Quaternion::new(half.cos(), 0.0, 0.0, half.sin());
+        near(&q, &[exact.i, exact.j, exact.k, exact.w], 1e-10);
+    }
+    for (name, options, names) in [
+        ("elements", "", "TEME TEMEOFDATE"),
+        ("elements", "--frame TEME", "TEME TEMEOFDATE"),
+        ("undated", "", "EME2000 EME2000"),
+        ("undated", "--frame TOD", "TOD TOD_EARTH"),
+    ] {
+        let (found, position, _) = export(name, options);
+        assert_eq!(found, names);
+        near(position.as_slice(), logged(name).as_slice(), 1e-8);
+    }
+    for (name, frame, says) in
+        [("free", "TOD", "EME2000"), ("free", "TEME", "EME2000"), ("elements", "EME2000", "TEME")]
+    {
+        for format in ["oem", "aem"] {
+            dir.run(&format!("export {name}.mcap --format {format} --frame {frame}")).exits(2).says(&[
+                "--frame",
+                "nutation",
+                &format!("leave out --frame, for {says}"),
+            ]);
+        }
     }
 }
 

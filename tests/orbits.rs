@@ -8,13 +8,13 @@ use flexsc_core::numerics::time::Instant;
 use crate::traces::{column, times, traced, within};
 use crate::util::Dir;
 
-const TLE: &str = "{ tle = [\"1 28057U 03049A   06177.78615833  .00000060  00000-0  35940-4 0  1836\", \
+pub const TLE: &str = "{ tle = [\"1 28057U 03049A   06177.78615833  .00000060  00000-0  35940-4 0  1836\", \
                    \"2 28057  98.4283 247.6961 0000884  88.1964 271.9322 14.35478080140550\"] }";
 
-const KEPLER: &str = "{ semi_major_axis = 6.978e6, eccentricity = 0.01, inclination = 1.7, node = 0.4, perigee = 0.3, anomaly = 0.2 }";
+pub const KEPLER: &str = "{ semi_major_axis = 6.978e6, eccentricity = 0.01, inclination = 1.7, node = 0.4, perigee = 0.3, anomaly = 0.2 }";
 
 /// A rigid body under an open law, which only the environment moves.
-fn drifting(orbit: &str, rest: &str) -> String {
+pub fn drifting(orbit: &str, rest: &str) -> String {
     format!(
         "duration = 7200.0\nlaw = {{ open = {{}} }}\nlog = {{ period = 60.0 }}\n\
          [spacecraft]\nmass = 100.0\ninertia = [[20, 0, 0], [0, 24, 0], [0, 0, 28]]\nrate = [0, -1e-3, 0]\n\
@@ -22,7 +22,7 @@ fn drifting(orbit: &str, rest: &str) -> String {
     )
 }
 
-fn scenario(text: &str) -> Scenario {
+pub fn scenario(text: &str) -> Scenario {
     Scenario::parse("orbit.toml", text).expect("a scenario")
 }
 
@@ -123,6 +123,14 @@ fn orbits_that_do_not_hold_are_refused() {
     };
     let orbit = |orbit: &str| drifting(orbit, "");
     refused(&orbit("{}"), &["`environment.orbit`", "`semi_major_axis`", "`tle`", "`ephemeris`"]);
+    let inside = ["`environment.orbit.semi_major_axis`", "the orbit is inside the planet"];
+    refused(
+        &orbit("{ semi_major_axis = \"525 km\" }"),
+        &[inside[0], inside[1], "at an altitude of 525000 m it is 6903137"],
+    );
+    refused(&orbit("{ semi_major_axis = 6903 }"), &[inside[0], inside[1], "is it meant as \"6903 km\"?"]);
+    let nadir = "[[target]]\nfrom = 0\nprimary = { body = [0, 0, 1], along = \"nadir\" }\nsecondary = { body = [1, 0, 0], along = \"velocity\" }\n";
+    refused(&drifting("{ semi_major_axis = 6903 }", nadir), &inside);
     refused(&orbit("{ tle = [\"1\", \"2\"] }"), &["`environment.orbit.tle[0]`", "69 characters, got 1"]);
     refused(&orbit("{ tle = [\"1\"] }"), &["environment.orbit"]);
     refused(&orbit(&TLE.replace("tle =", "node = 0.1, tle =")), &["`node`", "`tle`"]);

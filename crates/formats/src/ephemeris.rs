@@ -17,6 +17,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::celestial_frame::CelestialFrame;
 use crate::structure::open_text_up_to;
 
 /// Least number of rows, those of one polynomial.
@@ -31,13 +32,23 @@ const FARTHEST: f64 = 1e15;
 /// Time (s) and position (m) of each row.
 type Rows = Vec<[f64; 4]>;
 
+/// Positions at instants, as a file or a scenario has them.
+#[derive(Debug, Default, PartialEq)]
+struct StateTable {
+    rows: Rows,
+    /// Line of each row, of rows in a file.
+    lines: Vec<usize>,
+    /// Date (ns after 1970, UTC) of the time 0 of the rows, if they have dates.
+    epoch_ns: Option<u64>,
+    /// Axes of the rows, if the file names them.
+    frame: Option<CelestialFrame>,
+}
+
 /// Positions at instants, or the path of the file that contains them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EphemerisTable {
     file: Option<String>,
-    rows: Arc<Rows>,
-    /// Date (ns after 1970, UTC) of the time 0 of the rows, if they have dates.
-    epoch_ns: Option<u64>,
+    table: Arc<StateTable>,
 }
 
 impl EphemerisTable {
@@ -57,50 +68,60 @@ impl EphemerisTable {
     pub fn read(&mut self, other: Option<&Self>) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
         if let Some(other) = other.filter(|other| other.file == self.file) {
-            (self.rows, self.epoch_ns) = (other.rows.clone(), other.epoch_ns);
+            self.table = other.table.clone();
             return Ok(());
         }
-        let (rows, epoch_ns) =
-            read_file(Path::new(file)).map_err(|why| format!("cannot be used: {file}: {why}"))?;
-        (self.rows, self.epoch_ns) = (Arc::new(rows), epoch_ns);
+        let table = read_file(Path::new(file)).map_err(|why| format!("cannot be used: {file}: {why}"))?;
+        self.table = Arc::new(table);
         Ok(())
     }
 
-    /// Keeps the rows inline, and removes the reference to their file; times then count from the start of a run at
-    /// `epoch_ns` (ns after 1970).
-    pub fn inline(&mut self, epoch_ns: Option<u64>) {
-        if self.file.is_some()
-            && let Some(rows) = self.rows(epoch_ns)
-        {
-            *self = Self { file: None, rows: Arc::new(rows), epoch_ns: None };
+    /// Replaces the reference to a file by rows: time (s) since the start of a run, and position (m).
+    pub fn inline(&mut self, rows: Vec<[f64; 4]>) {
+        if self.file.is_some() {
+            *self = Self { file: None, table: Arc::new(StateTable { rows, ..StateTable::default() }) };
         }
     }
 
     /// Returns the date (ns after 1970, UTC) of the first row, if the rows have dates.
     pub fn epoch_ns(&self) -> Option<u64> {
-        self.epoch_ns
+        self.table.epoch_ns
+    }
+
+    /// Returns the axes of the rows, if their file names them.
+    pub fn frame(&self) -> Option<CelestialFrame> {
+        self.table.frame
     }
 
     /// Returns the rows with times (s) since the start of a run at `epoch_ns` (ns after 1970): time, and position (m);
     /// `None` of rows with dates in a run without one, or of too few rows.
-    pub fn rows(&self, epoch_ns: Option<u64>) -> Option<Rows> {
-        if self.rows.len() < LEAST {
+    pub fn rows(&self, epoch_ns: Option<u64>) -> Option<Vec<[f64; 4]>> {
+        let StateTable { rows, epoch_ns: own, .. } = &*self.table;
+        if rows.len() < LEAST {
             return None;
         }
-        let Some(own) = self.epoch_ns else { return Some(self.rows.to_vec()) };
-        let shift = (i128::from(own) - i128::from(epoch_ns?)) as f64 / 1e9;
-        Some(self.rows.iter().map(|[t, x, y, z]| [t + shift, *x, *y, *z]).collect())
+        let Some(own) = own else { return Some(rows.clone()) };
+        let shift = (i128::from(*own) - i128::from(epoch_ns?)) as f64 / 1e9;
+        Some(rows.iter().map(|[t, x, y, z]| [t + shift, *x, *y, *z]).collect())
+    }
+
+    /// Returns the place of a row, for messages: its line in the file, or its number in the scenario.
+    pub fn place(&self, row: usize) -> String {
+        match (&self.file, self.table.lines.get(row)) {
+            (Some(file), Some(line)) => format!("{file}: line {line}"),
+            _ => format!("row {}", row + 1),
+        }
     }
 
     /// Returns true if both have the same rows in memory.
     pub fn shares_rows(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.rows, &other.rows)
+        Arc::ptr_eq(&self.table, &other.table)
     }
 
     /// Returns the reason for which rows of a scenario are no ephemeris.
     pub fn fault(&self) -> Option<String> {
         let number = |row: usize| format!("row {}", row + 1);
-        check(&self.rows, &number).err()
+        check(&self.table.rows, &number).err()
     }
 }
 
@@ -128,12 +149,12 @@ fn check(rows: &[[f64; 4]], place: &dyn Fn(usize) -> String) -> Result<(), Strin
     Ok(())
 }
 
-/// Reads a file; returns the rows, and the date (ns after 1970) of their time 0, if they have dates.
-fn read_file(path: &Path) -> Result<(Rows, Option<u64>), String> {
+/// Reads a file.
+fn read_file(path: &Path) -> Result<StateTable, String> {
     read(open_text_up_to(path, LONGEST)?)
 }
 
-fn read(file: impl Read) -> Result<(Rows, Option<u64>), String> {
+fn read(file: impl Read) -> Result<StateTable, String> {
     let mut lines = BufReader::new(file).lines().enumerate().peekable();
     let is_message = loop {
         match lines.peek() {
@@ -143,16 +164,13 @@ fn read(file: impl Read) -> Result<(Rows, Option<u64>), String> {
         }
     };
     let mut lines = lines.map(|(index, line)| (index + 1, line));
-    let (rows, places, epoch) = if is_message { message::read(&mut lines)? } else { read_table(&mut lines)? };
-    check(&rows, &|row| format!("line {}", places.get(row).copied().unwrap_or_default()))?;
-    Ok((rows, epoch))
+    let table = if is_message { message::read(&mut lines)? } else { read_table(&mut lines)? };
+    check(&table.rows, &|row| format!("line {}", table.lines.get(row).copied().unwrap_or_default()))?;
+    Ok(table)
 }
 
 /// Lines of a file with their numbers.
 type Lines<'a> = &'a mut dyn Iterator<Item = (usize, std::io::Result<String>)>;
-
-/// Rows of a file, the line of each, and the date (ns after 1970) of their time 0.
-type PlacedRows = (Rows, Vec<usize>, Option<u64>);
 
 /// Returns a line of a file.
 fn line_of((number, line): (usize, std::io::Result<String>)) -> Result<(usize, String), String> {
@@ -163,8 +181,8 @@ fn line_of((number, line): (usize, std::io::Result<String>)) -> Result<(usize, S
 }
 
 /// Reads the lines of a CSV file: a header if any, then time (s) and position (m), and columns that are not read.
-fn read_table(lines: Lines<'_>) -> Result<PlacedRows, String> {
-    let (mut rows, mut places) = (Rows::new(), Vec::new());
+fn read_table(lines: Lines<'_>) -> Result<StateTable, String> {
+    let mut table = StateTable::default();
     let mut columns = 0;
     for line in lines {
         let (number, line) = line_of(line)?;
@@ -188,13 +206,13 @@ fn read_table(lines: Lines<'_>) -> Result<PlacedRows, String> {
             let expected = if columns < 4 { 4 } else { columns };
             return Err(format!("line {number}: must have {expected} numbers, got {}", fields.len()));
         }
-        rows.push(numbers(&fields[..4]).map_err(|why| format!("line {number}: {why}"))?);
-        places.push(number);
-        if rows.len() > MOST {
+        table.rows.push(numbers(&fields[..4]).map_err(|why| format!("line {number}: {why}"))?);
+        table.lines.push(number);
+        if table.rows.len() > MOST {
             return Err(format!("line {number}: must have at most {MOST} rows"));
         }
     }
-    Ok((rows, places, None))
+    Ok(table)
 }
 
 /// Returns the first four fields as numbers.
@@ -211,8 +229,8 @@ impl Serialize for EphemerisTable {
         if let Some(file) = &self.file {
             return serializer.serialize_str(file);
         }
-        let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
-        self.rows.iter().try_for_each(|row| rows.serialize_element(row))?;
+        let mut rows = serializer.serialize_seq(Some(self.table.rows.len()))?;
+        self.table.rows.iter().try_for_each(|row| rows.serialize_element(row))?;
         rows.end()
     }
 }
@@ -233,7 +251,8 @@ impl<'de> Deserialize<'de> for EphemerisTable {
 
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<EphemerisTable, A::Error> {
                 let rows = Rows::deserialize(SeqAccessDeserializer::new(seq))?;
-                Ok(EphemerisTable { rows: Arc::new(rows), ..EphemerisTable::default() })
+                let table = StateTable { rows, ..StateTable::default() };
+                Ok(EphemerisTable { file: None, table: Arc::new(table) })
             }
         }
         deserializer.deserialize_any(TableOrFile)

@@ -1,6 +1,7 @@
 //! Input files of flexsc: TOML documents with errors that point at the value, and structures from files of other
 //! programs.
 
+pub mod celestial_frame;
 pub mod count;
 pub mod density_table;
 pub mod document;

@@ -10,7 +10,8 @@ use crate::options::{HandoverOptions, keyword_value};
 /// Returns the message with the attitude of a run.
 pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, HandoverError> {
     let rows = run.attitude_rows()?;
-    let (epoch, (_, frame)) = (options.date(run)?, options.frame(run)?);
+    let (epoch, axes) = (options.date(run)?, options.axes(run)?);
+    let (_, frame) = axes.frame.names();
     let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch.saturating_add(time_ns)).to_text();
     let end = rows.last().map_or(0, |row| row.time_ns);
     let name = keyword_value(&run.scenario.name);
@@ -46,9 +47,10 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Hand
         date(end),
     );
     text.reserve(200 * rows.len());
+    let turn = axes.turn.quaternion();
     for row in &rows {
         // Adding 0 removes the sign of a zero.
-        let (q, rate) = (row.attitude, row.rate.map(|rate| rate.to_degrees() + 0.0));
+        let (q, rate) = (turn * row.attitude, row.rate.map(|rate| rate.to_degrees() + 0.0));
         let _ = writeln!(
             text,
             "{} {:.16} {:.16} {:.16} {:.16} {:.15e} {:.15e} {:.15e}",

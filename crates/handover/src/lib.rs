@@ -17,7 +17,7 @@ use flexsc_core::Scenario;
 use flexsc_core::record::Log;
 
 pub use error::HandoverError;
-pub use options::{HandoverFormat, HandoverOptions, REFERENCE_FRAMES};
+pub use options::{HandoverFormat, HandoverOptions};
 
 /// Returns the file of a log in a format of other programs.
 ///

@@ -2,20 +2,13 @@
 
 use std::fmt::Write as _;
 
-use flexsc_core::spacecraft::environment::OrbitPath;
-use flexsc_core::spacecraft::environment::SurroundingsState;
-
 use crate::calendar::CivilDate;
 use crate::error::HandoverError;
 use crate::motion_rows::RunLog;
-use crate::options::{HandoverOptions, keyword_value};
+use crate::options::{HandoverOptions, keyword_value, other_gravity};
 
 /// Largest degree of the interpolation.
 const DEGREE: usize = 7;
-/// Gravitational parameter of the Earth (m³/s²), and the relative difference up to which a planet is the Earth.
-const EARTH: f64 = 3.986_004_418e14;
-const NEAR: f64 = 0.01;
-
 /// Returns the message with the orbit of a run.
 pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, HandoverError> {
     let none = || {
@@ -25,7 +18,8 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Hand
         )
     };
     let rows = run.orbit_rows()?.ok_or_else(none)?;
-    let (epoch, (frame, _), center) = (options.date(run)?, options.frame(run)?, center(run, options)?);
+    let (epoch, axes, center) = (options.date(run)?, options.axes(run)?, center(run, options)?);
+    let (frame, _) = axes.frame.names();
     let date = |time_ns: u64| CivilDate::from_nanoseconds(epoch.saturating_add(time_ns)).to_text();
     let name = keyword_value(&run.scenario.name);
     let id = keyword_value(options.object_id.as_deref().unwrap_or_default());
@@ -52,7 +46,7 @@ pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Hand
     text.push_str("META_STOP\n\n");
     text.reserve(140 * rows.len());
     for row in &rows {
-        let (r, v) = (row.position * 1e-3, row.velocity * 1e-3);
+        let (r, v) = (axes.turn * (row.position * 1e-3), axes.turn * (row.velocity * 1e-3));
         let date = date(row.time_ns);
         let _ = writeln!(text, "{date} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}", r.x, r.y, r.z, v.x, v.y, v.z);
     }
@@ -64,11 +58,7 @@ pub fn center(run: &RunLog<'_>, options: &HandoverOptions) -> Result<String, Han
     if let Some(center) = &options.center {
         return Ok(keyword_value(center).to_uppercase());
     }
-    let sky = run.scenario.study.surroundings.as_ref().map(SurroundingsState::sky);
-    let gravity = sky.and_then(|sky| sky.orbit()).map_or(EARTH, OrbitPath::gravity);
-    if (gravity / EARTH - 1.0).abs() < NEAR {
-        return Ok("EARTH".to_owned());
-    }
+    let Some(gravity) = other_gravity(run.scenario) else { return Ok("EARTH".to_owned()) };
     Err(HandoverError::refused(
         &format!("the orbit is not about the Earth: `environment.orbit.gravity` is {gravity:e} m³/s²"),
         "name the planet with --center, such as `--center MARS`",

@@ -1,6 +1,7 @@
 //! Numbers that are valid by construction: a deserialised scenario cannot contain others.
 
 use std::borrow::Cow;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -86,6 +87,17 @@ quantity!(
     /// The natural frequency of an elastic mode (rad/s).
     Frequency, |v| (1e-4..=1e3).contains(&v), "a natural frequency of 1e-4 to 1e3 rad/s",
     {"type": "number", "minimum": 1e-4, "maximum": 1e3}
+);
+
+quantity!(
+    /// A geodetic latitude (rad).
+    Latitude, |v| v.abs() <= FRAC_PI_2, "a latitude of -pi/2 to pi/2 rad, such as \"67.9 deg\"",
+    {"type": "number", "minimum": -FRAC_PI_2, "maximum": FRAC_PI_2}
+);
+quantity!(
+    /// A longitude (rad).
+    Longitude, |v| v.abs() <= TAU, "a longitude of -2 pi to 2 pi rad, such as \"21.1 deg\"",
+    {"type": "number", "minimum": -TAU, "maximum": TAU}
 );
 
 quantity!(

@@ -17,9 +17,9 @@ impl ScenarioSpec {
     ) -> Option<ConfigError> {
         let around = self.environment.as_mut()?;
         let before = parent.and_then(|parent| parent.environment.as_ref());
-        let orbit = around.orbit.as_mut().filter(|orbit| orbit.kepler().is_none());
-        let is_sampled = orbit.is_some();
-        if let Some(orbit) = orbit {
+        let mut is_sampled = false;
+        if let Some(orbit) = &mut around.orbit {
+            is_sampled = orbit.kepler().is_none();
             if let Some(fault) = orbit.read(directory, before.and_then(|before| before.orbit.as_ref())) {
                 return Some(fault.within("environment.orbit"));
             }
@@ -44,6 +44,13 @@ impl ScenarioSpec {
         let around = self.environment.as_ref()?;
         let fault = around.fault().or_else(|| around.run_error(self.duration, self.date_ns()))?;
         Some(fault.within("environment"))
+    }
+
+    /// Returns remarks on an environment that is accepted and probably not meant.
+    pub(super) fn environment_remarks(&self) -> Vec<ConfigError> {
+        let around = self.environment.as_ref();
+        let remarks = around.map(|around| around.remarks(self.duration, self.date_ns())).unwrap_or_default();
+        remarks.into_iter().map(|remark| remark.within("environment")).collect()
     }
 
     /// Returns the orbit environment in inertial axes, independent of the body's attitude.

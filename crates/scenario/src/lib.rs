@@ -22,6 +22,7 @@ mod file_name;
 mod line_of_sight;
 mod log;
 mod logged_scenario;
+mod magnitudes;
 mod meant;
 pub mod metric_descriptions;
 mod mode_checks;

@@ -8,16 +8,17 @@ use flexsc_formats::document::key::bare_or_quoted;
 use toml::{Table, Value};
 
 use super::Scenario;
+use super::magnitudes::Magnitudes;
 
 impl Scenario {
     /// Values that are accepted and probably not meant, each with its key and why.
     pub fn remarks(&self) -> Vec<ConfigError> {
         let mut written = self.written.clone();
         written.inline_files();
-        let mut remarks = Vec::new();
-        for (key, value) in &written.to_table() {
+        let table = written.to_table();
+        let mut remarks = Magnitudes::remarks(self, &table);
+        for (key, value) in &table {
             let look = match key.as_str() {
-                "body" | "appendage" => damping,
                 "sensor" => latency,
                 "law" | "mode" => bandwidth,
                 _ => continue,
@@ -25,6 +26,7 @@ impl Scenario {
             each_table(key, value, look, &mut remarks);
         }
         remarks.extend(self.known_inertia());
+        remarks.extend(self.environment_remarks());
         remarks
     }
 
@@ -96,18 +98,6 @@ fn each_table(
 
 fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
-}
-
-/// Modes that do not vibrate.
-fn damping(path: &str, table: &Table, remarks: &mut Vec<ConfigError>) {
-    let Some(damping) = table.get("damping") else { return };
-    let ratios = damping.as_array().map_or(std::slice::from_ref(damping), Vec::as_slice);
-    if let Some(ratio) = ratios.iter().filter_map(number).find(|ratio| *ratio > 1.0) {
-        let why = format!(
-            "is a ratio, and above 1 a mode does not vibrate: is {ratio} a percentage, which is written \"{ratio} %\"?"
-        );
-        remarks.push(ConfigError::new(format!("{path}.damping"), why));
-    }
 }
 
 /// Laws that do not sample their own bandwidth.

@@ -8,8 +8,7 @@ pub struct HandoverArgs {
     /// Date of the start for aem, oem and vizard, such as 2026-03-20T14:46:00Z [default: the scenario's `epoch`]
     #[arg(long, value_name = "DATE")]
     pub(super) epoch: Option<String>,
-    /// Frame of the inertial axes in aem and oem: EME2000, GCRF, ICRF, TEME or TOD [default: TOD for an environment with
-    /// a date, else EME2000]
+    /// Frame of aem and oem: EME2000, GCRF, ICRF, TEME or TOD [default: TEME with a `tle`, else EME2000]
     #[arg(long, value_name = "FRAME")]
     pub(super) frame: Option<String>,
     /// Planet of the orbit in oem and vizard, such as MARS [default: EARTH]

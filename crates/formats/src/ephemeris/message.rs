@@ -1,11 +1,7 @@
 //! Orbit Ephemeris Messages in keyword-value notation: one segment of states at dates, in UTC.
 
-use super::{Lines, MOST, PlacedRows, Rows, line_of, numbers};
-
-/// Seconds from 1970 to noon of the first day of 2000.
-const J2000: f64 = 946_728_000.0;
-/// Seconds of a century of 36525 days.
-const CENTURY: f64 = 36_525.0 * 86_400.0;
+use super::{Lines, MOST, Rows, StateTable, line_of, numbers};
+use crate::celestial_frame::CelestialFrame;
 
 /// Part of a message.
 #[derive(Copy, Clone, PartialEq)]
@@ -16,9 +12,9 @@ enum Part {
     Covariance,
 }
 
-/// Reads a message: positions in m in the mean axes of the date, and times since the first row.
-pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
-    let (mut rows, mut places, mut first, mut frame) = (Rows::new(), Vec::new(), None, None);
+/// Reads a message: positions in m, and times since the first row.
+pub(super) fn read(lines: Lines<'_>) -> Result<StateTable, String> {
+    let (mut rows, mut row_lines, mut first, mut frame) = (Rows::new(), Vec::new(), None, None);
     let (mut part, mut utc) = (Part::Header, false);
     for line in lines {
         let (number, line) = line_of(line)?;
@@ -48,8 +44,8 @@ pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
                         return refused(format!("must have `TIME_SYSTEM = UTC`, got `{system}`"));
                     }
                     ("REF_FRAME", name) => {
-                        let Some(found) = Frame::named(name) else {
-                            let why = "must have `REF_FRAME` EME2000, GCRF, ICRF, TOD or TEME";
+                        let Some(found) = CelestialFrame::named(name) else {
+                            let why = "must have `REF_FRAME` EME2000, GCRF, ICRF, MOD, TEME or TOD";
                             return refused(format!("{why}, got `{name}`"));
                         };
                         frame = Some(found);
@@ -71,7 +67,7 @@ pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
                 let place = ["0", fields[1], fields[2], fields[3]];
                 let [_, x, y, z] = numbers(&place).map_err(|why| format!("line {number}: {why}"))?;
                 rows.push([since, x * 1e3, y * 1e3, z * 1e3]);
-                places.push(number);
+                row_lines.push(number);
                 if rows.len() > MOST {
                     return refused(format!("must have at most {MOST} rows"));
                 }
@@ -79,50 +75,13 @@ pub(super) fn read(lines: Lines<'_>) -> Result<PlacedRows, String> {
             }
         };
     }
-    let Some(frame) = frame else { return Err("must have a `REF_FRAME`".to_owned()) };
+    if frame.is_none() {
+        return Err("must have a `REF_FRAME`".to_owned());
+    }
     if !utc {
         return Err("must have a `TIME_SYSTEM`".to_owned());
     }
-    if frame == Frame::Epoch2000
-        && let Some(first) = first
-    {
-        precess(&mut rows, (first as f64 / 1e9 - J2000) / CENTURY);
-    }
-    Ok((rows, places, first))
-}
-
-/// Axes of the states.
-#[derive(Copy, Clone, PartialEq)]
-enum Frame {
-    /// Mean equator and equinox of 2000.
-    Epoch2000,
-    /// Equator and equinox of the date, without or with nutation.
-    Date,
-}
-
-impl Frame {
-    fn named(name: &str) -> Option<Self> {
-        match name {
-            "EME2000" | "J2000" | "GCRF" | "ICRF" => Some(Self::Epoch2000),
-            "TOD" | "TEME" | "TEMEOFDATE" | "MOD" => Some(Self::Date),
-            _ => None,
-        }
-    }
-}
-
-/// Rotates positions from the mean axes of 2000 to those of a date, `t` centuries later (IAU 1976, \[Lieske77\]).
-fn precess(rows: &mut [[f64; 4]], t: f64) {
-    let arcseconds = |angle: f64| (angle / 3600.0).to_radians();
-    let zeta = arcseconds(t * (2306.2181 + t * (0.301_88 + t * 0.017_998)));
-    let z = arcseconds(t * (2306.2181 + t * (1.094_68 + t * 0.018_203)));
-    let theta = arcseconds(t * (2004.3109 - t * (0.426_65 + t * 0.041_833)));
-    let [(sz, cz), (st, ct), (sx, cx)] = [zeta, theta, z].map(libm::sincos);
-    for row in rows {
-        let [_, x, y, up] = *row;
-        let (x, y) = (cz * x - sz * y, sz * x + cz * y);
-        let (x, up) = (ct * x - st * up, st * x + ct * up);
-        (row[1], row[2], row[3]) = (cx * x - sx * y, sx * x + cx * y, up);
-    }
+    Ok(StateTable { rows, lines: row_lines, epoch_ns: first, frame })
 }
 
 /// Returns the nanoseconds after 1970 of a date: `YYYY-MM-DDThh:mm:ss` or `YYYY-DDDThh:mm:ss`, with a fraction if any.

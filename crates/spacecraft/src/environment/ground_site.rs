@@ -1,7 +1,7 @@
 //! Sites on the Earth's surface, which turn with it: the ellipsoid of WGS 84.
 
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::quantity::{Finite, Latitude, Longitude};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,9 +30,9 @@ pub(super) fn height(position: &Vector) -> f64 {
 #[serde(deny_unknown_fields)]
 pub struct GroundSite {
     /// Geodetic latitude (rad).
-    pub latitude: Finite,
+    pub latitude: Latitude,
     /// Longitude east of Greenwich (rad).
-    pub longitude: Finite,
+    pub longitude: Longitude,
     /// Height above the ellipsoid (m).
     #[serde(default)]
     pub height: Finite,

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, shortest};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -84,11 +84,16 @@ impl Kepler {
         if e >= 1.0 {
             return Some(ConfigError::new("eccentricity", format!("must be below 1, got {e}")));
         }
-        let nearest = self.nearest();
+        let (nearest, axis) = (self.nearest(), self.semi_major_axis.get());
         (nearest <= planet).then(|| {
+            let meant = if 1e3 * nearest > planet && axis < 1e5 {
+                format!("is it meant as \"{} km\"?", shortest(axis))
+            } else {
+                format!("it counts from the centre, and at an altitude of {0} m it is {1}", shortest(axis), planet + axis)
+            };
             let why = format!(
-                "must keep the perigee, at {nearest} m, above the planet's radius of {planet} m, got {}",
-                self.semi_major_axis.get()
+                "must keep the perigee, at {nearest} m, above the planet's radius of {planet} m, got {axis}: the orbit is inside the planet; \
+                 {meant}"
             );
             ConfigError::new("semi_major_axis", why)
         })

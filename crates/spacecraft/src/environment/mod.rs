@@ -9,6 +9,7 @@ mod dipole;
 mod direction_motion;
 mod drag;
 mod eclipses;
+mod ephemeris_orbit;
 mod field_model;
 mod gravity_gradient;
 mod ground_site;
@@ -23,7 +24,9 @@ mod orbit_environment;
 mod orbit_kind;
 mod orbit_path;
 mod plate_mount;
+mod precession;
 mod resonance;
+mod row_departure;
 mod sampled_orbit;
 mod sgp4;
 mod shadow;
@@ -36,11 +39,13 @@ mod surroundings;
 mod tests;
 mod thermal_response;
 mod time_jet;
+mod two_line_orbit;
 mod two_lines;
 mod wmm_2025;
 
 use std::f64::consts::TAU;
 
+use flexsc_formats::celestial_frame::CelestialFrame;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
@@ -54,6 +59,7 @@ pub use dipole::Dipole;
 pub use direction_motion::DirectionMotion;
 pub use drag::{Drag, DragPlate};
 pub use eclipses::ShadowShape;
+pub use ephemeris_orbit::EphemerisOrbit;
 pub use field_model::FieldModel;
 pub use gravity_gradient::GravityGradient;
 pub use ground_site::GroundSite;
@@ -62,13 +68,15 @@ pub use magnetic_field::MagneticField;
 pub use oblateness::Oblateness;
 pub use orbit::to_body;
 pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
-pub use orbit_kind::{EphemerisOrbit, OrbitKind, TwoLineOrbit};
+pub use orbit_kind::OrbitKind;
 pub use orbit_path::OrbitPath;
 pub use plate_mount::{PlateMount, PlateMounts};
+pub use precession::to_mean_of_date;
 pub use sampled_orbit::SampledOrbit;
 pub use solar_pressure::{SolarPlate, SolarPressure};
 pub use sun::{Sun, SunPath};
 pub use surroundings::SurroundingsState;
+pub use two_line_orbit::TwoLineOrbit;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.
 const MOST_ORBITS: f64 = 1e5;
@@ -172,6 +180,19 @@ impl Environment {
             format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
         };
         (turns > MOST_ORBITS).then(|| ConfigError::new("orbit", why()))
+    }
+
+    /// Returns remarks on an environment that is accepted for a run of this duration from `epoch_ns` nanoseconds after 1970, if
+    /// known, and probably not meant: a key within the environment, and the reason.
+    pub fn remarks(&self, duration: Span, epoch_ns: Option<u64>) -> Vec<ConfigError> {
+        let remarks = self.orbit.as_ref().map(|orbit| orbit.remarks(duration.seconds(), epoch_ns));
+        remarks.unwrap_or_default().into_iter().map(|remark| remark.within("orbit")).collect()
+    }
+
+    /// Returns the inertial axes of a run with a date: those of the mean equator and equinox at its start, to which Sun, field
+    /// and sites belong, unless the orbit is in others.
+    pub fn frame(&self) -> CelestialFrame {
+        self.orbit.as_ref().map_or(CelestialFrame::Mod, OrbitKind::frame)
     }
 
     /// Returns the key and the reason, if a conical shadow does not fit between the orbit and the Sun.

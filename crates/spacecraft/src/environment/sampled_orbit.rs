@@ -1,5 +1,5 @@
-//! An orbit by positions at instants, between which it is interpolated: Lagrange polynomials through the eight rows about
-//! an instant, whose derivatives are velocity, acceleration and its rate of change.
+//! An orbit by positions at instants, between which it is interpolated: Lagrange polynomials through the four rows before
+//! and the four after an instant, whose derivatives are velocity, acceleration and its rate of change.
 
 use flexsc_numerics::attitude::Vector;
 
@@ -15,9 +15,9 @@ pub(super) const MOST_ROWS: usize = 1_000_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledOrbit {
     /// Times since the start (s), increasing.
-    times: Vec<f64>,
+    pub(super) times: Vec<f64>,
     /// Positions from the planet's centre in inertial axes (m).
-    positions: Vec<Vector>,
+    pub(super) positions: Vec<Vector>,
     /// Gravitational parameter (m³/s²) and radius (m) of the planet.
     planet: [f64; 2],
     bounds: OrbitBounds,
@@ -139,10 +139,15 @@ impl SampledOrbit {
         self.planet[1]
     }
 
+    /// Returns the index of the first row of the polynomial at a time since the start (s).
+    pub(super) fn first_row(&self, t: f64) -> usize {
+        let next = self.times.partition_point(|time| *time <= t);
+        next.saturating_sub(ROWS / 2).min(self.times.len() - ROWS)
+    }
+
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at a time since the start (s).
     pub fn motion(&self, t: f64) -> [Vector; 4] {
-        let next = self.times.partition_point(|time| *time <= t);
-        let first = next.saturating_sub(ROWS / 2).min(self.times.len() - ROWS);
+        let first = self.first_row(t);
         let times = &self.times[first..first + ROWS];
         // Newton's form: differences of the positions, divided by those of the times.
         let mut divided: [Vector; ROWS] = std::array::from_fn(|row| self.positions[first + row]);
