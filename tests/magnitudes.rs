@@ -1,4 +1,4 @@
-//! Numbers without a unit that nobody means: an error where they are impossible, a remark of `check` where they are absurd.
+//! Numbers in another unit than that of their key: an error where they are impossible, a remark of `check` where they are absurd.
 
 use std::fs;
 
@@ -33,22 +33,36 @@ fn numbers_that_are_meant_in_another_unit_are_remarked() {
         let scenario = Scenario::load(&dir.path("cubesat-day.toml")).expect("shipped");
         (0..).map(|index| scenario.sensor_key(index)).find(|key| key.ends_with(kind)).expect("a sensor")
     };
-    let magnetometer = sensor("magnetometer");
+    let [field, gyro] = ["magnetometer", "gyro"].map(sensor);
     for (name, set, remark) in [
-        ("cubesat-day", format!("{magnetometer}.noise=50"), format!("{magnetometer}.noise` is 50 T: is it meant in another unit, such as \"50 nT\"?")),
-        ("cubesat-day", format!("{}.angle_random_walk=0.15", sensor("gyro")), "\"0.15 deg/sqrt(h)\"".to_owned()),
-        ("cubesat-day", "appendage[0].modes[0].damping=0.5".to_owned(), "appendage[0].modes[0].damping` is a ratio, and structures have 0.001 to 0.05: is 0.5 a percentage, which is written \"0.5 %\"?".to_owned()),
-        ("cubesat-day", "requirement[1].limit=0.1".to_owned(), "requirement[1].limit` is 0.1 rad, 5.730 deg: is it meant in another unit, such as \"0.1 deg\"?".to_owned()),
-        ("cubesat-day", "environment.orbit.inclination=97.4".to_owned(), "environment.orbit.inclination` is 97.4 rad: is it meant in another unit, such as \"97.4 deg\"?".to_owned()),
-        ("cubesat-day", "environment.orbit.gravity=398600.4418".to_owned(), "environment.orbit.gravity` is that of a planet of 5.49e-6 kg/m³".to_owned()),
-        ("cubesat-day", "spacecraft.inertia=[[300000,0,0],[0,300000,0],[0,0,300000]]".to_owned(), "spacecraft.inertia` is that of a mass of".to_owned()),
-        ("cubesat-day", "spacecraft.rate=[0,20,0]".to_owned(), "spacecraft.rate[1]` is 20 rad/s: is it meant in another unit, such as \"20 deg/s\"?".to_owned()),
-        ("earth-observer", "actuator.wheels.momentum=3000".to_owned(), "actuator.wheels.momentum` is that of a wheel at 7.162e5 rpm, with its inertia of 0.04 kg m²: is it meant as \"3000 mN m s\"?".to_owned()),
-        ("earth-observer", "actuator.wheels.speed_limit=60000".to_owned(), "actuator.wheels.speed_limit` is 60000 rad/s: is it meant in another unit, such as \"60000 rpm\"?".to_owned()),
-        ("earth-observer", "appendage[1].at=[0,1500,0]".to_owned(), "appendage[1].at[1]` is 1500 m: is it meant in another unit, such as \"1500 mm\"?".to_owned()),
+        (
+            "cubesat-day",
+            format!("{field}.noise=50"),
+            "noise` is 50 T: is it meant in another unit, such as \"50 nT\"?",
+        ),
+        ("cubesat-day", format!("{gyro}.angle_random_walk=0.15"), "\"0.15 deg/sqrt(h)\""),
+        ("cubesat-day", "appendage[0].modes[0].damping=0.5".to_owned(), "written \"0.5 %\"?"),
+        ("cubesat-day", "requirement[1].limit=0.1".to_owned(), "limit` is 0.1 rad, 5.730 deg"),
+        ("cubesat-day", "environment.orbit.inclination=97.4".to_owned(), "such as \"97.4 deg\"?"),
+        ("cubesat-day", "environment.orbit.gravity=398600.4418".to_owned(), "planet of 5.49e-6 kg/m³"),
+        (
+            "cubesat-day",
+            "spacecraft.inertia=[[3e5,0,0],[0,3e5,0],[0,0,3e5]]".to_owned(),
+            "inertia` is that of a mass",
+        ),
+        (
+            "earth-observer",
+            "actuator.wheels.momentum=3000".to_owned(),
+            "a wheel at 7.162e5 rpm, with its inertia of 0.04",
+        ),
+        ("earth-observer", "actuator.wheels.speed_limit=60000".to_owned(), "such as \"60000 rpm\"?"),
+        ("earth-observer", "appendage[1].at=[0,1500,0]".to_owned(), "at[1]` is 1500 m: is it meant"),
     ] {
+        let key = set.split('=').next().unwrap_or_default();
+        let key = key.split("[1].at").next().unwrap_or_default();
         let found = dir.run(&format!("check {name}.toml --set {set}"));
-        assert!(found.err.contains(&remark), "{set}: {}", found.err);
+        assert!(found.err.contains(remark), "{set}: {}", found.err);
+        assert!(found.err.contains(&format!("remark: `{key}")), "{set}: {}", found.err);
     }
     // A mode that takes part in nothing.
     let text =

@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn table(text: &str) -> Result<(Rows, Option<u64>), String> {
+fn table(text: &str) -> Result<StateTable, String> {
     read(text.as_bytes())
 }
 
@@ -24,34 +24,32 @@ fn message() -> String {
 #[test]
 fn tables_have_times_and_positions() {
     for text in [rows(9), format!("t,x,y,z\n{}", rows(9)), format!("# a comment\n\n{}", rows(9))] {
-        let (found, epoch) = table(&text).expect("valid");
-        assert!(found.len() == 9 && epoch.is_none());
-        assert_eq!(found[2], [120.0, 7e6, 9e5, 0.0]);
+        let found = table(&text).expect("valid");
+        assert!(found.rows.len() == 9 && found.epoch_ns.is_none() && found.frame.is_none());
+        assert_eq!(found.rows[2], [120.0, 7e6, 9e5, 0.0]);
     }
     let wide = rows(8).lines().map(|line| format!("{line},1,2,3\n")).collect::<Vec<_>>().concat();
-    assert_eq!(table(&format!("t,x,y,z,vx,vy,vz\n{wide}")).expect("valid").0.len(), 8);
+    assert_eq!(table(&format!("t,x,y,z,vx,vy,vz\n{wide}")).expect("valid").rows.len(), 8);
 }
 
 #[test]
 fn messages_have_dates_and_kilometres() {
-    let (found, epoch) = table(&message()).expect("valid");
+    let found = table(&message()).expect("valid");
     // date --utc --date=2026-11-24T00:00:00Z +%s: 1795478400.
-    assert_eq!(epoch, Some(1_795_478_400_500_000_000));
-    assert_eq!(found[2], [120.0, 7e6, 9e5, -1500.0]);
+    let epoch = Some(1_795_478_400_500_000_000);
+    assert_eq!((found.epoch_ns, found.frame), (epoch, Some(CelestialFrame::Tod)));
+    assert_eq!((found.rows[2], found.lines[2]), ([120.0, 7e6, 9e5, -1500.0], 17));
     let by_day = message().replace("2026-11-24T00:0", "2026-328T00:0");
-    assert_eq!(table(&by_day).expect("valid"), (found.clone(), epoch));
-    // Axes of 2000: the pole of the date is 2004.3 arc seconds of a century away, 26.9 years of it.
-    let (turned, _) = table(&message().replace("= TOD", "= EME2000")).expect("valid");
-    let change = |axis: usize| turned[0][1 + axis] - found[0][1 + axis];
-    let off = (0..3).map(|axis| change(axis) * change(axis)).sum::<f64>().sqrt() / 7e6;
-    // General precession of 50.3 arc seconds a year along the ecliptic, at the equinox: 1353 arc seconds.
-    assert!((off.to_degrees() * 3600.0 - 1353.0).abs() < 3.0, "{}", off.to_degrees() * 3600.0);
-    let mut shared =
-        EphemerisTable { file: Some("a.oem".to_owned()), rows: Arc::new(found), epoch_ns: epoch };
-    assert_eq!(shared.rows(epoch.map(|at| at - 30_000_000_000)).expect("valid")[0][0], 30.0);
-    assert_eq!(shared.rows(None), None);
-    shared.inline(epoch);
-    assert!(shared.file.is_none() && shared.rows(None).expect("valid")[1][0] == 60.0);
+    assert_eq!(table(&by_day).expect("valid"), found);
+    let of_2000 = table(&message().replace("= TOD", "= EME2000")).expect("valid");
+    assert_eq!((of_2000.frame, &of_2000.rows), (Some(CelestialFrame::Eme2000), &found.rows));
+    let mut read = EphemerisTable { file: Some("a.oem".to_owned()), table: Arc::new(found) };
+    assert_eq!(read.rows(epoch.map(|at| at - 30_000_000_000)).expect("valid")[0][0], 30.0);
+    assert_eq!(read.rows(None), None);
+    assert_eq!(read.place(2), "a.oem: line 17");
+    read.inline(read.rows(epoch).expect("valid"));
+    assert!(read.file.is_none() && read.rows(None).expect("valid")[1][0] == 60.0);
+    assert_eq!(read.place(2), "row 3");
 }
 
 #[test]
