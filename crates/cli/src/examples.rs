@@ -82,6 +82,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "wheel-robust-gain",
     "wheel-run-up",
     "wheel-scheduled-gain",
+    "wheel-settling-fit",
     "wheel-slow-mode",
     "wheel-unstable-band",
     "wheels-and-jets",
