@@ -142,6 +142,34 @@ fn resonances_with_the_modes() {
 }
 
 #[test]
+fn resonances_of_the_one_sided_cycle() {
+    let scenario = scenario("relay-one-sided", &[]);
+    let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
+    let found = resonances(law, scenario.one_angle().expect("one angle"));
+    // Push, brake and coast by mpmath with 30 digits: the period that is as many periods of the mode. Even harmonics act.
+    let exact = [
+        (0, 5, 71.399_833_036_131_7, 0.499_951_922_478_525),
+        (0, 8, 114.239_732_857_811, 0.328_058_412_032_372),
+        (1, 6, 49.932_598_467_652_3, 0.626_352_805_037_949),
+        (1, 11, 91.543_097_190_696, 0.408_029_898_451_479),
+    ];
+    for (mode, harmonic, period, k_t) in exact {
+        let ours = found.iter().find(|r| r.mode == mode && r.harmonic == harmonic).expect("a resonance");
+        close(ours.period_s, period, 1e-12);
+        close(ours.k_t, k_t, 1e-12);
+    }
+}
+
+#[test]
+fn summaries_of_one_sided_laws_and_rigid_bodies() {
+    let dir = Dir::with(&["relay-one-sided", "relay-fixed"]);
+    dir.run("cycle relay-one-sided.toml").exits(0).says(&["resonances of the one-sided cycle"]);
+    dir.run("cycle relay-fixed.toml").exits(0).says(&["resonances of the two-sided cycle"]);
+    let rigid = dir.run("simulate relay-one-sided.toml --set body.planar.modes=[] --log none").exits(0);
+    assert!(!rigid.err.contains("NaN") && !rigid.err.contains("envelope"), "{}", rigid.err);
+}
+
+#[test]
 fn one_sided_law_ends_in_its_cycle() {
     // Without the left boundary the one-sided cycle exists at 0.31 too: period 120.343 s.
     let set = [("body.planar.modes", "[]"), ("duration", "50000")];

@@ -38,12 +38,12 @@ pub struct RigidCycle {
     pub stable: bool,
 }
 
-/// A gain at which the cycle's odd harmonic meets a mode.
+/// A gain at which a harmonic of the cycle meets a mode.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Resonance {
     /// Index of the mode.
     pub mode: usize,
-    /// Number of the harmonic, odd: the even ones vanish by symmetry.
+    /// Number of the harmonic; odd in a two-sided cycle, whose even harmonics vanish by symmetry.
     pub harmonic: u32,
     /// Period of the cycle there (s).
     pub period_s: f64,
@@ -146,13 +146,14 @@ pub fn cycles(law: &Relay, body: &AxisModel, k_t: f64) -> Vec<RigidCycle> {
 /// Harmonics above this one are too weak for a resonance: the n-th falls as 1/n² at least.
 const HIGHEST: u32 = 9_999;
 
-/// Returns the gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The
-/// even harmonics vanish by symmetry.
+/// Returns the gains from 0.02 to 1 at which a harmonic of the cycle with the law's sides meets a mode, by mode and gain.
+/// The even harmonics of a two-sided cycle vanish by symmetry.
 pub fn resonances(law: &Relay, body: &AxisModel) -> Vec<Resonance> {
     /// Number of cells of the grid of gains: the period is monotonic between neighbours.
     const GRID: u32 = 4096;
     let rigid = RigidRelay::new(law, body.inertia.get());
-    let period = |k_t: f64| rigid.cycle(RelaySides::Two, k_t).map(|cycle| cycle.period_s);
+    let period = |k_t: f64| rigid.cycle(law.sides, k_t).map(|cycle| cycle.period_s);
+    let acts = |harmonic: &u32| law.sides == RelaySides::One || harmonic % 2 == 1;
     let mut found = Vec::new();
     for (mode, w) in body.modes.iter().map(|mode: &AxisMode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
@@ -161,7 +162,7 @@ pub fn resonances(law: &Relay, body: &AxisModel) -> Vec<Resonance> {
             let (low, high) = (gain(cell), gain(cell + 1));
             let (Some(from), Some(to)) = (period(low).map(turns), period(high).map(turns)) else { continue };
             let between = (libm::ceil(from.min(to)) as u32)..=(libm::floor(from.max(to)) as u32).min(HIGHEST);
-            for harmonic in between.filter(|harmonic| harmonic % 2 == 1) {
+            for harmonic in between.filter(acts) {
                 let rising = if to > from { 1.0 } else { -1.0 };
                 let short = |k_t| rising * (period(k_t).map_or(from, turns) - f64::from(harmonic));
                 let k_t = bisect(low, high, short);

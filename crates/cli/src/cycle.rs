@@ -36,6 +36,8 @@ pub struct RelayCycles {
     cycles: Vec<RigidCycle>,
     /// Cycles that the describing function predicts; none for a law with one side.
     described: Option<Vec<DescribedCycle>>,
+    /// Sides of the law, whose cycle the resonances are of.
+    sides: RelaySides,
     resonances: Vec<Resonance>,
     units: Units,
 }
@@ -59,7 +61,7 @@ pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, Cli
     let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
     let (cycles, resonances) = (cycles(law, body, k_t), resonances(law, body));
     let described = RelayDescribingFunction::new(law, body, k_t).map(|function| function.cycles());
-    Ok(RelayCycles { name, k_t, unit, cycles, described, resonances, units: args.units.units })
+    Ok(RelayCycles { name, k_t, unit, cycles, described, sides: law.sides, resonances, units: args.units.units })
 }
 
 pub fn run(args: &CycleArgs) -> Result<(), CliError> {
@@ -132,14 +134,14 @@ impl Results for RelayCycles {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, k_t, unit, cycles, described, resonances, units } = self;
+        let Self { name, k_t, unit, cycles, described, sides, resonances, units } = self;
         say!("{name}   k_t = {k_t}, modes left out");
         if cycles.is_empty() {
             say!("  no limit cycle exists");
         }
         let time = |of: f64| format!("{} s", digits(of));
         for cycle in cycles {
-            let kind = if cycle.sides == RelaySides::Two { "two-sided" } else { "one-sided" };
+            let kind = described_sides(cycle.sides);
             let stability = if cycle.stable { "stable" } else { "unstable" };
             say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
             say!("    period         {}", time(cycle.period_s));
@@ -163,7 +165,8 @@ impl Results for RelayCycles {
         }
         if !resonances.is_empty() {
             say!(
-                "  resonances of the two-sided cycle, the {NEAREST} nearest of each mode (all with --json):"
+                "  resonances of the {} cycle, the {NEAREST} nearest of each mode (all with --json):",
+                described_sides(*sides)
             );
         }
         for r in nearest(resonances, *k_t) {
@@ -176,6 +179,14 @@ impl Results for RelayCycles {
             );
         }
         Ok(())
+    }
+}
+
+/// Returns the adjective for a cycle with these sides.
+fn described_sides(sides: RelaySides) -> &'static str {
+    match sides {
+        RelaySides::Two => "two-sided",
+        RelaySides::One => "one-sided",
     }
 }
 

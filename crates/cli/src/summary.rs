@@ -109,6 +109,7 @@ impl Summary<'_> {
     fn switchings(&self) {
         if let Some(MetricValue::Numbers(means)) = self.metrics.get("envelope_window_means_rad")
             && let (Some(first), Some(last)) = (means.first(), means.last())
+            && *first > 0.0
         {
             let change = 100.0 * (last / first - 1.0);
             let both = self.units.list(&[*first, *last], " -> ", "rad");
