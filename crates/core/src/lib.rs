@@ -12,6 +12,9 @@
 //!                   manoeuvre or target --goal-----------------+--waveform------+
 //! ```
 //!
+//! Modal dynamics live in [`dynamics`], sensors, observers, laws and adaptation in [`control`], the run in [`Simulation`];
+//! this crate re-exports them and adds campaigns, batches and metrics.
+//!
 //! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_relay_kernel`
 //! instead, with the same records); each axis has an estimate, a law and a goal. Each role is a trait:
 //! [`control::sensor::Sensor`], [`control::estimator::Estimator`], [`control::law::Law`],
@@ -49,15 +52,23 @@ pub mod requirement_verdict;
 pub mod statistics;
 pub mod worst_case;
 
+#[doc(inline)]
 pub use flexsc_analysis as analysis;
+#[doc(inline)]
 pub use flexsc_control as control;
+#[doc(inline)]
 pub use flexsc_dynamics as dynamics;
+#[doc(inline)]
 pub use flexsc_formats as formats;
+#[doc(inline)]
 pub use flexsc_numerics as numerics;
 pub use flexsc_numerics::order_statistics;
+#[doc(inline)]
 pub use flexsc_record as record;
+#[doc(inline)]
 pub use flexsc_scenario as scenario;
 pub use flexsc_scenario::uncertain;
+#[doc(inline)]
 pub use flexsc_spacecraft as spacecraft;
 
 pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};

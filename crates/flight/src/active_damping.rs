@@ -1,6 +1,6 @@
 //! Active damping with the phase-plane law: while the rigid motion needs no jets, they fire against the elastic rate.
 //!
-//! In \[Timakov14\] (pages 37 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
+//! In \[Timakov14\] (pages 38 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
 //! Threshold, hysteresis and guards are our design.
 
 use crate::pulse_timing::phase_factor;
