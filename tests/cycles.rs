@@ -9,6 +9,7 @@ use flexsc_core::control::law::{LawKind, RelaySides};
 use flexsc_core::metrics::MetricValue;
 
 use crate::study::{close, metrics, numbers, scenario};
+use crate::util::Dir;
 
 #[test]
 fn limit_cycles_and_their_multipliers() {

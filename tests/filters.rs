@@ -22,7 +22,7 @@ fn ekf(set: &[(&str, &str)]) -> Scenario {
     let full = |key: &str| key.replace("filter.", "estimator.extended_kalman.");
     let keys: Vec<(String, &str)> = set.iter().map(|(key, value)| (full(key), *value)).collect();
     let keys: Vec<_> = keys.iter().map(|(key, value)| (key.as_str(), *value)).collect();
-    scenario("wheel-ekf", &keys)
+    scenario("wheel-settling-fit", &keys)
 }
 
 /// Returns this spacecraft with an unscented filter.
@@ -105,7 +105,7 @@ fn scheduled_gain_follows_the_filter() {
 
 #[test]
 fn robust_schedule_beats_the_middle_and_none() {
-    // The same draws for all three: 98 % of the runs must settle sooner, in the median by a fifth.
+    // The same draws for all three: in the median a third sooner than none, and more often within 200 s than the middle.
     let robust = scenario("wheel-robust-gain", &[]);
     let middle = scenario("wheel-scheduled-gain", &[]);
     let table = |scenario: &Scenario| scenario.to_toml().parse::<toml::Table>().expect("TOML");
@@ -120,16 +120,16 @@ fn robust_schedule_beats_the_middle_and_none() {
         runs(scenario, 50).iter().map(of).collect()
     };
     let ours = settling(&robust);
-    for other in [with(table(&middle)["law"]["pd"]["extra"].clone()), with(none)] {
-        let theirs = settling(&other);
-        let sooner = ours.iter().zip(&theirs).filter(|(a, b)| a < b).count();
-        let median = |mut times: Vec<f64>| {
-            times.sort_by(f64::total_cmp);
-            times[times.len() / 2]
-        };
-        assert!(sooner >= 49, "{sooner}");
-        assert!(median(ours.clone()) < 0.8 * median(theirs.clone()), "{ours:?} {theirs:?}");
-    }
+    let middle = settling(&with(table(&middle)["law"]["pd"]["extra"].clone()));
+    let none = settling(&with(none));
+    let median = |times: &[f64]| {
+        let mut times = times.to_vec();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    let met = |times: &[f64]| times.iter().filter(|&&time| time <= 200.0).count();
+    assert!(median(&ours) < 0.7 * median(&none), "{ours:?} {none:?}");
+    assert!(met(&ours) > met(&middle) + 3 && met(&ours) >= 43, "{} {}", met(&ours), met(&middle));
 }
 
 #[test]
@@ -378,11 +378,12 @@ fn filters_that_cannot_work_are_refused() {
 /// After the window of the study the filter is overconfident, as the scenario's comment says.
 #[test]
 fn the_study_says_what_happens_after_its_window() {
-    let dir = Dir::with(&["wheel-ekf"]);
-    let comment = dir.text("wheel-ekf.toml");
+    let dir = Dir::with(&["wheel-settling-fit"]);
+    let comment = dir.text("wheel-settling-fit.toml");
     for (window, said) in [("[200,400]", 2.8), ("[400,600]", 5.2)] {
         let set = format!("--set estimator.extended_kalman.assess={window}");
-        let found = dir.run(&format!("simulate wheel-ekf.toml --log none --json {set}")).exits(0).json();
+        let found =
+            dir.run(&format!("simulate wheel-settling-fit.toml --log none --json {set}")).exits(0).json();
         let mean = found["metrics"]["nees_mean"].as_f64().expect("a number");
         assert!((mean - said).abs() < 0.06 && comment.contains(&said.to_string()), "{window}: {mean}");
     }

@@ -4,20 +4,25 @@
     python3 tests/golden/wheel_readings.py edges      # the neighbours of the second reading
     python3 tests/golden/wheel_readings.py search     # the search for it, some ten minutes on one core
     python3 tests/golden/wheel_readings.py relay      # a relay on the line x + (k_2/k_1) x'
+    python3 tests/golden/wheel_readings.py angles     # the golden numbers of tests/wheel.rs
 
-The papers give the modes, k_1 = 7.5 and k_2 = 275, and neither the wheel's constants k'_u (rad/s^2) and k'_omega (1/s) nor
-the period T0 (s). They state settling times, and that k_1 and k_2 give the rigid spacecraft a transient that is optimal in
-time. The first reading fits the settling times, the second one the printed condition: damping of 0.7, at which the angle
-of a linear loop enters a band of 5 % soonest.
+The papers give the modes, k_1 = 7.5 and k_2 = 275, and neither the wheel's constants k'_u (rad/s^2) and
+k'_omega (1/s) nor the period T0 (s). They state settling times, and that k_1 and k_2 give the rigid
+spacecraft a transient that is optimal in time. The first reading fits the settling times, the second one
+the printed condition: damping of 0.7, at which the angle of a linear loop enters a band of 5 % soonest.
 
 Bodies are columns: a simulation advances all of them at once, by Runge-Kutta steps of at most `STEP` seconds.
 """
 
+import re
 import sys
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 from scipy.linalg import expm
 
+ROOT = Path(__file__).resolve().parents[2]
 GAINS = np.array([1.44, 0.21, 0.165, 0.72])
 FREQUENCIES = np.array([0.3, 0.8, 1.0, 2.0])
 ANGLE, BAND, K_1, K_2 = 0.06, 0.003, 7.5, 275.0
@@ -36,12 +41,27 @@ def constant(_):
     return 1.0
 
 
-def settle(loop, *, w=0.3, k_d=0.0, ratio=constant, duration=600.0, modes=4, k_1=K_1, k_2=K_2, step=STEP, level=None):
-    """Time (s) of the last departure from the band, for each column; infinite if the angle is outside at the end.
+def settle(
+    loop,
+    *,
+    w=0.3,
+    k_d=0.0,
+    ratio=constant,
+    duration=600.0,
+    modes=4,
+    k_1=K_1,
+    k_2=K_2,
+    step=STEP,
+    level=None,
+    at=None,
+):
+    """Time (s) of the last departure from the band, for each column; infinite if outside at the end.
 
-    `loop` is (k'_u, k'_omega, T0, derivative) with arrays of the first two; `w` the first frequency (rad/s), to which the
-    others keep their ratios; `k_d` a number, an array, or a function of the dominant mode's frequency. With `level`
-    (rad/s^2) a relay in place of the linear law commands plus or minus this moment.
+    `loop` is (k'_u, k'_omega, T0, derivative) with arrays of the first two; `w` the first frequency
+    (rad/s), to which the others keep their ratios; `k_d` a number, an array, or a function of the
+    dominant mode's frequency. With `level` (rad/s^2) a relay in place of the linear law commands plus or
+    minus this moment. With `at`, a list of samples, the angles (rad) of the first column there are
+    returned instead.
     """
     k_u, k_omega, period, derivative = loop
     w = np.asarray(w, float)
@@ -54,9 +74,11 @@ def settle(loop, *, w=0.3, k_d=0.0, ratio=constant, duration=600.0, modes=4, k_1
     square[1:] = (FREQUENCIES[:modes, None] * w / 0.3) ** 2
     count = int(np.ceil(period / step - 1e-9))
     h = period / count
-    last, before = np.zeros(shape), None
+    last, before, kept = np.zeros(shape), None, []
     for sample in range(round(duration / period)):
         t = sample * period
+        if at is not None and sample in at:
+            kept.append(float(angles.sum(0)[0]))
         extra = k_d(w * ratio(t)) if callable(k_d) else k_d
         y = angles.sum(0) + (extra * angles[1] if modes else 0.0)
         if derivative == "exact":
@@ -73,14 +95,16 @@ def settle(loop, *, w=0.3, k_d=0.0, ratio=constant, duration=600.0, modes=4, k_1
             return rates, share * moment - square * ratio(t) ** 2 * angles
 
         for part in range(count):
-            at = t + part * h
-            a1, r1 = motion(angles, rates, at)
-            a2, r2 = motion(angles + h / 2 * a1, rates + h / 2 * r1, at + h / 2)
-            a3, r3 = motion(angles + h / 2 * a2, rates + h / 2 * r2, at + h / 2)
-            a4, r4 = motion(angles + h * a3, rates + h * r3, at + h)
+            now = t + part * h
+            a1, r1 = motion(angles, rates, now)
+            a2, r2 = motion(angles + h / 2 * a1, rates + h / 2 * r1, now + h / 2)
+            a3, r3 = motion(angles + h / 2 * a2, rates + h / 2 * r2, now + h / 2)
+            a4, r4 = motion(angles + h * a3, rates + h * r3, now + h)
             angles = angles + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
             rates = rates + h / 6 * (r1 + 2 * r2 + 2 * r3 + r4)
-            last = np.where(np.abs(angles.sum(0)) > BAND, at + h, last)
+            last = np.where(np.abs(angles.sum(0)) > BAND, now + h, last)
+    if at is not None:
+        return kept
     return np.where(last > duration - 2 * period, np.inf, last)
 
 
@@ -121,7 +145,7 @@ def damping(loop):
 
 
 def region(loop, frequencies, gains):
-    """The longest run of gains that settle within 200 s in a stable loop, at each frequency: (least, greatest) or None."""
+    """The longest run of gains that settle within 200 s in a stable loop, at each frequency, or None."""
     found = []
     for w in frequencies:
         met = settle(loop, w=w, k_d=gains, duration=700.0) <= 200.0
@@ -170,33 +194,61 @@ def statements(loop):
     low = region(loop, (0.05, 0.3), np.round(np.arange(-6.0, 6.001, 0.1), 1))
     above = max(radius(loop, w) for w in np.arange(0.05, 1.001, 0.025))
     middle = found[25]
-    bands = np.array([[radius((*loop[:2], t, loop[3]), w) for w in np.arange(0.05, 0.3, 0.01)] for t in np.arange(1, 30.1, 1)])
+    bands = np.array(
+        [
+            [radius((*loop[:2], t, loop[3]), w) for w in np.arange(0.05, 0.3, 0.01)]
+            for t in np.arange(1, 30.1, 1)
+        ]
+    )
     unstable = bool(np.any((bands[:, 1:-1] >= 1) & (bands[:, :1] < 1) & (bands[:, -1:] < 1)))
     zeta = damping(loop)
     return [
-        ("k_1, k_2 optimal in time for the rigid body", f"damping {zeta:.3f}, T_r {rigid:.1f}", abs(zeta - 0.7) < 0.03),
+        (
+            "k_1, k_2 optimal in time for the rigid body",
+            f"damping {zeta:.3f}, T_r {rigid:.1f}",
+            abs(zeta - 0.7) < 0.03,
+        ),
         (
             "other weights damp the mode sooner and lengthen the rigid transient",
-            "; ".join(f"k_1 x{a:g} k_2 x{b:g}: rigid {r:.0f}, mode {s:.0f}" for (a, b), (r, s) in zip(others, weights, strict=True))
+            "; ".join(
+                f"k_1 x{a:g} k_2 x{b:g}: rigid {r:.0f}, mode {s:.0f}"
+                for (a, b), (r, s) in zip(others, weights, strict=True)
+            )
             + f" (rigid {rigid:.0f}, mode {slow:.0f})",
             all(r > 1.05 * rigid and s < slow for r, s in (weights[0], weights[3])),
         ),
-        ("T_r at most that of the rigid body", f"{scheduled:.1f}, rigid {rigid:.1f}", scheduled <= 1.01 * rigid),
+        (
+            "T_r at most that of the rigid body",
+            f"{scheduled:.1f}, rigid {rigid:.1f}",
+            scheduled <= 1.01 * rigid,
+        ),
         ("0.2 rad/s: at most 200 s", f"{fast[0.2]:.1f}", fast[0.2] <= 200),
         (
             "from 0.15 rad/s: at most 200 s",
             ", ".join(f"{w}: {time:.1f}" for w, time in fast.items()),
             all((time <= 200) == (w >= 0.15) for w, time in fast.items()),
         ),
-        ("0.05 rad/s: slow, stable", f"{slow:.1f}, radius {radius(loop, 0.05):.6f}", slow > 200 and radius(loop, 0.05) < 1),
+        (
+            "0.05 rad/s: slow, stable",
+            f"{slow:.1f}, radius {radius(loop, 0.05):.6f}",
+            slow > 200 and radius(loop, 0.05) < 1,
+        ),
         ("drifting, k_d = 1.2: over 300 s", f"{fixed:.1f}", fixed > 300),
         ("drifting, scheduled: about 170 s", f"{scheduled:.1f}", abs(scheduled / 170 - 1) < 0.03),
         ("the extra loop makes it settle", f"k_d = 0: {without:.1f}", without > 1.5 * scheduled),
-        ("gains from 0.05 to 1 rad/s", str([None if e is None else tuple(map(float, e)) for e in many]), None not in many),
+        (
+            "gains from 0.05 to 1 rad/s",
+            str([None if e is None else tuple(map(float, e)) for e in many]),
+            None not in many,
+        ),
         ("k_d(0.3) = 1.2, the middle", str(middle), middle is not None and abs(sum(middle) / 2 - 1.2) < 0.11),
         ("gains below -1 are admissible", str(low), any(e is not None and e[0] < -1.05 for e in low)),
         ("the higher modes are stable up to 1 rad/s", f"largest radius {above:.6f}", above < 1),
-        ("stable with k_d = 1.2", f"{radius(loop, 0.3, 1.2):.6f}, {radius(loop, 0.1, 1.2):.6f}", max(radius(loop, w, 1.2) for w in few) < 1),
+        (
+            "stable with k_d = 1.2",
+            f"{radius(loop, 0.3, 1.2):.6f}, {radius(loop, 0.1, 1.2):.6f}",
+            max(radius(loop, w, 1.2) for w in few) < 1,
+        ),
         ("an unstable band for some period", "", unstable),
     ]
 
@@ -214,17 +266,26 @@ def edges():
     """The rigid damping and the period around the second reading."""
     usual = np.round(np.arange(-1.0, 6.001, 0.05), 2)
     k_u, _, period, derivative = BY_CONDITION
-    cases = [(zeta, period) for zeta in (0.69, 0.695, 0.6975, 0.7, 0.7025, 0.705, 0.71)] + [(0.7, 4.4), (0.7, 4.6)]
+    cases = [(zeta, period) for zeta in (0.69, 0.695, 0.6975, 0.7, 0.7025, 0.705, 0.71)] + [
+        (0.7, 4.4),
+        (0.7, 4.6),
+    ]
     for zeta, period in cases:
         loop = (k_u, 2 * zeta * np.sqrt(k_u * K_1) - k_u * K_2, period, derivative)
         found = region(loop, (0.3,), usual)[0]
         times = [one(loop, k_d=gain, ratio=ramp, duration=1000.0) for gain in (1.2, 0.0, -0.5)]
-        print(f"damping {zeta:.4f} T0 {period}: rigid {one(loop, modes=0):.1f}, drifting {times}, region at 0.3: {found}", flush=True)
+        print(
+            f"damping {zeta:.4f} T0 {period}: rigid {one(loop, modes=0):.1f}, drifting {times},"
+            f" region at 0.3: {found}",
+            flush=True,
+        )
 
 
 def candidates(derivative, period):
     """Loops of a grid over k'_u and the rigid damping that meet four settling times."""
-    natural, zeta = (x.ravel() for x in np.meshgrid(np.arange(0.0135, 0.0201, 0.0005), np.arange(0.5, 1.021, 0.02)))
+    natural, zeta = (
+        x.ravel() for x in np.meshgrid(np.arange(0.0135, 0.0201, 0.0005), np.arange(0.5, 1.021, 0.02))
+    )
     k_u = natural**2 / K_1
     k_omega = 2 * zeta * natural - k_u * K_2 * (period if derivative == "raw" else 1.0)
     kept = k_omega >= 0
@@ -249,16 +310,24 @@ def search():
             for loop in candidates(derivative, period):
                 times = [one(loop, k_d=gain, ratio=ramp) for gain in (1.2, 0.0, -0.5)]
                 fast = [one(loop, w=w, duration=500.0) for w in (0.15, 0.12)]
-                met = sum((times[0] > 300, times[1] > 1.4 * times[2], fast[0] <= 200 < fast[1], abs(damping(loop) - 0.7) < 0.03))
+                met = sum(
+                    (
+                        times[0] > 300,
+                        times[1] > 1.4 * times[2],
+                        fast[0] <= 200 < fast[1],
+                        abs(damping(loop) - 0.7) < 0.03,
+                    )
+                )
                 print(
-                    f"{derivative} T0 {period} k'_u {loop[0]:.3e} k'_omega {loop[1]:.3e} damping {damping(loop):.2f}: drifting"
-                    f" {times[0]:.0f}, {times[1]:.0f}, {times[2]:.0f}; 0.15 and 0.12 rad/s {fast[0]:.0f}, {fast[1]:.0f}; {met} of 4",
+                    f"{derivative} T0 {period} k'_u {loop[0]:.3e} k'_omega {loop[1]:.3e}"
+                    f" damping {damping(loop):.2f}: drifting {times[0]:.0f}, {times[1]:.0f}, {times[2]:.0f};"
+                    f" 0.15 and 0.12 rad/s {fast[0]:.0f}, {fast[1]:.0f}; {met} of 4",
                     flush=True,
                 )
 
 
 def relay():
-    """The time-optimal relay of a rigid body reverses at half the angle: its level, and what a body with modes does under it."""
+    """A relay that reverses at half the angle, the time-optimal one of a rigid body."""
     line = K_2 / K_1
     level = ANGLE / (4.0 * line**2)
     print(f"level {level:.4e} rad/s^2, rigid transient {2.0 * np.sqrt(ANGLE / level):.1f} s")
@@ -268,9 +337,32 @@ def relay():
                 loop = (0.0, 0.0, period, derivative)
                 options = {"level": factor * level, "step": 0.05}
                 row = [one(loop, modes=0, **options), one(loop, w=0.2, duration=1000.0, **options)]
-                row += [one(loop, k_d=gain, ratio=ramp, duration=1000.0, **options) for gain in (1.2, 0.0, -0.5)]
-                print(f"T0 {period} {derivative} level x{factor}: rigid, 0.2 rad/s, drifting 1.2, 0, -0.5: {np.round(row, 1)}", flush=True)
+                row += [
+                    one(loop, k_d=gain, ratio=ramp, duration=1000.0, **options) for gain in (1.2, 0.0, -0.5)
+                ]
+                print(
+                    f"T0 {period} {derivative} level x{factor}: rigid, 0.2 rad/s, drifting 1.2, 0, -0.5:"
+                    f" {np.round(row, 1)}",
+                    flush=True,
+                )
+
+
+def angles():
+    """Closed-loop angles (rad) of the second reading at multiples of 45 s, and its settling times (s)."""
+    samples, fine = [10, 20, 40, 60], {"duration": 275.0, "step": 0.0045}
+    for w, k_d in ((0.3, 0.0), (0.2, 0.0), (0.1, 0.0), (0.05, 0.0), (0.3, 1.2)):
+        print(f"{w} rad/s, k_d {k_d}: {settle(BY_CONDITION, w=w, k_d=k_d, at=samples, **fine)}")
+    scenario = (ROOT / "scenarios" / "wheel-scheduled-gain.toml").read_text("utf-8")
+    points = np.array(re.findall(r"frequency = ([\d.]+), gain = (-?[\d.]+) }", scenario), float)
+    by_table = partial(np.interp, xp=points[:, 0], fp=points[:, 1])
+    for name, k_d in (("1.2", 1.2), ("0", 0.0), ("-0.5", -0.5), ("schedule", by_table)):
+        print(f"drifting, k_d {name}: {settle(BY_CONDITION, k_d=k_d, ratio=ramp, at=samples, **fine)}")
+        print(f"  settles at {one(BY_CONDITION, k_d=k_d, ratio=ramp, step=0.01):.2f}")
+    for w in (0.2, 0.05):
+        print(f"{w} rad/s settles at {one(BY_CONDITION, w=w, step=0.01):.2f}")
 
 
 if __name__ == "__main__":
-    {"edges": edges, "search": search, "relay": relay}.get((sys.argv[1:] or [""])[0], both)()
+    {"angles": angles, "edges": edges, "search": search, "relay": relay}.get(
+        (sys.argv[1:] or [""])[0], both
+    )()

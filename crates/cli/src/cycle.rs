@@ -61,7 +61,16 @@ pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, Cli
     let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
     let (cycles, resonances) = (cycles(law, body, k_t), resonances(law, body));
     let described = RelayDescribingFunction::new(law, body, k_t).map(|function| function.cycles());
-    Ok(RelayCycles { name, k_t, unit, cycles, described, sides: law.sides, resonances, units: args.units.units })
+    Ok(RelayCycles {
+        name,
+        k_t,
+        unit,
+        cycles,
+        described,
+        sides: law.sides,
+        resonances,
+        units: args.units.units,
+    })
 }
 
 pub fn run(args: &CycleArgs) -> Result<(), CliError> {
