@@ -55,10 +55,9 @@ fn runs_keep_the_damping_of_isolators() {
         dir.run(&format!("simulate {name} --json")).exits(0).json()["metrics"].to_string()
     };
     let own = run("own.toml", "");
-    assert_eq!(own, run("own.toml", "whole_damping = true\n"));
-    assert_ne!(own, run("own.toml", "whole_damping = false\n"));
-    dir.run("modes own.toml").exits(0).says(&["left out in runs"]);
-    run("own.toml", "");
+    assert_eq!(own, run("whole.toml", "whole_damping = true\n"));
+    assert_ne!(own, run("diagonal.toml", "whole_damping = false\n"));
+    dir.run("modes diagonal.toml").exits(0).says(&["left out in runs"]);
     dir.run("modes own.toml").exits(0).says(&["off-diagonal damping", ": kept"]);
     let alike = ISOLATOR.replace("damping = 0.06", "damping = 0.03");
     let scenario = Scenario::parse("alike.toml", &alike).expect("valid");
