@@ -112,9 +112,10 @@ impl Scenario {
 
 /// Returns the laws of the modes in a table, or of the stages of its law; empty without any.
 pub(super) fn stage_laws(table: &mut Table) -> Vec<&mut Value> {
-    let stages = match table.contains_key("mode") {
-        true => table.get_mut("mode"),
-        false => table.get_mut("law").and_then(|law| law.get_mut("stages")),
+    let stages = if table.contains_key("mode") {
+        table.get_mut("mode")
+    } else {
+        table.get_mut("law").and_then(|law| law.get_mut("stages"))
     };
     let Some(Value::Array(stages)) = stages else { return Vec::new() };
     stages.iter_mut().filter_map(|stage| stage.get_mut("law")).collect()
