@@ -1,11 +1,13 @@
-"""Golden numbers of tests/budgets.rs, with NumPy and SciPy alone: sources and levels of pointing indices.
+"""Golden numbers of tests/budget_levels.rs, with NumPy and SciPy alone: sources and levels of indices.
 
-The bodies of `budgets/windows.toml`, `bias.toml` and `uncertain.toml` are rigid, under a PD law and noise that is drawn at its
-samples. Their loops are assembled here in closed form. The variance of an index is that of a weighted sum of samples, by a
-discrete Lyapunov equation; a sine is the response of the sampled loop to exp(j w t). Levels are roots of the probability
-by the integral of Gil-Pelaez, with a bias that all runs have as a constant.
+The bodies of `budgets/windows.toml`, `bias.toml` and `uncertain.toml` are rigid, under a PD law and noise
+that is drawn at its samples. Their loops are assembled here in closed form. The variance of an index is that
+of a weighted sum of samples, by a discrete Lyapunov equation; a sine is the response of the sampled loop to
+exp(j w t). Levels are roots of the probability by the integral of Gil-Pelaez, with a bias that all runs have
+as a constant.
 
-Run it in this directory: `python budget_reference.py > budgets.csv`. Each row has a scenario, a requirement, a quantity and its value.
+Run it in this directory: `python budget_reference.py > budgets.csv`. Each row has a scenario, a requirement,
+a quantity and its value.
 """
 
 import numpy as np
@@ -70,7 +72,7 @@ def amplitude(weights, torque, frequency):
 
 
 def level(probability, places, halves=()):
-    """Return the level of the magnitude, of places with a constant, amplitudes and a deviation, and uniform parts."""
+    """Return the level of places with a constant, amplitudes and a deviation, and of uniform parts."""
     most = max(abs(c) + sum(a) + 9 * s for c, a, s in places) + sum(halves)
     least = min(s for _, _, s in places)
     end = 9 / least
@@ -84,8 +86,12 @@ def level(probability, places, halves=()):
         function += own / len(places)
     for half in halves:
         function *= np.sinc(half * t / np.pi)
-    within = lambda m: 2 / np.pi * np.sum(function * np.sin(m * t) / t) * end / count
-    return brentq(lambda m: within(m) - probability, 0, most, xtol=1e-20, rtol=1e-13)
+
+    def beyond(m):
+        """Return the probability that the magnitude is at most m, less the given one."""
+        return 2 / np.pi * np.sum(function * np.sin(m * t) / t) * end / count - probability
+
+    return brentq(beyond, 0, most, xtol=1e-20, rtol=1e-13)
 
 
 def write(scenario, requirement, steady=0.0, sines=(), half=0.0):

@@ -92,9 +92,9 @@ class IndexBudget(Compared):
     True
     """
     sources: dict[str, Any] | None
-    """Error sources that the runs show: `bias`, its mean over the runs; `bias_spread`, its standard deviation from
-    run to run; `largest_bias`; `amplitudes` of sines; `noise`, the rms of the random part. None for an index
-    without sources.
+    """Error sources that the runs show: `bias`, its mean over the runs; `bias_spread`, its standard deviation
+    from run to run; `largest_bias`; `amplitudes` of sines; `noise`, the rms of the random part. None for an
+    index without sources.
 
     >>> list(index.sources)
     ['bias', 'bias_spread', 'largest_bias', 'amplitudes', 'noise']
