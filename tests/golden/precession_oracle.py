@@ -1,12 +1,14 @@
-"""Matrices from the GCRF and from EME2000 to the mean equator and equinox of dates, IAU 2006, by the four angles of Fukushima and Williams.
+"""Matrices from the GCRF and from EME2000 to the mean equator and equinox of dates (IAU 2006).
 
-The four angles gamma, phi, psi and the obliquity, with their polynomials that hold the frame bias (Hilton et al., Celestial
-Mechanics and Dynamical Astronomy 94, 2006, table 3, and Capitaine & Wallace, A&A 450, 2006), are another set than the
-three angles of the engine, and are evaluated with 40 digits. The bias from the GCRF to EME2000 is that of the same angles at the date
-2000. `python tests/golden/precession_oracle.py > tests/golden/precession.csv`; checked against ERFA's `bp06` to 1e-13.
+They follow from the four angles of Fukushima and Williams, gamma, phi, psi and the obliquity, whose
+polynomials hold the frame bias (Hilton et al., Celestial Mechanics and Dynamical Astronomy 94, 2006, and
+Capitaine & Wallace, A&A 450, 2006), with 40 digits: another set than the three angles of the engine. The
+bias from the GCRF to EME2000 is that of these angles at the date 2000. ERFA's `bp06` agrees to 1e-15.
+
+`python tests/golden/precession_oracle.py > tests/golden/precession.csv`
 """
 
-from mpmath import cos, matrix, mp, mpf, pi, sin
+from mpmath import cos, mp, mpf, pi, sin
 
 mp.dps = 40
 ARCSECOND = pi / 648000
@@ -14,7 +16,8 @@ GAMMA = ["-0.052928", "10.556378", "0.4932044", "-0.00031238", "-0.000002788", "
 PHI = ["84381.412819", "-46.811016", "0.0511268", "0.00053289", "-0.000000440", "-0.0000000176"]
 PSI = ["-0.041775", "5038.481484", "1.5584175", "-0.00018522", "-0.000026452", "-0.0000000148"]
 OBLIQUITY = ["84381.406", "-46.836769", "-0.0001831", "0.00200340", "-0.000000576", "-0.0000000434"]
-# Seconds from 1970 (date --utc +%s): noon of 2000-01-01, 2006-06-26T18:52:04, 2020-06-01, 2026-03-20T14:46, 2026-11-29, 2050-01-01.
+# Seconds from 1970 (date --utc +%s): noon of 2000-01-01, 2006-06-26T18:52:04, 2020-06-01, 2026-03-20T14:46,
+# 2026-11-29, 2050-01-01.
 DATES = [946728000, 1151347924, 1590969600, 1774017960, 1795910400, 2524608000]
 
 

@@ -43,8 +43,8 @@ class Exportable:
                 browsers, Blender and Cesium; `vizard`, for the viewer of Basilisk. If omitted, by the ending
                 of the file: `.aem`, `.oem`, `.glb` or `.bin`.
             epoch: The date of the start in UTC, for a scenario without `epoch`: `aem` and `oem` need one.
-            frame: The frame of `aem` and `oem`: EME2000, GCRF, ICRF, TEME or TOD; if omitted, TEME with a `tle`, else
-                EME2000.
+            frame: The frame of `aem` and `oem`: EME2000, GCRF, ICRF, TEME or TOD; if omitted, TEME with a
+                `tle`, else EME2000.
             center: The planet of the orbit in `oem` and `vizard`; if omitted, EARTH.
             object_id: The international designator in `aem` and `oem`.
             speed: The speed of the animation in `glb` relative to real time; if omitted, it lasts at most a
