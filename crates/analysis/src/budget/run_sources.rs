@@ -147,7 +147,7 @@ fn shrink(fits: &mut [RunFit]) {
     fits.iter_mut().for_each(|fit| fit.variance = mean + kept * (fit.variance - mean));
 }
 
-/// Divides runs into at most so many groups of runs that are alike: in halves, by the source that differs most.
+/// Divides runs into at most a number of groups of runs that are alike: in halves, by the source that differs most.
 fn alike_runs(mut fits: Vec<RunFit>, groups: usize) -> Vec<Vec<RunFit>> {
     let most = groups.min(fits.len());
     if most <= 1 {
