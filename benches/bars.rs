@@ -47,7 +47,7 @@ fn gains() -> impl Iterator<Item = f64> {
 }
 
 fn even(text: &str) -> Vec<CampaignRun> {
-    let run = |k_t| CampaignRun { number: 0, scenario: scenario(text, k_t), drawn: Vec::new() };
+    let run = |k_t| CampaignRun::new(scenario(text, k_t), 0);
     gains().map(run).collect()
 }
 
@@ -81,10 +81,8 @@ fn main() {
     ];
     let (none, all) = (Selection::from_names::<&str>([]).expect("no names"), Selection::ALL);
     let many: Vec<Vec<CampaignRun>> = texts.iter().map(|(_, text)| even(text)).collect();
-    let one: Vec<CampaignRun> = texts
-        .iter()
-        .map(|(_, text)| CampaignRun { number: 0, scenario: scenario(text, 0.3389), drawn: Vec::new() })
-        .collect();
+    let one: Vec<CampaignRun> =
+        texts.iter().map(|(_, text)| CampaignRun::new(scenario(text, 0.3389), 0)).collect();
     let mut kinds = Kinds(Vec::new());
     kinds.add(
         "yardstick".to_owned(),

@@ -61,7 +61,7 @@ fn run(c: &mut Criterion) {
         });
     });
     group.bench_function("40 window means", |b| b.iter(|| simulate(black_box(&windows), &mut ())));
-    let run = CampaignRun { number: 0, scenario: windows.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(windows.clone(), 0);
     group.bench_function("windows and metrics", |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     group.bench_function("windows, metrics, log", |b| {
         b.iter(|| {
@@ -89,10 +89,8 @@ fn lanes(c: &mut Criterion) {
     group.bench_function("yardstick", |b| {
         b.iter(|| gains.iter().map(|k_t| reference::exact(black_box(*k_t), 20_000.0).0).sum::<u32>());
     });
-    let runs: Vec<CampaignRun> = scenarios
-        .iter()
-        .map(|scenario| CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() })
-        .collect();
+    let runs: Vec<CampaignRun> =
+        scenarios.iter().map(|scenario| CampaignRun::new(scenario.clone(), 0)).collect();
     group.bench_function("one by one", |b| {
         b.iter(|| runs.iter().map(|run| Campaign::simulate(run, ()).expect("a run")).collect::<Vec<_>>());
     });
@@ -146,7 +144,7 @@ fn filters(c: &mut Criterion) {
         ("run of 600 s, mode known", include_str!("../scenarios/wheel-scheduled-gain.toml")),
         ("run of 600 s, extended filter", include_str!("../scenarios/wheel-ekf.toml")),
     ] {
-        let run = CampaignRun { number: 0, scenario: scenario(text), drawn: Vec::new() };
+        let run = CampaignRun::new(scenario(text), 0);
         group.bench_function(name, |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     }
     group.finish();
@@ -157,7 +155,7 @@ fn log(c: &mut Criterion) {
     // 2000 s at 0.01 s: 200 000 instants with four messages each.
     let text = format!("{EVENTS}{WINDOWS}[log]\nperiod = 0.01\n").replace("20000.0", "2000.0");
     let full = scenario(&text);
-    let run = CampaignRun { number: 0, scenario: full.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(full.clone(), 0);
     group.sample_size(10).throughput(Throughput::Elements(4 * 200_000));
     group.bench_function("dense MCAP", |b| {
         b.iter(|| {

@@ -31,7 +31,7 @@ fn commands(given: &[(f64, f64)]) -> CommandLog {
 /// Returns a log of the events of a run under some commands that says it is one under others.
 fn log(text: &str, given: &CommandLog, written: &CommandLog, until: Instant) -> Log {
     let scenario = Scenario::parse("steered.toml", text).expect("a scenario");
-    let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
+    let run = CampaignRun::new(scenario, 0);
     let mut provenance = Campaign::provenance(&run);
     provenance.attachments.push(written.attachment());
     let mut bytes = LogBytes::new(&provenance, Detail::Events).expect("a log");

@@ -17,7 +17,7 @@ use crate::util::Dir;
 
 /// Returns the log of a scenario's run.
 pub fn logged(scenario: &Scenario, detail: Detail) -> Log {
-    let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(scenario.clone(), 0);
     figures::log_of(&run, &CommandLog::default(), Instant::END, detail).expect("a log")
 }
 

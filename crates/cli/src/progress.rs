@@ -90,7 +90,7 @@ impl Heartbeat {
         let lines = move || {
             let again = Duration::from_secs_f64(Lines::AGAIN);
             beat(&ended, [Self::FIRST, again], |elapsed| {
-                say!("progress: {verb} has run for {}", seconds(elapsed))
+                say!("progress: {verb} has run for {}", seconds(elapsed));
             });
         };
         // Without a thread there are no lines.

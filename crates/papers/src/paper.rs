@@ -75,7 +75,7 @@ mod tests {
             let is_measured = |cell: &&str| MEASURED.contains(&cell.trim());
             let is_header = row.iter().any(is_measured);
             if is_header || row.len() < 4 {
-                measured = (0..row.len()).filter(|&column| is_measured(&&row[column])).collect();
+                measured = (0..row.len()).filter(|&column| is_measured(&row[column])).collect();
             }
             for cell in measured.iter().filter(|_| !is_header).filter_map(|&column| row.get(column)) {
                 cells += 1;

@@ -77,7 +77,9 @@ pub fn linear_sources(
     };
     if share_loop {
         let mut indices: Vec<_> = errors.iter().map(|error| nominal.index(error)).collect();
-        points.iter().for_each(|scenario| add(&mut indices, scenario));
+        for scenario in points {
+            add(&mut indices, scenario);
+        }
     } else {
         for scenario in points {
             let Some(own) = DisturbedLoop::from_scenario(scenario) else { return vec![None; errors.len()] };

@@ -48,7 +48,9 @@ impl ErrorSources {
     /// Creates the sources from combinations, whose weights are relative.
     pub fn new(mut combinations: Vec<SourceCombination>) -> Self {
         let total: f64 = combinations.iter().map(|own| own.weight).sum();
-        combinations.iter_mut().for_each(|own| own.weight /= total);
+        for own in &mut combinations {
+            own.weight /= total;
+        }
         Self { combinations }
     }
 

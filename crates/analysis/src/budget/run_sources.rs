@@ -144,7 +144,9 @@ fn shrink(fits: &mut [RunFit]) {
     let sampling_error = SAMPLING_ERROR / f64::sqrt(count);
     let explained = fits.iter().map(within).sum::<f64>() / count * (1.0 + sampling_error);
     let kept = if spread > explained { f64::sqrt(1.0 - explained / spread) } else { 0.0 };
-    fits.iter_mut().for_each(|fit| fit.variance = mean + kept * (fit.variance - mean));
+    for fit in &mut fits {
+        fit.variance = mean + kept * (fit.variance - mean);
+    }
 }
 
 /// Divides runs into at most a number of groups of runs that are alike: in halves, by the source that differs most.

@@ -74,7 +74,7 @@ impl RunEvents {
         }
         // The end of a torn log is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
-        let run = CampaignRun { number: self.run, scenario: self.scenario.clone(), drawn: Vec::new() };
+        let run = CampaignRun::new(self.scenario.clone(), self.run);
         let mut repeated = RepeatedEvents::default();
         let metrics = commands
             .simulate(&run, Instant::START + end, (recorder, &mut repeated))

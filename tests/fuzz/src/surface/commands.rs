@@ -44,7 +44,7 @@ fn logged(text: &str, period: f64) -> Result<Vec<u8>, Box<dyn std::error::Error 
     });
     let scenario = Scenario::parse("s.toml", &lines.collect::<Vec<_>>().join("\n"))?;
     let study = Campaign::new(scenario, "s.toml", None)?;
-    let run = CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
+    let run = CampaignRun::new(study.scenario().clone(), 0);
     let mut commands = CommandLog::default();
     for cycle in 0..(DURATION / period) as u32 {
         let value = 1e-3 * f64::from(cycle % 3);

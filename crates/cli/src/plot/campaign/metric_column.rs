@@ -104,7 +104,7 @@ pub fn elements(scenario: Option<&Scenario>, named: &[String]) -> Vec<String> {
 }
 
 pub fn value_of_requirement(index: usize) -> String {
-    format!("{}[{index}]", VALUES)
+    format!("{VALUES}[{index}]")
 }
 
 /// Returns the requirement whose values an element of a list has.
