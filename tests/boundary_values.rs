@@ -248,7 +248,7 @@ fn numbers(text: &str) -> Vec<std::ops::Range<usize>> {
     for (place, c) in text.char_indices().chain([(text.len(), ' ')]) {
         match start {
             None if (c.is_ascii_digit() || c == '-') && !before.is_alphanumeric() && before != '_' => {
-                start = Some(place)
+                start = Some(place);
             }
             Some(from) if !is_part(c) => {
                 if text[from..place].parse::<f64>().is_ok() && !c.is_alphanumeric() && c != ':' {

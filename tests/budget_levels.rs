@@ -43,7 +43,7 @@ fn sources_and_levels_of_the_linear_loop_are_those_of_scipy() {
             let sources = &budget["linear_sources"];
             let found = if let Some(sine) = quantity.strip_prefix("amplitude") {
                 number(&sources["amplitudes"][sine.parse::<usize>().expect("an index")])
-            } else if let Some(level) = quantity.parse::<f64>().ok() {
+            } else if let Ok(level) = quantity.parse::<f64>() {
                 let levels = budget["linear_levels"].as_array().expect("levels");
                 let own = levels.iter().find(|own| number(&own["level"]) == level).expect("a level");
                 number(&own["convolution"])

@@ -53,12 +53,8 @@ fn unbalanced_wheels_that_start_at_rest_are_counted() {
         "{remarks}"
     );
     dir.run("simulate a.toml --runs 1000").exits(2).says(&["in each of 1000 runs", "must be confirmed"]);
-    let balanced: String = CUBESAT
-        .lines()
-        .filter(|line| !line.starts_with("imbalance"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    dir.write("b.toml", balanced);
+    let balanced: Vec<&str> = CUBESAT.lines().filter(|line| !line.starts_with("imbalance")).collect();
+    dir.write("b.toml", balanced.join("\n"));
     let estimate = dir.run(&format!("check b.toml {slow} --json")).exits(0).json()["estimate_s"].clone();
     assert!((0.09..0.36).contains(&estimate.as_f64().expect("a time")), "{estimate}");
 }

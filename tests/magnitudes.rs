@@ -31,7 +31,7 @@ fn numbers_that_are_meant_in_another_unit_are_remarked() {
     let dir = Dir::with(&["cubesat-day", "earth-observer"]);
     let sensor = |kind: &str| {
         let scenario = Scenario::load(&dir.path("cubesat-day.toml")).expect("shipped");
-        (0..).map(|index| scenario.sensor_key(index)).find(|key| key.ends_with(kind)).expect("a sensor")
+        (0..20).map(|index| scenario.sensor_key(index)).find(|key| key.ends_with(kind)).expect("a sensor")
     };
     let [field, gyro] = ["magnetometer", "gyro"].map(sensor);
     for (name, set, remark) in [

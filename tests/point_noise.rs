@@ -1,6 +1,7 @@
 //! Noise of the points of a sweep: that of one run at all of them, unless it is to be new.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::util::{Dir, table};
 
@@ -10,7 +11,9 @@ const GAINS: &str = "--vary law.relay.k_t=0.30,0.33,0.30";
 /// Returns the metrics of a table, without the number of the run and the key.
 fn metrics(dir: &Dir, file: &str) -> Vec<BTreeMap<String, String>> {
     let mut rows = table(dir, file);
-    rows.iter_mut().for_each(|row| row.retain(|name, _| !["run", "law.relay.k_t"].contains(&name.as_str())));
+    for row in &mut rows {
+        row.retain(|name, _| !["run", "law.relay.k_t"].contains(&name.as_str()));
+    }
     rows
 }
 
@@ -35,7 +38,11 @@ fn points_differ_by_their_keys_alone() {
     assert_eq!(metrics(&dir, "part/runs-1-3.csv"), same[1..]);
     dir.run(&format!("{SWEEP} {GAINS} --log events --table csv -o logged")).exits(0);
     assert_eq!(metrics(&dir, "logged/runs.csv"), same);
-    let logs = dir.names("logged").into_iter().filter(|name| name.ends_with(".mcap")).collect::<Vec<_>>();
+    let logs = dir
+        .names("logged")
+        .into_iter()
+        .filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "mcap"))
+        .collect::<Vec<_>>();
     assert_eq!(logs, (0..3).map(|run| format!("relay-sampled-{run}.mcap")).collect::<Vec<_>>());
     // What the directory holds is repeated, and another noise is another campaign.
     dir.run(&format!("{SWEEP} {GAINS} --noise new --table csv -o same"))

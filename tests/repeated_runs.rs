@@ -24,7 +24,9 @@ fn at(seconds: f64) -> Instant {
 /// Returns commands of a torque about the first axis (N m) from each of some times on (s).
 fn commands(given: &[(f64, f64)]) -> CommandLog {
     let mut log = CommandLog::default();
-    given.iter().for_each(|(time, torque)| log.push(at(*time), [*torque, 0.0, 0.0].map(Command::Torque)));
+    for (time, torque) in given {
+        log.push(at(*time), [*torque, 0.0, 0.0].map(Command::Torque));
+    }
     log
 }
 

@@ -84,7 +84,7 @@ fn layout(random: &mut Stream) -> Vec<u8> {
         2 => lines[place] = format!("n f64 {} -", vec!["x"; long].join(",")),
         3 => {
             lines[place] =
-                format!("n {} - {}", ["f64", "u8", "zzz", "ffffffff"][random.index(4)], "u".repeat(long))
+                format!("n {} - {}", ["f64", "u8", "zzz", "ffffffff"][random.index(4)], "u".repeat(long));
         }
         4 => lines[place] = String::new(),
         5 => lines.extend(vec!["a u8 - -".to_owned(); [1, 505, 506, 507, 6000][random.index(5)]]),

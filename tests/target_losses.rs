@@ -115,8 +115,8 @@ fn visits_of_a_mode_are_one_warning() {
 #[test]
 fn a_ground_pass_that_a_wheel_loses_is_said() {
     let text = include_str!("golden/cube6u.toml").replace("30000 s", "12800 s");
-    let balanced: String =
-        text.lines().filter(|line| !line.starts_with("imbalance")).map(|line| format!("{line}\n")).collect();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("imbalance")).collect();
+    let balanced = lines.join("\n");
     let dir = Dir::holding("a.toml", balanced);
     let said = dir.run("simulate a.toml --log none").err;
     let warning =

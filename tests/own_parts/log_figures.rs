@@ -33,9 +33,12 @@ fn climbing() -> Scenario {
 #[test]
 fn a_full_log_is_drawn_without_the_parts_as_with_them() {
     let path = Path::new("own.mcap");
-    for (study, shown) in
-        [(of_own_parts(ONE_ANGLE), "angle"), (of_own_parts(THREE_AXES), "pointing"), (climbing(), "gain")]
-    {
+    for shown in ["angle", "pointing", "gain"] {
+        let study = match shown {
+            "angle" => of_own_parts(ONE_ANGLE),
+            "pointing" => of_own_parts(THREE_AXES),
+            _ => climbing(),
+        };
         let log = logged(&study, Detail::Full);
         let names = figures::names(&log, path, None).expect("figures");
         assert_eq!(names, figures::names(&log, path, Some(&study)).expect("figures"));

@@ -76,13 +76,14 @@ fn a_law_without_a_place_is_refused() {
     let document = Document::parse("modes.toml", of_modes().to_toml()).expect("a document");
     let fault = Scenario::from_document_with(&document, &bare).expect_err("no place");
     assert!(fault.to_string().contains("each mode has a law of its own"), "{fault}");
+    let (modes, stages) = (of_modes(), of_stages());
     for (scenario, name, words) in [
-        (of_modes(), "secnd", "must be one of `first`, `second`, got `secnd`; did you mean `second`?"),
-        (of_modes(), "1", "must be one of `first`, `second`, got `1`"),
-        (of_stages(), "2", "must be the index of a stage of the law, from 0 to 1, got `2`"),
-        (plain, "first", "has no modes of operation, got `first`"),
+        (&modes, "secnd", "must be one of `first`, `second`, got `secnd`; did you mean `second`?"),
+        (&modes, "1", "must be one of `first`, `second`, got `1`"),
+        (&stages, "2", "must be the index of a stage of the law, from 0 to 1, got `2`"),
+        (&plain, "first", "has no modes of operation, got `first`"),
     ] {
-        let fault = scenario.with_custom_parts(for_stage(name)).expect_err("no place").to_string();
+        let fault = scenario.clone().with_custom_parts(for_stage(name)).expect_err("no place").to_string();
         assert!(fault.contains(words), "{fault}");
     }
 }

@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn copies_share_full_blocks_and_keep_their_own_end() {
         let mut history = AppliedInputs::default();
-        for entry in 0..BLOCK + 1 {
+        for entry in 0..=BLOCK {
             history.add(moment(entry as i64), &inputs(entry as u64));
         }
         let copy = history.clone();

@@ -53,7 +53,9 @@ mod tests {
     /// Returns the columns of rows, with times 0, 1, 2 and so on.
     fn columns<R: TopicRow>(rows: &[R]) -> Columns {
         let mut columns = Columns::new(R::FIELDS);
-        rows.iter().for_each(|row| columns.push(row));
+        for row in rows {
+            columns.push(row);
+        }
         let times = (0..rows.len()).map(|index| index as f64).collect();
         columns.columns.insert(0, ("time_s".to_owned(), Column::Numbers(times)));
         columns

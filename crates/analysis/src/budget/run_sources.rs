@@ -144,7 +144,7 @@ fn shrink(fits: &mut [RunFit]) {
     let sampling_error = SAMPLING_ERROR / f64::sqrt(count);
     let explained = fits.iter().map(within).sum::<f64>() / count * (1.0 + sampling_error);
     let kept = if spread > explained { f64::sqrt(1.0 - explained / spread) } else { 0.0 };
-    for fit in &mut fits {
+    for fit in fits.iter_mut() {
         fit.variance = mean + kept * (fit.variance - mean);
     }
 }

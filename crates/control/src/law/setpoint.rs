@@ -50,10 +50,9 @@ impl ErrorBand {
     /// that is rounding.
     pub fn band(self, distance: f64) -> f64 {
         match self {
-            Self::None => f64::NAN,
             Self::Absolute(band) => band,
             Self::Fraction(part) if distance > ROUNDING => part * distance,
-            Self::Fraction(_) => f64::NAN,
+            Self::None | Self::Fraction(_) => f64::NAN,
         }
     }
 }

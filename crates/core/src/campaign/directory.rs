@@ -127,6 +127,7 @@ impl Directory {
     ///
     /// # Errors
     /// Those of [`Directory::create`], and runs of this campaign that are not among these.
+    #[expect(clippy::needless_pass_by_value, reason = "one signature with `create`")]
     pub fn create_whole(path: &Path, manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
         let place = path.join(MANIFEST);
         let runs = manifest.runs();

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::deferred::Deferred;
 use super::kepler::{earth_gravity, earth_radius};
 use super::precession::to_mean_of_date;
-use super::row_departure::MOST;
+use super::row_departure::{Departure, MOST};
 use super::sampled_orbit::SampledOrbit;
 
 /// Orbit by positions at instants.
@@ -137,7 +137,7 @@ impl EphemerisOrbit {
     /// Returns remarks on the orbit in a run of this duration (s) from `epoch_ns` nanoseconds after 1970, if known.
     pub(super) fn remarks(&self, duration: f64, epoch_ns: Option<u64>) -> Vec<ConfigError> {
         let worst = self.path(epoch_ns).map(|orbit| orbit.departure([0.0, duration]));
-        let why = worst.filter(|worst| worst.is_remarkable()).map(|worst| {
+        let why = worst.filter(Departure::is_remarkable).map(|worst| {
             let (place, far) = (self.ephemeris.place(worst.row), worst.distance);
             match worst.gap {
                 None => format!(

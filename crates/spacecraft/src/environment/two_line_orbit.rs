@@ -105,7 +105,7 @@ impl TwoLineOrbit {
             )
         });
         let jump = self.path(duration, start).map(|orbit| orbit.departure([0.0, duration]));
-        let jump = jump.filter(|jump| jump.is_remarkable()).map(|jump| {
+        let jump = jump.filter(super::row_departure::Departure::is_remarkable).map(|jump| {
             format!(
                 "jumps by about {:.0} m near {:.0} s of the run, as SGP4 itself does: velocity and targets are wrong for some rows about it",
                 2.0 * jump.distance,

@@ -75,7 +75,9 @@ pub fn lines(chance: &mut Chance) -> Vec<String> {
         lines[line][column] = b"0123456789 -+.A"[chance.below(15)];
     }
     if chance.percent(85) {
-        lines.iter_mut().for_each(|line| seal(line));
+        for line in &mut lines {
+            seal(line);
+        }
     }
     match chance.below(25) {
         0 => lines.swap(0, 1),

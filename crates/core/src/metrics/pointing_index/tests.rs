@@ -141,7 +141,9 @@ fn values_are_weighted_sums_of_samples() {
         let errors: Vec<Vector> = (0..60).map(|sample| error(7, sample)).collect();
         let mut stream = IndexStream::new(index);
         let mut found = Vec::new();
-        errors.iter().for_each(|error| stream.push(*error, |value| found.push(value)));
+        for error in &errors {
+            stream.push(*error, |value| found.push(value));
+        }
         assert_eq!(found.len() as u64, index.values(60));
         for (number, value) in found.iter().enumerate() {
             let (set, place) = (number as u64 / index.places(), number as u64 % index.places());
