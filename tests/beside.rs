@@ -13,6 +13,7 @@ use flexsc_core::numerics::lanes::Processor;
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
 use crate::study::{pairs, scenario};
+use crate::wheel::{FITTED, FITTED_SENSOR};
 
 /// Number of runs: some full batches and a remainder.
 const RUNS: u64 = 19;
@@ -58,7 +59,9 @@ fn taken(what: &str, scenario: &Scenario) -> usize {
 fn sampled_loops_with_drifting_frequencies() {
     let one = usize::from(Processor::best().is_some_and(|processor| RUNS as usize % processor.lanes(1) == 1));
     let all = RUNS as usize - one;
-    let with = |name: &str, keys: &[(&str, &str)]| scenario(name, &[&[SHORT], keys].concat());
+    let with = |name: &str, keys: &[(&str, &str)]| {
+        scenario(name, &[&FITTED[..], &[SHORT, FITTED_SENSOR], keys].concat())
+    };
     let (fixed, scheduled) = ("wheel-fixed-gain", "wheel-scheduled-gain");
     let uncertain = "{ \"body.planar.angle\" = { uniform = [-0.06, 0.06] }, \
                      \"body.planar.modes[0].damping\" = { uniform = [0.001, 0.2] }, \
@@ -95,7 +98,7 @@ fn sampled_loops_with_drifting_frequencies() {
 #[test]
 fn sampled_loops_with_constant_frequencies() {
     let one = usize::from(Processor::best().is_some_and(|processor| RUNS as usize % processor.lanes(1) == 1));
-    let with = |keys: &[(&str, &str)]| scenario("wheel-slow-mode", &[&[SHORT], keys].concat());
+    let with = |keys: &[(&str, &str)]| scenario("wheel-slow-mode", &[&FITTED[..], &[SHORT], keys].concat());
     let uncertain = "{ \"body.planar.modes[0].frequency\" = { relative_uniform = 0.2 }, \
                      \"actuator.wheel.delay\" = { uniform = [0.01, 0.29] }, \
                      \"actuator.wheel.gain\" = { relative_uniform = 0.1 } }";

@@ -136,7 +136,7 @@ fn the_command_tells_when_the_observer_converges() {
         ("observer --frequency 1 --weights 0.05,0.1", "--weights must be three numbers, W1,W2,W3, got 2"),
         (
             "observer --frequency 1 --weights 0.05,0.1,inf",
-            "--weights must be three numbers below 1000, got inf",
+            "must be a number, or a number with a unit, got `inf`",
         ),
         ("observer --frequency 1 --kappa -1", "--kappa must be numbers of 0 or more below 1000, got -1"),
         ("observer --frequency -1", "--frequency must be above 0 and below"),

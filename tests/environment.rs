@@ -122,7 +122,7 @@ fn what_does_not_fit_is_refused() {
         &["`environment.dipole.local`", "there is one orbit"],
     );
     refused(&rigid, &around("gravity_gradient = {}"), &["orbit_rate"]);
-    refused(&rigid, &around("gravity_gradient = { orbit_rate = 1e15 }"), &["`duration` makes", "steps"]);
+    refused(&rigid, &around("gravity_gradient = { orbit_rate = 1e15 }"), &["`environment` makes", "steps"]);
 }
 
 /// A spacecraft that rotates faster than its modes allow is refused, and sooner if first moments are not known.

@@ -18,7 +18,7 @@ fn angles(scenario: &Scenario) -> [f64; 5] {
 }
 
 /// The keys of the constants that are fitted to the settling times of the papers, as in `wheel-settling-fit`.
-const FITTED: [(&str, &str); 4] = [
+pub const FITTED: [(&str, &str); 4] = [
     ("actuator.wheel.gain", "5e-4"),
     ("actuator.wheel.back_emf", "1e-4"),
     ("law.pd.period", "0.3"),
@@ -26,7 +26,7 @@ const FITTED: [(&str, &str); 4] = [
 ];
 
 /// A sensor that samples with the fitted constants.
-const FITTED_SENSOR: (&str, &str) = ("sensor.sampled.period", "0.3");
+pub const FITTED_SENSOR: (&str, &str) = ("sensor.sampled.period", "0.3");
 
 /// The gains that `wheel-settling-fit` schedules, as a value of `law.pd.extra`.
 fn fitted_schedule() -> String {

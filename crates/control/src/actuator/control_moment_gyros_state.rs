@@ -47,6 +47,11 @@ pub struct ControlMomentGyrosState {
     steered: SteeringRecord,
 }
 
+/// Returns the largest gimbal rate (rad/s) of a report; `None` without control moment gyros.
+pub(super) fn gimbal_rate(report: &Report) -> Option<f64> {
+    report.get::<SteeringRecord>().map(|steered| steered.rate_rad_s)
+}
+
 impl ControlMomentGyros {
     /// Creates the control moment gyros before their first command, on a body with these settings.
     pub fn start(&self, axes: &[GyroAxes], settings: &[AxisActuatorContext]) -> ControlMomentGyrosState {

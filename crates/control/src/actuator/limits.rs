@@ -3,8 +3,9 @@
 use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Span;
-use flexsc_record::{Magnetorquers, Report, SteeringRecord, Wheels};
+use flexsc_record::{Magnetorquers, Report, Wheels};
 
+use super::control_moment_gyros_state::gimbal_rate;
 use super::{AssignedActuator, JetCycle};
 use crate::one_or_many::OneOrMany;
 
@@ -155,7 +156,6 @@ impl ActuatorLimits {
         let wheels = report.get().map_or(&[][..], |row: &Wheels| &row.wheels);
         let torquers = report.get().map_or(&[][..], |row: &Magnetorquers| &row.axes);
         let jets: Option<&JetCycle> = report.get();
-        let steering: Option<&SteeringRecord> = report.get();
         for (reached, ActuatorLimit { quantity, limit, .. }) in self.reached.iter_mut().zip(&self.limits) {
             let value = match *quantity {
                 LimitedQuantity::WheelTorque(index) => wheels.get(index).map(|wheel| wheel.torque_nm),
@@ -164,7 +164,7 @@ impl ActuatorLimits {
                 LimitedQuantity::Moment(axis) => torquers.get(axis).map(|torquer| torquer.moment_am2),
                 LimitedQuantity::GroupOnTime(axis) => jets.map(|jets| jets.on[axis]),
                 LimitedQuantity::ThrusterOnTime(index) => jets.and_then(|jets| jets.each.get(index).copied()),
-                LimitedQuantity::GimbalRate => steering.map(|steering| steering.rate_rad_s),
+                LimitedQuantity::GimbalRate => gimbal_rate(report),
             };
             let value = value.unwrap_or(0.0);
             *reached = if value.abs() >= limit * (1.0 - AT_LIMIT) { value.signum() } else { 0.0 };
