@@ -51,15 +51,15 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/command", 0x326e_f6e7_a8ce_d541),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0xfcf2_156a_660f_118d),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
-        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x1032_64f2_e13b_2c5e),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x6831_1d6a_35d6_a3fa),
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0xab1b_b72b_45d7_5b9b),
-        ("wheel-friction", " --runs 5:6", "/metrics", 0x3c6a_9be1_e2b7_ec45),
-        ("flexible-boom", " --runs 5:6", "/metrics", 0x7b02_cae7_d7e8_300e),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0xf806_e519_f43b_9df5),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0x7817_906b_2123_3032),
+        ("flexible-boom", " --runs 5:6", "/metrics", 0x21c7_3381_6157_3471),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0x27b6_fe0c_0802_0ded),
         ("wheels-and-jets", "", "/jets", 0x0436_fa26_25e0_b4be),
-        ("wheels-and-jets", "", "/metrics", 0xd958_01be_dd2d_2885),
+        ("wheels-and-jets", "", "/metrics", 0xa0d9_d302_63fa_faf0),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
-        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xfdf4_0a4b_9c16_697f),
+        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xe184_5b13_8bc2_d8de),
     ];
     let mut others = Vec::new();
     for (name, runs, topic, expected) in runs {

@@ -288,7 +288,7 @@ fn what_is_no_sampled_loop() {
         ("map fitted.toml --frequency 0.1:0.3:3", "--period"),
         (
             "map fitted.toml --frequency 0.1:0.3:3 --period 0.3:0.3:1 --gain nan",
-            "--gain must be a finite number",
+            "must be a number, or a number with a unit, got `nan`",
         ),
     ] {
         dir.run(arguments).exits(2).says(&[words]);

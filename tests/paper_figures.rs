@@ -116,7 +116,9 @@ fn a_part_of_the_time_is_shown() {
     dir.run("plot relay-fixed.mcap --from 700 -o x.svg")
         .exits(2)
         .says(&["the run is from 0 to 600 s, got --from 700 --to -"]);
-    dir.run("plot relay-fixed.mcap --to nan -o x.svg").exits(2).says(&["got --from - --to NaN"]);
+    dir.run("plot relay-fixed.mcap --to nan -o x.svg")
+        .exits(2)
+        .says(&["must be a number, or a number with a unit such as \"2 s\", got `nan`"]);
     dir.run("plot . --from 1 -o x.svg").exits(2).says(&["--from: only for logs"]);
 }
 

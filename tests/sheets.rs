@@ -144,7 +144,7 @@ fn a_mark_outside_the_picture_has_no_name() {
     let dir = Dir::with(&["wheel-fast-mode"]);
     // The scenario lies at 0.2 rad/s.
     for (frequencies, inside) in [("0.1:0.3:5", true), ("0.25:0.35:5", false)] {
-        let grid = format!("--frequency {frequencies} --period 0.1:2:5");
+        let grid = format!("--frequency {frequencies} --period 1:5:5");
         dir.run(&format!("map wheel-fast-mode.toml {grid} -o map.svg")).exits(0);
         assert_eq!(
             texts(&dir.text("map.svg")).iter().any(|text| text == "scenario"),

@@ -22,7 +22,7 @@ NAMES = (
     "four-clamped-modes",
     "slew-wheel-lqg",
     "station-keeping",
-    "wheel-slow-mode",
+    "fitted-slow-mode",
     "kalman-late",
     "observer-late",
 )

@@ -384,8 +384,7 @@ fn metrics_json() -> String {
 /// Returns the meanings of the metrics of a scenario: of a body without inertia some have other units.
 #[pyfunction]
 fn meanings_json(scenario: &Scenario) -> String {
-    let names = metrics::ALL.iter().map(|meaning| meaning.name);
-    let meanings = names.filter_map(|name| metrics::meaning(name, Some(&scenario.inner)));
+    let meanings = metrics::ALL.iter().filter_map(|m| metrics::meaning(m.name, Some(&scenario.inner)));
     let reported = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
     serde_json::Value::Object(reported.collect()).to_string()
 }

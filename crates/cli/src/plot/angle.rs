@@ -67,7 +67,7 @@ struct SettlingCurve {
     band: f64,
     /// Start of the goal (s).
     from: f64,
-    /// Last time outside the band (s); `None` if the run ends outside it.
+    /// Time at which the band is entered for good (s); `None` if the run ends outside it.
     settled_at: Option<f64>,
 }
 
@@ -83,10 +83,17 @@ impl SettlingCurve {
         let promise = story.scenario.expected_band();
         let promised = if from > 0.0 { None } else { error.first().map(|first| promise.band(first.abs())) };
         let band = band.or(promised).filter(|band| *band > 0.0)?;
-        let outside = |(time, error): &(&f64, &f64)| **time >= from - 1e-9 && error.abs() > band;
-        let last = times.iter().zip(error).rfind(outside).map_or(from, |(time, _)| *time);
-        let settling = times.last().filter(|end| last < **end).map(|_| last);
-        Some(Self { band, from, settled_at: settling })
+        let beyond = |row: usize| error[row].abs() - band;
+        let outside = |row: &usize| times[*row] >= from - 1e-9 && beyond(*row) > 0.0;
+        let settled_at = match (0..times.len().min(error.len())).rfind(outside) {
+            None => Some(from),
+            // The last row outside and the next one, between which the band is entered.
+            Some(last) => times.get(last + 1).map(|next| {
+                let part = beyond(last) / (beyond(last) - beyond(last + 1));
+                times[last] + part * (next - times[last])
+            }),
+        };
+        Some(Self { band, from, settled_at })
     }
 
     fn layers(&self, story: &RunEvents, y: &FigureAxis) -> Vec<Layer> {

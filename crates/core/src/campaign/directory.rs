@@ -122,8 +122,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Creates or continues a directory as [`Directory::create`] does, with these runs and no others: with `force`, parts
-    /// with other runs are removed.
+    /// Creates or continues a directory as [`Directory::create`] does, with these runs alone; `force` removes other parts.
     ///
     /// # Errors
     /// Those of [`Directory::create`], and runs of this campaign that are not among these.
@@ -156,15 +155,12 @@ impl Directory {
     /// Another process that is writing the directory, and files that cannot be removed.
     pub fn remove_empty(path: &Path) -> Result<(), DirectoryError> {
         let _lock = lock(path)?;
-        if !parts(path)?.is_empty() {
-            return Ok(());
-        }
-        for place in [path.join(MANIFEST), path.join(LOCK)] {
-            fs::remove_file(&place).map_err(io_error(&place))?;
-        }
-        for place in [&path.join(RUNS), path] {
+        if parts(path)?.is_empty() {
+            for place in [path.join(MANIFEST), path.join(LOCK)] {
+                fs::remove_file(&place).map_err(io_error(&place))?;
+            }
             // One that holds other files stays.
-            let _ = fs::remove_dir(place);
+            let _ = fs::remove_dir(path.join(RUNS)).and_then(|()| fs::remove_dir(path));
         }
         Ok(())
     }
