@@ -49,13 +49,13 @@ fn a_budget_by_convolution_and_by_k_sigma() {
         (0.683, 2.577_803_019_2, 3.975_144_661_5, 3.115_702_349, 2.449_489_743, 4.732_050_808),
         (0.997, 6.280_152_979_5, 7.117_808_224_6, 6.706_502_175_2, 7.348_469_228, 8.196_152_423),
     ] {
-        agree("mixed", level(&budget, probability, Interpretation::Mixed), mixed, 1e-7);
+        agree("mixed", level(&budget, probability, Interpretation::Mixed), mixed, 1e-6);
         agree("temporal", level(&ends, probability, Interpretation::Temporal), temporal, 1e-10);
-        agree("ensemble", level(&budget, probability, Interpretation::Ensemble), ensemble, 1e-7);
+        agree("ensemble", level(&budget, probability, Interpretation::Ensemble), ensemble, 1e-6);
         agree("mixed rule", budget.rule(probability, Interpretation::Mixed), mixed_rule, 1e-6);
         agree("temporal rule", ends.rule(probability, Interpretation::Temporal), temporal_rule, 1e-9);
         let distribution = budget.distribution(Interpretation::Mixed);
-        agree("probability", distribution.probability(mixed), probability, 1e-7);
+        agree("probability", distribution.probability(mixed), probability, 1e-6);
     }
     assert_eq!(level(&ErrorSources::default(), 0.997, Interpretation::Mixed), 0.0);
 }

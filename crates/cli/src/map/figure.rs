@@ -156,10 +156,10 @@ mod tests {
 
     #[test]
     fn the_drawn_limit_is_the_limit_of_stability() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/wheel-fixed-gain.toml");
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/wheel-settling-fit.toml");
         let scenario = Scenario::load(path.as_ref()).expect("a scenario");
         let (of, law) = sampled(&scenario).expect("a sampled loop");
-        let family = LoopFamily { of, law: law.clone(), gain: None, scaling: Scaling::All };
+        let family = LoopFamily { of, law: law.clone(), gain: Some(1.2), scaling: Scaling::All };
         let even = |low: f64, high: f64, count: u32| -> Vec<f64> {
             (0..count).map(|i| low + f64::from(i) / f64::from(count - 1) * (high - low)).collect()
         };

@@ -62,8 +62,8 @@ fn state(fmu: &Fmu3) -> Vec<u64> {
 }
 
 const SCENARIOS: [(&str, f64, usize); 5] = [
-    ("wheel-fixed-gain", 0.3, 200),
-    ("wheel-scheduled-gain", 0.3, 200),
+    ("wheel-fixed-gain", 4.5, 40),
+    ("wheel-scheduled-gain", 4.5, 40),
     ("earth-observer", 0.25, 120),
     ("earth-observer-lqg", 0.25, 120),
     ("station-keeping", 0.5, 200),

@@ -39,6 +39,9 @@ fn switchings(scenario: &Scenario) -> Vec<[u64; 4]> {
     (0..angle.len()).map(|row| [whole[row], part[row], angle[row].to_bits(), rate[row].to_bits()]).collect()
 }
 
+/// Keys by which the law and the sensor of a wheel's loop act each 0.3 s.
+const OFTEN: [(&str, &str); 2] = [("law.pd.period", "0.3"), ("sensor.sampled.period", "0.3")];
+
 #[test]
 fn events_of_a_relay_equal_those_of_the_native_run() {
     let scenario = shipped("relay-fixed", &[("duration", "1000.0")]);
@@ -111,7 +114,7 @@ fn the_end_of_an_fmu_is_that_of_the_native_run() {
 
 #[test]
 fn a_plant_is_commanded_at_its_samples() {
-    let scenario = shipped("wheel-fixed-gain", &[("duration", "40.0")]);
+    let scenario = shipped("wheel-fixed-gain", &[("duration", "40.0"), OFTEN[0], OFTEN[1]]);
     let command = |angle: f64, rate: f64| -0.5 * angle - 2.0 * rate;
     let mut run = Simulation::new(&scenario, 0);
     let mut expected = Vec::new();
@@ -162,7 +165,7 @@ fn an_external_torque_acts_from_its_communication_point() {
 
 #[test]
 fn a_grid_gives_points_the_samples_of_their_instants() {
-    let scenario = shipped("wheel-fixed-gain", &[("duration", "400.0")]);
+    let scenario = shipped("wheel-fixed-gain", &[("duration", "400.0"), OFTEN[0], OFTEN[1]]);
     let period = scenario.study.sample_period.expect("sampled").seconds();
     let (mut run, mut row) = (Simulation::new(&scenario, 0), Vec::new());
     let width = run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum();
