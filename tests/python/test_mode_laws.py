@@ -68,7 +68,7 @@ def test_names_without_a_mode_are_refused(safe_mode: flexsc.Scenario) -> None:
     with pytest.raises(flexsc.ScenarioError, match="has no modes of operation, got `point`"):
         shipped("earth-observer").with_parts(law={"point": Damper()})
     with pytest.raises(TypeError, match=r"law point must be an object of a flexsc\.Law, got float"):
-        safe_mode.with_parts(law={"point": 1.0})  # type: ignore[dict-item]
+        safe_mode.with_parts(law={"point": 1.0})  # type: ignore[arg-type]
 
 
 def test_a_law_acts_in_its_mode_alone(safe_mode: flexsc.Scenario) -> None:

@@ -19,6 +19,13 @@ def alone(name: str, changes: dict[str, Any]) -> flexsc.Scenario:
     for key in ("estimator", "manoeuvre", "disturbance", "uncertain", "reference", "drift", "target"):
         keys.pop(key, None)
     keys.get("spacecraft", {}).pop("attitude", None)
+    # Linear models have the whole damping matrix, and small angles modes that damping does not couple.
+    craft = keys.get("spacecraft", {})
+    if "small_angles" in craft:
+        for mode in (mode for appendage in keys["appendage"] for mode in appendage["modes"]):
+            mode["damping"] = 0.0
+    elif craft:
+        craft["whole_damping"] = True
     keys |= {"duration": 1000.0, "law": {"open": {}}, "sensor": "continuous"}
     return flexsc.Scenario(keys | changes, name)
 

@@ -9,6 +9,7 @@ import flexsc
 import flexsc.plot
 import pytest
 from conftest import Command, shipped
+from flexsc import _native as engine
 from test_mode_laws import Damper
 
 
@@ -34,7 +35,7 @@ def seeking() -> flexsc.Scenario:
 
 
 def svg(log: flexsc.Log, name: str) -> str:
-    return flexsc.plot.engine.log_figure(log._native, name, None).svg()
+    return str(engine.log_figure(log._native, name, None).svg())
 
 
 def test_a_full_log_is_drawn_as_its_run(tmp_path: Path, command: Command) -> None:

@@ -146,4 +146,4 @@ def test_texts_of_margins_have_no_arrays() -> None:
         text = repr(value)
         assert "array(" not in text
         assert len(text) < 600
-    assert "modulus=0.5744" in repr(scenario.margins())
+    assert "modulus=0.5773" in repr(scenario.margins())

@@ -94,7 +94,7 @@ def test_the_motion_is_that_of_an_integrator(drift: Any, ratios: Any, opposes: s
 
 
 def test_the_filter_in_the_loop() -> None:
-    result = shipped("wheel-ekf").simulate(log="full")
+    result = shipped("wheel-settling-fit").simulate(log="full")
     estimate = result["estimator"]
     late = (estimate["time_s"] > 30) & (estimate["time_s"] < 200)
     error = (estimate["frequency_rad_s"] - estimate["true_frequency_rad_s"])[late]

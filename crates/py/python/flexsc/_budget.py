@@ -35,13 +35,13 @@ class BudgetLevel(Compared):
     """Level of the sum of the error sources by convolution; None for an index without sources.
 
     >>> round(level.convolution, 7)
-    0.0002583
+    0.0002569
     """
     rule: float | None
     """Level by the rule of k sigma; None for an index without sources.
 
     >>> round(level.rule, 7)
-    0.0002592
+    0.0002886
     """
 
 

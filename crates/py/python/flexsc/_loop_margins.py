@@ -24,7 +24,7 @@ class LoopMargins(Brief):
 
     >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins().loops["command"]
     >>> round(margins.gain_above, 2), round(margins.delay, 3), round(margins.modulus, 4)
-    (43.75, 0.817, 0.5764)
+    (3.03, 80.738, 0.6247)
     """
 
     gain_crossings: dict[str, npt.NDArray[np.float64]]
@@ -52,45 +52,45 @@ class LoopMargins(Brief):
     """Smallest factor above 1 at which the loop is at the limit of stability; infinite if there is none.
 
     >>> round(margins.gain_above, 2)
-    43.75
+    3.03
     """
     phase: float
     """Smallest phase (rad), of either sign, that makes the loop unstable; pi if there is none.
 
     >>> round(margins.phase, 4)
-    0.5871
+    1.1734
     """
     delay: float
     """Smallest delay (s) that makes the loop unstable; infinite if there is none, NaN for several samples of
     the law in a period.
 
     >>> round(margins.delay, 4)
-    0.817
+    80.7384
     """
     modulus: float
     """Modulus margin: smallest distance of the loop transfer from -1.
 
     >>> round(margins.modulus, 4)
-    0.5764
+    0.6247
     """
     modulus_frequency: float
     """Frequency (rad/s) at which the modulus margin is attained.
 
     >>> round(margins.modulus_frequency, 5)
-    0.06357
+    0.53401
     """
     disk: float
     """Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2),
     at once.
 
     >>> round(margins.disk, 4)
-    0.5888
+    0.8977
     """
     disk_frequency: float
     """Frequency (rad/s) at which the disk margin is attained.
 
     >>> round(margins.disk_frequency, 5)
-    0.05805
+    0.53395
     """
 
 

@@ -81,7 +81,7 @@ class ScenarioAnalysis(ScenarioFile):
 
         >>> margins = flexsc.Scenario.example("wheel-fast-mode").margins()
         >>> margins.loops["command"].gain_crossings["frequency"].round(3)[:3]
-        array([0.062, 0.175, 0.242])
+        array([0.015])
 
         Raises:
             ScenarioError: The loop is not linear: the key, and the reason.

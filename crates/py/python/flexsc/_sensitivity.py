@@ -63,7 +63,7 @@ class Sensitivities(Compared, Lookup["Named[float]"]):
     """The metrics of the scenario itself, of shape (metrics,).
 
     >>> found.nominal.round(1).tolist()                                # s
-    [354.3]
+    [302.0]
     """
     derivatives: Values
     """The derivatives, of shape (metrics, keys), NaN where a metric is not smooth or has no value.

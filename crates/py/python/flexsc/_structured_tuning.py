@@ -37,13 +37,13 @@ class TunedPlant(Compared):
     """Modulus margin of all signals together with the keys of the scenario.
 
     >>> round(plant.margin_before, 4)
-    0.5744
+    0.5773
     """
     margin: float
     """Modulus margin with the tuned keys.
 
     >>> round(plant.margin, 4)
-    0.7425
+    0.7437
     """
     frequency_before: float
     """Frequency (rad/s) at which the margin was attained with the keys of the scenario.
@@ -141,13 +141,13 @@ class TunedScenario(Compared):
     """Least modulus margin of all plants with the keys of the scenario.
 
     >>> round(tuned.least_margin_before, 4)
-    0.5744
+    0.5773
     """
     least_margin: float
     """Least modulus margin of all plants with the tuned keys.
 
     >>> round(tuned.least_margin, 4)
-    0.7425
+    0.7437
     """
     measures: dict[str, TunedMeasure]
     """Quantities besides the margins that were minimised or limited, by their names.

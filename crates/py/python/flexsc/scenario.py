@@ -1395,6 +1395,7 @@ class EphemerisOrbit(Part):
 
     Args:
         ephemeris: Positions, or the path of their file.
+        frame: Axes of the rows; default: those that the file names, else the run's inertial axes.
         gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
@@ -1403,6 +1404,8 @@ class EphemerisOrbit(Part):
 
     ephemeris: Rows | str
     """Positions, or the path of their file."""
+    frame: Literal["EME2000", "GCRF", "ICRF", "MOD", "TEME", "TOD"] | None = None
+    """Axes of the rows; default: those that the file names, else the run's inertial axes."""
     gravity: float | None = None
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
@@ -3496,8 +3499,8 @@ class Spacecraft(Part):
             those of the target; without vibration they are the rates of the hub.
         rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
-        whole_damping: Whether runs keep the full damping matrix of the free modes; default: if its
-            off-diagonal terms are not negligible.
+        whole_damping: Whether runs keep the full damping matrix of the free modes; default: if its off-
+            diagonal terms are not negligible.
         points: Named points of the hub, at which jets and sensors are mounted; default: one at O, named
             `hub`.
     """
@@ -4100,7 +4103,7 @@ class Turn(Part):
 
 class TwoLineOrbit(Part):
     """Orbit by two-line elements, in the axes of the true equator and the mean equinox, which differ from
-    the inertial axes by the nutation.
+    the mean equator and equinox by the nutation.
 
     Args:
         tle: Both lines, of 69 characters.
