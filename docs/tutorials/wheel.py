@@ -5,7 +5,7 @@
 # frequencies fall to a third within 200 s. A gain that suits the initial frequency is wrong for the final one. How can
 # the gain follow the frequency if it is not measured?
 #
-# The loop is sampled at 0.3 s, the wheel has back-EMF, and an extra loop feeds back the dominant mode ([sampled
+# The loop is sampled at 4.5 s, the wheel has back-EMF, and an extra loop feeds back the dominant mode ([sampled
 # loops](../sampled-loops.md)).
 
 # %%
