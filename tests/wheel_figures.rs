@@ -24,7 +24,7 @@ fn the_angle_is_drawn_with_its_band_and_when_it_has_settled() {
     assert!(times.iter().filter(|t| (*t - 180.4).abs() < 0.1).count() > 40, "{times:?}");
     // 3 mrad up and down: a twentieth of the way from 0 to 60 mrad.
     let band = &angle.shapes("polygon", "fill", "#009E73")[1];
-    let heights = band.iter().map(|(_, y)| angle.up(*y, ["0", "60"]));
+    let heights = band.iter().map(|(_, y)| angle.up(*y, ["20", "60"]));
     near(heights.clone().fold(f64::INFINITY, f64::min), -3.0, 0.05);
     near(heights.fold(f64::NEG_INFINITY, f64::max), 3.0, 0.05);
 
