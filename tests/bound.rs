@@ -179,6 +179,17 @@ fn a_spacecraft_has_free_modes() {
     // No key gives a free mode at the start.
     let scenario = Scenario::parse("bound.toml", text).expect("valid");
     assert_eq!(found.witness_text(&scenario), None);
+    // Damping couples two free modes: runs leave it out by default, and so does the bound. A run that has it has none.
+    let second = "{ frequency = 4.0, damping = 0.01, translation = [0, 0, 0.2], rotation = [0, -0.1, 0] }]";
+    let two =
+        text.replace("rotation = [0, -5.396, 0] }]", &format!("rotation = [0, -5.396, 0] }}, {second}"));
+    let found = &bounds(&two)[0];
+    let witness = found.witness.as_ref().expect("a witness");
+    agree(witness.simulated.expect("a run"), witness.value, 1e-4);
+    let whole =
+        Scenario::parse("whole.toml", &two.replace("mass = 300.0", "mass = 300.0\nwhole_damping = true"));
+    let fault = OutputBound::from_scenario(&whole.expect("valid")).expect_err("coupled").to_string();
+    assert!(fault.contains("modes that do not act on each other"), "{fault}");
 }
 
 #[test]

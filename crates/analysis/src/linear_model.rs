@@ -69,6 +69,26 @@ impl LinearModel {
         })
     }
 
+    /// Creates the model with the damping that runs have: the damping matrix of free modes without its off-diagonal elements
+    /// where runs leave them out.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_scenario`].
+    pub fn for_runs(scenario: &Scenario) -> Result<Self, ConfigError> {
+        let mut model = Self::from_scenario(scenario, 0.0)?;
+        let BodyAxes::Three(body) = scenario.model.axes() else { return Ok(model) };
+        if let Some(coupling) = body.coupling.as_ref().filter(|coupling| !coupling.couples_by_damping) {
+            let modes = 0..coupling.damping.nrows();
+            for (row, column) in modes.clone().flat_map(|row| modes.clone().map(move |column| (row, column)))
+            {
+                if row != column {
+                    model.a[7 + 2 * row][7 + 2 * column] += coupling.damping[(row, column)];
+                }
+            }
+        }
+        Ok(model)
+    }
+
     fn for_one_axis(scenario: &Scenario, body: &AxisModel, time: f64) -> Self {
         let ratio = |mode| {
             scenario.study.drift.as_ref().map_or(1.0, |drift: &FrequencyDrift| drift.ratio(mode, time))

@@ -112,7 +112,7 @@ impl OutputBound {
             let why = "is missing: a table `[[bound]]` gives the output, its limits, and the sets of states and inputs";
             return Err(ConfigError::new("bound", why));
         }
-        let model = LinearModel::from_scenario(scenario, 0.0)?;
+        let model = LinearModel::for_runs(scenario)?;
         if let Some(key) = scenario.study.drift.as_ref().map(|_| "drift") {
             return Err(ConfigError::new(
                 key,

@@ -61,7 +61,7 @@ fn with_parts(own: &Scenario, model: &LinearModel, witness: &Witness, kept: &[&s
         }
     }
     // The disturbances act as the inputs of the model do, unless these are jets.
-    let same = LinearModel::from_scenario(&scenario, 0.0).ok()?;
+    let same = LinearModel::for_runs(&scenario).ok()?;
     (witness.frequency_factor != 1.0
         || witness.damping_factor != 1.0
         || same.a == model.a && same.b == model.b)
