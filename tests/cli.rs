@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::Value as Json;
 
 use crate::util::{Dir, Ran, SCENARIOS, UNCERTAIN, has_extension};
+use crate::wheel::FITTED_OPTIONS;
 
 #[test]
 fn help_and_version_are_no_failure() {
@@ -254,10 +255,8 @@ fn noise_of_a_loop() {
 
 #[test]
 fn margins_of_a_loop() {
-    const FITTED: &str = "--set actuator.wheel.gain=5e-4 --set actuator.wheel.back_emf=1e-4 --set law.pd.period=0.3 \
-                          --set law.pd.differentiation=raw";
     let dir = Dir::with(&["wheel-fast-mode", "wheel-unstable-band", "relay-fixed"]);
-    let margins = dir.run(&format!("margins wheel-fast-mode.toml {FITTED} --json")).exits(0).json();
+    let margins = dir.run(&format!("margins wheel-fast-mode.toml {FITTED_OPTIONS} --json")).exits(0).json();
     let one = &margins["loops"][0];
     assert_eq!((&margins["loop"], &one["signal"]), (&"command".into(), &"command".into()));
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
@@ -265,7 +264,7 @@ fn margins_of_a_loop() {
     assert!((number(&one["gain_above"]) - 43.754_409).abs() < 1e-4);
     assert!((number(&one["phase_rad"]) - 0.587_070).abs() < 1e-4);
     assert_eq!(one["gain"].as_array().map(Vec::len), Some(9));
-    dir.run(&format!("margins wheel-fast-mode.toml {FITTED} --units si --loop torque"))
+    dir.run(&format!("margins wheel-fast-mode.toml {FITTED_OPTIONS} --units si --loop torque"))
         .exits(0)
         .says(&["at the torque", "43.75"]);
     let measured = dir.run("margins wheel-fast-mode.toml --loop measurement").exits(0);

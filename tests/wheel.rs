@@ -25,6 +25,10 @@ pub const FITTED: [(&str, &str); 4] = [
     ("law.pd.differentiation", "\"raw\""),
 ];
 
+/// Options for the fitted constants.
+pub const FITTED_OPTIONS: &str = "--set actuator.wheel.gain=5e-4 --set actuator.wheel.back_emf=1e-4 \
+                                  --set law.pd.period=0.3 --set law.pd.differentiation=raw";
+
 /// A sensor that samples with the fitted constants.
 pub const FITTED_SENSOR: (&str, &str) = ("sensor.sampled.period", "0.3");
 

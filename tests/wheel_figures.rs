@@ -4,10 +4,7 @@ use flexsc_core::record::Log;
 
 use crate::drawing::{BLACK, BLUE, Drawing, Point, SKY, VERMILLION, near};
 use crate::util::Dir;
-
-/// Options for the constants that are fitted to the settling times of the papers.
-const FITTED_WHEEL: &str = "--set actuator.wheel.gain=5e-4 --set actuator.wheel.back_emf=1e-4 \
-                            --set law.pd.period=0.3 --set law.pd.differentiation=raw";
+use crate::wheel::FITTED_OPTIONS;
 
 #[test]
 fn the_angle_is_drawn_with_its_band_and_when_it_has_settled() {
@@ -149,7 +146,7 @@ fn tuned_gains_are_drawn() {
     let dir = Dir::with(&["wheel-scheduled-gain"]);
     let options = "--frequency 0.2:0.3:2 --gain -2:4:121 --robust 0.1 --figures figures --format svg --json";
     dir.run(&format!(
-        "tune wheel-scheduled-gain.toml {options} {FITTED_WHEEL} --set sensor.sampled.period=0.3"
+        "tune wheel-scheduled-gain.toml {options} {FITTED_OPTIONS} --set sensor.sampled.period=0.3"
     ))
     .exits(0);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
@@ -172,7 +169,7 @@ fn tuned_gains_are_drawn() {
 
     // A region that ends at the highest gain is reported as such, and without --robust there is no such gain.
     dir.run(&format!(
-        "tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures --units si {FITTED_WHEEL} --set sensor.sampled.period=0.3"
+        "tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures --units si {FITTED_OPTIONS} --set sensor.sampled.period=0.3"
     ))
     .exits(0)
     .says(&["wheel-scheduled-gain-tune-region.png", "0.3    -0.900"]);
@@ -186,7 +183,8 @@ fn tuned_gains_are_drawn() {
 fn the_map_is_drawn_with_the_limit_of_stability() {
     let dir = Dir::with(&["wheel-fast-mode"]);
     let grid = "--frequency 0.05:0.35:31 --period 0.1:2:39";
-    dir.run(&format!("map wheel-fast-mode.toml {grid} {FITTED_WHEEL} --figures figures -o map.csv")).exits(0);
+    dir.run(&format!("map wheel-fast-mode.toml {grid} {FITTED_OPTIONS} --figures figures -o map.csv"))
+        .exits(0);
     assert!(dir.read("figures/wheel-fast-mode-map.png").starts_with(b"\x89PNG\r\n\x1a\n"));
     let map = Drawing::read(&dir, "wheel-fast-mode-map");
     assert!(map.0.len() < 100_000, "{}", map.0.len());

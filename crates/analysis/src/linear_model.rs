@@ -73,7 +73,7 @@ impl LinearModel {
     /// where runs leave them out.
     ///
     /// # Errors
-    /// Those of [`Self::from_scenario`].
+    /// Drives that turn appendages, as in [`Self::from_scenario`].
     pub fn for_runs(scenario: &Scenario) -> Result<Self, ConfigError> {
         let mut model = Self::from_scenario(scenario, 0.0)?;
         let BodyAxes::Three(body) = scenario.model.axes() else { return Ok(model) };

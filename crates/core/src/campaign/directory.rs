@@ -125,7 +125,7 @@ impl Directory {
     /// Creates or continues a directory as [`Directory::create`] does, with these runs alone; `force` removes other parts.
     ///
     /// # Errors
-    /// Those of [`Directory::create`], and runs of this campaign that are not among these.
+    /// Every error of [`Directory::create`], and a part of this campaign with other runs, without `force`.
     #[expect(clippy::needless_pass_by_value, reason = "one signature with `create`")]
     pub fn create_whole(path: &Path, manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
         let place = path.join(MANIFEST);
