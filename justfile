@@ -2,7 +2,7 @@
 
 check:
     cargo fmt --check
-    cargo clippy --release --workspace --all-targets -- -D warnings
+    cargo clippy --profile ci --workspace --all-targets -- -D warnings
 
 quick:
     python3 tests/all.py --quick

@@ -14,6 +14,8 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
+# The linker sees all crates at once: smaller and faster, in several times the time.
+LINK_ONCE = ("--config", 'profile.release.lto="fat"')
 
 
 def cargo(*words: str) -> bytes:
@@ -58,17 +60,14 @@ def main() -> None:
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     target = sys.argv[1]
-    # The link optimises as the crate that is linked is optimised: for size, simulations of three axes would
-    # take 1.3 times as long.
-    level = "profile.dist.package.flexsc.opt-level=3"
     features = ("-p", "flexsc", "--features", "full")
-    cargo("build", "--profile", "dist", "--config", level, "--locked", *features, "--target", target)
+    cargo("build", "--release", *LINK_ONCE, "--locked", *features, "--target", target)
     suffix = ".exe" if "windows" in target else ""
     version = json.loads(cargo("metadata", "--no-deps", "--format-version", "1"))["packages"][0]["version"]
     DIST.mkdir(exist_ok=True)
     name = f"flexsc-{version}-{target}"
     binary = DIST / f"{name}{suffix}"
-    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "dist" / f"flexsc{suffix}"
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "release" / f"flexsc{suffix}"
     shutil.copyfile(built, binary)
     binary.chmod(0o755)
     # The library of FMUs, which the build of the command makes: `flexsc export-fmu --library`.

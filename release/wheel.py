@@ -14,13 +14,15 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 ENVIRONMENT = ROOT / "target" / "venv-release"
+# The linker sees all crates at once: smaller and faster, in several times the time.
+LINK_ONCE = ("--config", 'profile.release.lto="fat"')
 MAX_BYTES = 10 * 2**20
 
 
 def add_library(python: Path, target: str) -> None:
     """Adds the library of FMUs, which was built with the module, to the newest wheel in dist/."""
     wheel = max((ROOT / "dist").glob("flexsc-*.whl"), key=lambda path: path.stat().st_mtime)
-    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "dist" / "deps"
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / target / "release" / "deps"
     code = "import sys, pathlib as p, flexsc_backend as b; "
     code += "b.add_library(p.Path(sys.argv[1]), p.Path(sys.argv[2]) / b.library_name(sys.argv[3]))"
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "crates/py/backend")}
@@ -40,7 +42,7 @@ def main() -> None:
     environment = {**os.environ, "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}"}
     command = [scripts / "maturin", "sdist", "--out", "dist"]
     if target != "sdist":
-        command = [scripts / "maturin", "build", "--profile", "dist", "--out", "dist", "--target", target]
+        command = [scripts / "maturin", "build", "--release", *LINK_ONCE, "--out", "dist", "--target", target]
         command += ["--compression-level", "9"]
         if "linux" in target:
             command += ["--zig", "--compatibility", "musllinux_1_2" if "musl" in target else "manylinux_2_17"]

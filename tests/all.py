@@ -1,18 +1,15 @@
 """All tests of flexsc, Rust and Python: `python3 tests/all.py`; `--quick` runs what a change needs first.
 
 Each step tells about how long it takes on two cores from a clean checkout, and then how long it took. All
-Rust is built with one profile and one set of features: nothing is compiled twice. `lint.py` checks the light
-build, the benchmarks and the documentation beside the compiler.
+Rust is built with the profile `ci` and one set of features: nothing is compiled twice.
 """
 
 import argparse
 import contextlib
-import json
 import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import threading
 import time
@@ -30,10 +27,9 @@ ENVIRONMENT = TARGET / "venv"
 NASTRAN = TARGET / "venv-nastran"
 # The environment of `site/build.py`.
 SITE = TARGET / "venv-site"
-# The benchmarks are checked, and not built.
-BENCHMARKS = ("--bench", "bars", "--bench", "engine")
-BUILD = ("cargo", "build", "--release", "--quiet", "--workspace", "--bins", "--tests", *BENCHMARKS)
-EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
+# Where tools are that cargo installs.
+TOOLS = TARGET / "tools"
+CI = ("--profile", "ci", "--quiet")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
 # Python tests that take long, and run beside the others: what pages say, executors, and type checkers.
 PAGES = "tests/python/test_docs.py"
@@ -119,24 +115,24 @@ def form() -> None:
 
 
 def crates() -> None:
-    run(sys.executable, "tests/deny.py")
+    """Licences, sources and duplicates of all crates."""
     run(sys.executable, "release/licences.py", "--check")
-    if shutil.which("cargo-deny") is not None:
-        run("cargo", "deny", "check", "bans", "licenses", "sources")
-    run(sys.executable, "tests/features.py")
+    deny = shutil.which("cargo-deny") or TOOLS / "bin" / "cargo-deny"
+    if not Path(deny).exists():
+        run("cargo", "install", "--quiet", "--locked", "--debug", "--root", TOOLS, "cargo-deny")
+    run(deny, "check", "bans", "licenses", "sources")
 
 
-def form_and_crates() -> None:
-    side_by_side(form, crates)
+def lint() -> None:
+    """clippy, also of the light build, and rustdoc. Warnings are errors."""
+    run("cargo", "clippy", *CI, "--", "-Dwarnings")
+    run("cargo", "clippy", *CI, "--workspace", "--all-targets", "--", "-Dwarnings")
+    os.environ["RUSTDOCFLAGS"] = "-Dwarnings"
+    run("cargo", "doc", *CI, "--workspace", "--lib", "--no-deps")
 
 
 def compile_all() -> None:
-    """Builds with checks beside the compiler (`lint.py` has them); later steps use the same artifacts."""
-    if os.name == "posix":
-        os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
-    else:
-        run("cargo", "check", "--release", "--quiet")
-    run(*BUILD)
+    run("cargo", "build", *CI, "--workspace", "--bins", "--tests")
 
 
 def packages() -> None:
@@ -166,63 +162,28 @@ def wait_for_installation() -> None:
             os.waitpid(int(process), 0)
 
 
-def executables() -> list[tuple[str, Path, Path]]:
-    """The executables of the tests: their targets, their paths, and the directories in which they run.
-
-    `cargo test --lib` would build tests of the libraries that have none, and the Python module twice.
-    """
-    told = subprocess.run(
-        (*BUILD, "--message-format", "json"), cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True
-    ).stdout
-    made = [each for each in map(json.loads, told.splitlines()) if each.get("executable")]
-    return [
-        (each["target"]["name"], Path(each["executable"]), Path(each["manifest_path"]).parent)
-        for each in made
-        if each["profile"]["test"] and each["target"]["kind"] != ["bench"]
-    ]
-
-
 def rust() -> str:
-    """The integration tests, and beside them the others, few of which keep more than one core busy."""
     wait_for_installation()
-    printed, failed = [], []
-
-    def tested(threads: int, *command: str | Path, within: Path = ROOT) -> None:
-        try:
-            printed.append(run(*command, "--test-threads", str(threads), within=within))
-        except SystemExit as failure:
-            failed.append(str(failure))
-
-    tests = executables()
-    (integration,) = (each for each in tests if each[0] == "tests")
-
-    def others() -> None:
-        for _, path, within in tests:
-            if path != integration[1]:
-                tested(1, path, "--quiet", within=within)
-        tested(1, "cargo", "test", "--release", "--quiet", "--no-fail-fast", *EVERYTHING, "--doc", "--")
-
-    side_by_side(lambda: tested(THREADS, integration[1], "--quiet", within=integration[2]), others)
-    if failed:
-        sys.exit("; ".join(failed))
-    return tally("".join(printed))
+    command = ("cargo", "test", *CI, "--workspace", "--no-fail-fast")
+    return tally(run(*command, "--", "--test-threads", str(THREADS)))
 
 
 def rust_light() -> str:
     """All but the one test that takes a quarter of their time."""
-    return tally(run("cargo", "test", "--release", "--quiet", "--", "--skip", "parts_combine"))
+    return tally(run("cargo", "test", *CI, "--", "--skip", "parts_combine"))
 
 
 def fuzz() -> None:
     if os.name != "posix":
         return
     for surface, inputs in FUZZED.items():
-        run(TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
+        run(TARGET / "ci" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs)
 
 
 def wheel() -> None:
     wheels = TARGET / "wheels"
     shutil.rmtree(wheels, ignore_errors=True)
+    os.environ["MATURIN_PEP517_ARGS"] = "--profile ci"
     run(environment(ENVIRONMENT), *PIP, "wheel", "--no-deps", "-w", wheels, ".")
 
 
@@ -290,27 +251,23 @@ def python_and_around() -> str:
 
 
 STEPS = [
-    Step(
-        "form of the code: rustfmt, ruff, spelling; licences, sources, duplicates and features of all crates",
-        7,
-        form_and_crates,
-    ),
-    Step(
-        "building the command, the tests and the fuzzer, with clippy, rustdoc and the light build", 330, build
-    ),
-    Step("Rust tests", 285, rust),
+    Step("form of the code: rustfmt, ruff, spelling", 7, form),
+    Step("licences, sources and duplicates of all crates", 150, crates),
+    Step("clippy and rustdoc", 200, lint),
+    Step("building the command, the tests and the fuzzer", 400, build),
+    Step("Rust tests", 380, rust),
     Step(
         "the wheel, Python tests, also with an extra and with pyNastran, the documentation site, and fuzzing",
-        205,
+        230,
         python_and_around,
     ),
 ]
 QUICK = [
     STEPS[0],
-    Step("Rust tests of the light build", 190, rust_light),
+    Step("Rust tests of the light build", 240, rust_light),
 ]
-LEFT_OUT = """left out: clippy, rustdoc, the features `matrices`, `papers`, `parquet` and `png` with their
-tests, the combinations of parts, the fuzzer, the wheel, the Python tests and the site"""
+LEFT_OUT = """left out: clippy, rustdoc, the licences of crates, the features `matrices`, `papers`, `parquet`
+and `png` with their tests, the combinations of parts, the fuzzer, the wheel, the Python tests and the site"""
 
 
 def give_up(step: Step) -> None:
