@@ -1,7 +1,7 @@
 """Measures what executors add to a campaign: a process pool and Dask, with tasks of several lengths.
 
 pip install . 'flexsc[dask]'
-python3 benches/executors.py        # a minute and a half on two cores; prints a table, with the overheads that docs/campaigns.md states
+python3 benches/executors.py        # 90 s on two cores; prints the overheads of docs/campaigns.md
 """
 
 import os
