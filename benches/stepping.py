@@ -1,7 +1,7 @@
 """Measures what a step of many runs together costs: CPU time of all threads, whatever else runs.
 
 pip install . 'flexsc[gym]'
-python3 benches/stepping.py        # half a minute on two cores; prints a table for docs/stepping.md
+python3 benches/stepping.py        # half a minute on two cores; prints the times of docs/stepping.md
 """
 
 import time

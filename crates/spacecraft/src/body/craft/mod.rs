@@ -1,7 +1,7 @@
 //! A spacecraft assembled from its parts: a rigid hub, appendages with clamped modes, rotors.
 //!
 //! [`Spacecraft`] and [`Appendage`] are the forms of a scenario; [`AssembledSpacecraft`] is the body in free modes that is assembled
-//! from them before a run (`docs/spacecraft.md`).
+//! from them before a run (`docs/theory/modes.md`).
 
 mod appendage;
 mod assembly;
