@@ -1,4 +1,4 @@
-"""A day of a CubeSat in flexsc, Basilisk and 42, interleaved: prints the table of docs/benchmarks.md.
+"""A day of a CubeSat in flexsc, Basilisk and 42, interleaved: prints the figures of docs/benchmarks.md.
 
 pip install bsk; git clone https://github.com/ericstoneking/42; cargo build --release
 python3 benches/day/beside.py WMM.COF 42    # the field model of NOAA for Basilisk, the directory of 42
