@@ -28,7 +28,14 @@ KEYS = Keys(flexsc.schema())
 
 def on_files(files: Files, config: Any) -> Files:
     """Adds the pages that are made."""
-    for path, text in {**reference.pages(KEYS), "changelog.md": (ROOT / "CHANGELOG.md").read_text()}.items():
+    # Links of the changelog count from the repository.
+    changelog = (
+        (ROOT / "CHANGELOG.md")
+        .read_text()
+        .replace("](docs/", "](")
+        .replace("](SECURITY.md", "](../SECURITY.md")
+    )
+    for path, text in {**reference.pages(KEYS), "changelog.md": changelog}.items():
         files.append(File.generated(config, path, content=text))
     for source in sorted((ROOT / "docs/tutorials").glob("*.py")):
         for path, content in tutorials.made(source).items():
