@@ -38,7 +38,7 @@ fn a_campaign_is_a_directory_of_parts() {
     for (name, column) in rows(&dir.path("out")) {
         let texts: Vec<&str> = csv.iter().map(|row| row[&name].as_str()).collect();
         match column {
-            ColumnCells::Words(words) => {
+            ColumnCells::Text(words) => {
                 let words: Vec<&str> = words.iter().map(|word| word.as_deref().unwrap_or("")).collect();
                 assert_eq!(words, texts, "{name}");
             }
@@ -126,7 +126,7 @@ fn a_run_that_fails_is_a_row() {
     let dir = Dir::holding("u.toml", wide);
     let ran = dir.run("simulate u.toml --runs 20 -o out").exits(1);
     let (runs, columns) = (numbers(&dir.path("out"), "run"), rows(&dir.path("out")));
-    let Some((_, ColumnCells::Words(errors))) = columns.last() else { panic!("no errors") };
+    let Some((_, ColumnCells::Text(errors))) = columns.last() else { panic!("no errors") };
     let failed: Vec<usize> = (0..20).filter(|row| errors[*row].is_some()).collect();
     assert!(runs.len() == 20 && failed.len() > 1 && failed.len() < 19);
     ran.says(&[&format!("{} of 20 runs failed; the first: run {}:", failed.len(), failed[0])]);

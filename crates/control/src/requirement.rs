@@ -72,7 +72,7 @@ pub enum Rule {
     TachometerBearings,
     /// Motion of a body with control moment gyros.
     GimbalBody,
-    /// Pulses by which adaptive observers predict.
+    /// Rule: an adaptive observer needs an actuator whose pulses are known.
     ObserverInputs,
     /// Elastic rates for active damping.
     ElasticRates,

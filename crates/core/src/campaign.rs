@@ -69,8 +69,8 @@ pub struct Campaign {
     design: Design,
 }
 
-/// Key with a list of values. Run i of a campaign over one grid has value i; over several, the combinations are counted
-/// as numbers are, with the last grid's values changing from run to run.
+/// Key with a list of values. Run i of a campaign over one grid has value i; over several, run i is the i-th point of
+/// their product, in which the last grid varies fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Name of the key.

@@ -112,7 +112,7 @@ impl RelayLaw {
         }
     }
 
-    /// Returns the command of the state, which starts at `now`.
+    /// Returns torque, time-out and guards of the current state, entered at `now`.
     pub fn command(&self, now: Ticks) -> RelayCommand {
         let back: f64 = self.dead_zone - self.hysteresis;
         match self.state {

@@ -20,16 +20,16 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// Returns the time of femtoseconds that fit 64 bits.
+    /// Creates a time from femtoseconds since the start, at most 9 223 s.
     #[inline]
-    pub fn short(femtoseconds: i64) -> Self {
+    pub fn from_femtoseconds(femtoseconds: i64) -> Self {
         Self { whole: femtoseconds.div_euclid(FEMTOSECONDS), part: femtoseconds.rem_euclid(FEMTOSECONDS) }
     }
 
     /// Returns the time nearest to a number of seconds below the limit of 64 bits.
     #[inline]
     fn nearest(seconds: f64) -> Self {
-        Self::short(round(seconds * FEMTOSECONDS_F64) as i64)
+        Self::from_femtoseconds(round(seconds * FEMTOSECONDS_F64) as i64)
     }
 
     /// Returns the time nearest to a number of seconds.

@@ -47,7 +47,7 @@ pub fn hand_over_run(
         HandoverFormat::Aem => aem::write(&run, options).map(String::into_bytes),
         HandoverFormat::Oem => oem::write(&run, options).map(String::into_bytes),
         HandoverFormat::Glb => glb::write(&run, options),
-        HandoverFormat::Vizard => vizard::write(&run, options),
+        HandoverFormat::Vizard => vizard::to_vizard(&run, options),
     };
     made.map_err(|error| error.in_log(log.path()))
 }

@@ -62,8 +62,8 @@ fn interpolated([a, b, c]: [f64; 3], [at_a, at_b, at_c]: [f64; 3]) -> Option<f64
     step.is_finite().then_some(step)
 }
 
-/// Returns the place and the value of the largest value of a unimodal function between `low` and `high`, by golden
-/// section. The value is exact to rounding; the place has half the digits.
+/// Returns argument and value of the maximum of a unimodal function on [`low`, `high`], by golden section. The value is
+/// exact to rounding; the argument has half the digits.
 pub fn maximum(mut f: impl FnMut(f64) -> f64, mut low: f64, mut high: f64) -> (f64, f64) {
     let mut left = high - GOLDEN * (high - low);
     let mut right = low + GOLDEN * (high - low);

@@ -108,7 +108,7 @@ impl Span {
     /// Creates a span from femtoseconds.
     #[inline]
     pub fn from_femtoseconds(femtoseconds: i64) -> Self {
-        Self(Ticks::short(femtoseconds))
+        Self(Ticks::from_femtoseconds(femtoseconds))
     }
 
     /// Returns the femtoseconds of the span, or of its first 9000 s.

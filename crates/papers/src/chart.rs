@@ -69,8 +69,8 @@ impl Chart {
     }
 }
 
-/// Adds the functions that evaluate curves to an environment.
-pub fn add_to(environment: &mut Environment) {
+/// Registers the functions that evaluate curves in a template environment.
+pub fn register(environment: &mut Environment) {
     environment.add_function("minima", minima);
     environment.add_function("stretches", stretches);
     environment.add_function("bands", bands);

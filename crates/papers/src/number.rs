@@ -7,8 +7,8 @@ use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind};
 use serde::Deserialize;
 
-/// Adds the filters and tests for numbers to an environment.
-pub fn add_to(environment: &mut Environment) {
+/// Registers the filters and tests for numbers in a template environment.
+pub fn register(environment: &mut Environment) {
     environment.add_filter("sci", |value: f64, digits: usize| format!("{value:.digits$e}"));
     environment.add_filter("fixed", |value: f64, digits: usize| format!("{:.digits$}", positive_zero(value)));
     environment.add_filter("percent", |value: f64, digits: usize| format!("{:.digits$} %", 100.0 * value));

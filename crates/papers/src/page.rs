@@ -62,8 +62,8 @@ pub fn environment(computed: &Arc<Computed>) -> Result<Environment<'static>, Str
     let syntax =
         SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
     environment.set_syntax(syntax.map_err(|error| error.to_string())?);
-    number::add_to(&mut environment);
-    chart::add_to(&mut environment);
+    number::register(&mut environment);
+    chart::register(&mut environment);
 
     let known = Arc::clone(computed);
     environment.add_function("run", move |command: &str| known.run(command));

@@ -61,7 +61,7 @@ fn array(py: Python<'_>, column: ColumnCells) -> PyResult<Bound<'_, PyAny>> {
             None => Ok(ColumnCells::Integers(cells).numbers().into_pyarray(py).into_any()),
         },
         ColumnCells::Numbers(cells) => Ok(cells.into_pyarray(py).into_any()),
-        ColumnCells::Words(cells) => {
+        ColumnCells::Text(cells) => {
             Ok(PyList::new(py, cells.into_iter().map(Option::unwrap_or_default))?.into_any())
         }
         ColumnCells::Lists(cells) => {
@@ -275,7 +275,7 @@ impl Work {
         let row = |row: usize| columns.iter().map(|column| column[row]).collect::<Vec<_>>();
         let numbers: Vec<Vec<f64>> = (0..rows.len()).map(row).collect();
         let error = rows.column(ERROR).and_then(|column| match &*column {
-            ColumnCells::Words(errors) => errors.iter().flatten().next().cloned(),
+            ColumnCells::Text(errors) => errors.iter().flatten().next().cloned(),
             _ => None,
         });
         Ok((PyArray2::from_vec2(py, &numbers)?, error))

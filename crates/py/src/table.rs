@@ -16,5 +16,5 @@ pub fn column(object: &Bound<'_, PyAny>) -> PyResult<ColumnCells> {
         let cell = |list: PyReadonlyArray1<'_, f64>| Some(list.as_array().to_vec());
         return Ok(ColumnCells::Lists(lists.into_iter().map(cell).collect()));
     }
-    Ok(ColumnCells::Words(object.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
+    Ok(ColumnCells::Text(object.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
 }

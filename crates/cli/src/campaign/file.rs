@@ -81,7 +81,7 @@ fn cell(cells: &ColumnCells, row: usize, is_label: bool) -> String {
         }
         ColumnCells::Numbers(cells) if is_label => Some(cells[row].to_string()),
         ColumnCells::Numbers(cells) => Some(format!("{:e}", cells[row])),
-        ColumnCells::Words(cells) => cells[row].clone(),
+        ColumnCells::Text(cells) => cells[row].clone(),
         ColumnCells::Lists(cells) => cells[row].as_ref().map(|list| json!(list).to_string()),
     };
     text.unwrap_or_default()

@@ -143,7 +143,7 @@ fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a
 
 /// Returns the value of a key as text.
 fn value(cells: &ColumnCells, index: usize) -> String {
-    if let ColumnCells::Words(words) = cells {
+    if let ColumnCells::Text(words) = cells {
         return words.get(index).cloned().flatten().unwrap_or_default();
     }
     let number = cells.numbers().get(index).copied().unwrap_or(f64::NAN);

@@ -161,7 +161,7 @@ impl Clock {
         self.until = if self.until > self.shown { self.until + self.period } else { self.next };
     }
 
-    /// Sets the speed.
+    /// Sets the speed of the simulated clock; the displayed time does not jump.
     pub fn set_speed(&mut self, speed: Speed, wall: WallInstant) {
         if self.speed.finite().is_some() {
             self.advance(wall);

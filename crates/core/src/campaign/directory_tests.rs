@@ -81,7 +81,7 @@ fn parts_in_any_order_are_the_same_rows() {
     assert_eq!(one, other);
     assert_eq!(one[0].as_ref().map(ColumnCells::numbers), Some((0..30).map(f64::from).collect()));
     // Some gains are not accepted: their rows have the error.
-    let Some(Some(ColumnCells::Words(errors))) = one.last() else { panic!("no errors") };
+    let Some(Some(ColumnCells::Text(errors))) = one.last() else { panic!("no errors") };
     let failed = errors.iter().flatten().count();
     assert!((1..30).contains(&failed), "{failed}");
     assert!(errors.iter().flatten().all(|error| error.starts_with("u: `law.relay.k_t`")), "{errors:?}");

@@ -44,11 +44,11 @@ fn field_type(field: &ColumnHeading) -> Result<TypePtr, ParquetError> {
         let physical = match kind {
             ColumnKind::Integers => Physical::INT64,
             ColumnKind::Numbers | ColumnKind::Lists => Physical::DOUBLE,
-            ColumnKind::Words => Physical::BYTE_ARRAY,
+            ColumnKind::Text => Physical::BYTE_ARRAY,
         };
         let leaf = Type::primitive_type_builder(name, physical).with_repetition(Repetition::OPTIONAL);
         let leaf = match kind {
-            ColumnKind::Words => {
+            ColumnKind::Text => {
                 leaf.with_logical_type(Some(LogicalType::String)).with_converted_type(ConvertedType::UTF8)
             }
             _ => leaf,
@@ -141,7 +141,7 @@ fn write_column<W: io::Write + Send>(
             let levels: Vec<i16> = cells.iter().map(|cell| is_present(!cell.is_nan())).collect();
             writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
         }
-        ColumnCells::Words(cells) => {
+        ColumnCells::Text(cells) => {
             let values: Vec<ByteArray> = cells.iter().flatten().map(|word| word.as_str().into()).collect();
             let levels: Vec<i16> = cells.iter().map(|cell| is_present(cell.is_some())).collect();
             writer.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
@@ -235,7 +235,7 @@ impl ParquetFile {
             match field.get_physical_type() {
                 Physical::INT64 => ColumnKind::Integers,
                 Physical::DOUBLE => ColumnKind::Numbers,
-                _ => ColumnKind::Words,
+                _ => ColumnKind::Text,
             }
         };
         let field =
@@ -269,11 +269,11 @@ impl ParquetFile {
                     let (values, levels, _) = read_all(reader, rows)?;
                     ColumnCells::Numbers(filled(values.into_iter(), &levels, || f64::NAN))
                 }
-                (ColumnReader::ByteArrayColumnReader(reader), ColumnKind::Words) => {
+                (ColumnReader::ByteArrayColumnReader(reader), ColumnKind::Text) => {
                     let (values, levels, _) = read_all(reader, rows)?;
                     let words =
                         values.iter().map(|word| Some(String::from_utf8_lossy(word.data()).into_owned()));
-                    ColumnCells::Words(filled(words, &levels, || None))
+                    ColumnCells::Text(filled(words, &levels, || None))
                 }
                 (ColumnReader::DoubleColumnReader(reader), ColumnKind::Lists) => {
                     let (values, levels, again) = read_all(reader, rows)?;
@@ -338,16 +338,16 @@ mod tests {
         let fields = [
             field("run", ColumnKind::Integers),
             field("x", ColumnKind::Numbers),
-            field("word", ColumnKind::Words),
+            field("word", ColumnKind::Text),
             field("list", ColumnKind::Lists),
-            field("nothing", ColumnKind::Words),
+            field("nothing", ColumnKind::Text),
         ];
         let columns = vec![
             ColumnCells::Integers(vec![Some(1), None, Some(i64::MIN)]),
             ColumnCells::Numbers(vec![0.1, f64::INFINITY, -1e-300]),
-            ColumnCells::Words(vec![None, Some("é".to_owned()), Some(String::new())]),
+            ColumnCells::Text(vec![None, Some("é".to_owned()), Some(String::new())]),
             ColumnCells::Lists(vec![None, Some(vec![]), Some(vec![1.0, 2.5])]),
-            ColumnCells::Words(vec![None; 3]),
+            ColumnCells::Text(vec![None; 3]),
         ];
         let rows = RunRows { fields: Arc::new(fields), columns };
         let file = tempfile(&encode(&rows, &[("a", "b".to_owned())]).expect("encoded"));

@@ -28,8 +28,8 @@ pub enum ColumnKind {
     Integers,
     /// Numbers.
     Numbers,
-    /// Words.
-    Words,
+    /// Text.
+    Text,
     /// Lists of numbers.
     Lists,
 }
@@ -52,8 +52,8 @@ pub enum ColumnCells {
     Integers(Vec<Option<i64>>),
     /// Numbers; NaN for null.
     Numbers(Vec<f64>),
-    /// Words.
-    Words(Vec<Option<String>>),
+    /// Text.
+    Text(Vec<Option<String>>),
     /// Lists of numbers, with NaN for null.
     Lists(Vec<Option<Vec<f64>>>),
 }
@@ -66,7 +66,7 @@ impl PartialEq for ColumnCells {
         match (self, other) {
             (Self::Integers(one), Self::Integers(other)) => one == other,
             (Self::Numbers(one), Self::Numbers(other)) => one.iter().map(bits).eq(other.iter().map(bits)),
-            (Self::Words(one), Self::Words(other)) => one == other,
+            (Self::Text(one), Self::Text(other)) => one == other,
             (Self::Lists(one), Self::Lists(other)) => one.iter().map(list).eq(other.iter().map(list)),
             _ => false,
         }
@@ -92,7 +92,7 @@ impl Campaign {
             let kind = match value {
                 MetricValue::Count(_) => ColumnKind::Integers,
                 MetricValue::Number(_) => ColumnKind::Numbers,
-                MetricValue::Word(_) | MetricValue::Words(_) => ColumnKind::Words,
+                MetricValue::Word(_) | MetricValue::Words(_) => ColumnKind::Text,
                 MetricValue::Numbers(_) | MetricValue::Quantities(_) => ColumnKind::Lists,
             };
             heading(meaning.name, kind, meaning.unit)
@@ -103,7 +103,7 @@ impl Campaign {
         }
         fields.extend(self.keys().map(key));
         fields.extend(reported.0.iter().map(metric));
-        fields.extend([heading(SECONDS, ColumnKind::Numbers, "s"), heading(ERROR, ColumnKind::Words, "")]);
+        fields.extend([heading(SECONDS, ColumnKind::Numbers, "s"), heading(ERROR, ColumnKind::Text, "")]);
         fields.into()
     }
 
@@ -118,7 +118,7 @@ impl Campaign {
             () if is_all(&is_number) && self.is_integer(key) => ColumnKind::Integers,
             () if is_all(&is_number) => ColumnKind::Numbers,
             () if is_all(&is_list) => ColumnKind::Lists,
-            () => ColumnKind::Words,
+            () => ColumnKind::Text,
         }
     }
 }
@@ -134,7 +134,7 @@ impl ColumnCells {
         match kind {
             ColumnKind::Integers => Self::Integers(Vec::new()),
             ColumnKind::Numbers => Self::Numbers(Vec::new()),
-            ColumnKind::Words => Self::Words(Vec::new()),
+            ColumnKind::Text => Self::Text(Vec::new()),
             ColumnKind::Lists => Self::Lists(Vec::new()),
         }
     }
@@ -144,7 +144,7 @@ impl ColumnCells {
         match self {
             Self::Integers(cells) => cells.len(),
             Self::Numbers(cells) => cells.len(),
-            Self::Words(cells) => cells.len(),
+            Self::Text(cells) => cells.len(),
             Self::Lists(cells) => cells.len(),
         }
     }
@@ -163,7 +163,7 @@ impl ColumnCells {
         match self {
             Self::Integers(cells) => Self::Integers(cut(cells, rows)),
             Self::Numbers(cells) => Self::Numbers(cut(cells, rows)),
-            Self::Words(cells) => Self::Words(cut(cells, rows)),
+            Self::Text(cells) => Self::Text(cut(cells, rows)),
             Self::Lists(cells) => Self::Lists(cut(cells, rows)),
         }
     }
@@ -173,7 +173,7 @@ impl ColumnCells {
         match self {
             Self::Integers(cells) => cells.iter().flatten().count(),
             Self::Numbers(cells) => cells.iter().filter(|cell| !cell.is_nan()).count(),
-            Self::Words(cells) => cells.iter().flatten().count(),
+            Self::Text(cells) => cells.iter().flatten().count(),
             Self::Lists(cells) => cells.iter().flatten().count(),
         }
     }
@@ -184,7 +184,7 @@ impl ColumnCells {
         match self {
             Self::Integers(cells) => cells.iter().map(|cell| cell.map_or(f64::NAN, |i| i as f64)).collect(),
             Self::Numbers(cells) => cells.clone(),
-            Self::Words(cells) => {
+            Self::Text(cells) => {
                 let score =
                     |cell: &Option<String>| crate::metrics::goal::score(cell.as_deref().unwrap_or(""));
                 cells.iter().map(|cell| score(cell).unwrap_or(f64::NAN)).collect()
@@ -210,7 +210,7 @@ impl ColumnCells {
         match self {
             Self::Integers(cells) => cells.push(None),
             Self::Numbers(cells) => cells.push(f64::NAN),
-            Self::Words(cells) => cells.push(None),
+            Self::Text(cells) => cells.push(None),
             Self::Lists(cells) => cells.push(None),
         }
     }
@@ -221,9 +221,9 @@ impl ColumnCells {
             (Self::Numbers(cells), Drawn::Float(number)) => cells.push(*number),
             (Self::Numbers(cells), Drawn::Integer(integer)) => cells.push(*integer as f64),
             (Self::Lists(cells), Drawn::Array(list)) => cells.push(Some(list.iter().map(number).collect())),
-            (Self::Words(cells), Drawn::String(word)) => cells.push(Some(word.clone())),
+            (Self::Text(cells), Drawn::String(word)) => cells.push(Some(word.clone())),
             // As TOML.
-            (Self::Words(cells), other) => cells.push(Some(other.to_string())),
+            (Self::Text(cells), other) => cells.push(Some(other.to_string())),
             (column, _) => column.push_null(),
         }
     }
@@ -232,8 +232,8 @@ impl ColumnCells {
         match (self, value) {
             (Self::Integers(cells), MetricValue::Count(count)) => cells.push(i64::try_from(*count).ok()),
             (Self::Numbers(cells), MetricValue::Number(number)) => cells.push(*number),
-            (Self::Words(cells), MetricValue::Word(word)) => cells.push(Some((*word).to_owned())),
-            (Self::Words(cells), MetricValue::Words(words)) => cells.push(Some(words.join(WORD_SEPARATOR))),
+            (Self::Text(cells), MetricValue::Word(word)) => cells.push(Some((*word).to_owned())),
+            (Self::Text(cells), MetricValue::Words(words)) => cells.push(Some(words.join(WORD_SEPARATOR))),
             (Self::Lists(cells), MetricValue::Numbers(_) | MetricValue::Quantities(_)) => {
                 cells.push(Some(value.numbers()));
             }
@@ -246,7 +246,7 @@ impl ColumnCells {
         match (self, other) {
             (Self::Integers(cells), Self::Integers(mut more)) => cells.append(&mut more),
             (Self::Numbers(cells), Self::Numbers(mut more)) => cells.append(&mut more),
-            (Self::Words(cells), Self::Words(mut more)) => cells.append(&mut more),
+            (Self::Text(cells), Self::Text(mut more)) => cells.append(&mut more),
             (Self::Lists(cells), Self::Lists(mut more)) => cells.append(&mut more),
             // Cells of another type become null.
             (column, other) => (0..other.len()).for_each(|_| column.push_null()),
@@ -298,7 +298,7 @@ impl RunRows {
                 }
                 (_, column) if place < first + keys => column.push_drawn(&outcome.drawn[place - first]),
                 (SECONDS, ColumnCells::Numbers(cells)) => cells.push(outcome.seconds),
-                (ERROR, ColumnCells::Words(cells)) => {
+                (ERROR, ColumnCells::Text(cells)) => {
                     cells.push(outcome.metrics.as_ref().err().map(ToString::to_string));
                 }
                 (name, column) => match metrics.as_mut().and_then(|metrics| metrics.get(name)) {

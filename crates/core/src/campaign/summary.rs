@@ -26,7 +26,7 @@ impl Directory {
     pub fn summary(&self) -> Result<CampaignSummary, DirectoryError> {
         let (mut runs, mut failed) = (0, None);
         let columns = (self.column(RUN)?, self.column(ERROR)?);
-        if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Words(errors))) = columns {
+        if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Text(errors))) = columns {
             runs = numbers.len();
             for (number, error) in numbers.into_iter().zip(errors) {
                 let (Some(number), Some(error)) = (number, error) else { continue };
@@ -53,7 +53,7 @@ impl RowMaker {
         let keys: Vec<&str> = self.campaign.keys().collect();
         let counts = |kind: ColumnKind, name: &str| match kind {
             ColumnKind::Integers | ColumnKind::Numbers | ColumnKind::Lists => true,
-            ColumnKind::Words => goal::NAMES.contains(&name),
+            ColumnKind::Text => goal::NAMES.contains(&name),
         };
         let meaning = |name: &str| metrics::meaning(name, Some(self.campaign.scenario()));
         let metrics = self.fields().iter().filter(|field| !keys.contains(&field.name.as_str()));

@@ -69,7 +69,7 @@ impl GoalMetrics {
         self.last = to;
     }
 
-    /// Records the distance from the goal (rad) over a stretch of `length` (s) that begins at `from` (s).
+    /// Records the distance from the goal (rad) over a piece of `length` (s) that begins at `from` (s).
     pub fn observe(&mut self, from: f64, length: f64, distance: &Polynomial) {
         let band = self.band;
         let (low, high) = distance.bounds();

@@ -208,7 +208,7 @@ impl ManoeuvreMetrics {
         for (range, output) in self.outputs.iter_mut().zip(&piece.outputs) {
             range.peak = output.magnitude(range.peak);
         }
-        // If the goal or the late part starts within the stretch, only the rest of the stretch counts.
+        // If the goal or the late part starts within the piece, only the rest of the piece counts.
         let part = |from: f64| (from - piece.from) / piece.length;
         let (goal, late) = (part(self.goal.from.seconds()), part(self.late));
         if goal < 1.0 {
@@ -219,7 +219,7 @@ impl ManoeuvreMetrics {
         }
     }
 
-    /// Returns the distance from the goal (rad) over the last part of a stretch, from the fraction `from` of it on.
+    /// Returns the distance from the goal (rad) over the last part of a piece, from the fraction `from` of it on.
     fn error(&self, piece: &MotionPiece, from: f64) -> Polynomial {
         let since = piece.from - self.goal.from.seconds();
         let (start, slope) = (self.goal.angle + self.goal.rate * since, self.goal.rate * piece.length);
@@ -265,7 +265,7 @@ impl ManoeuvreMetrics {
     }
 }
 
-/// Returns the integral of time times the absolute value over a stretch of `length` (s) that begins at `begins` (s).
+/// Returns the integral of time times the absolute value over a piece of `length` (s) that begins at `begins` (s).
 fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
     let (low, high) = value.bounds();
     let piece = |ends: &[f64]| {

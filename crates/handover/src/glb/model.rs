@@ -49,7 +49,7 @@ pub struct ModelMode {
 pub struct SceneModel {
     /// Parts, each after its parent.
     pub nodes: Vec<ModelNode>,
-    /// Modes whose shapes the targets are.
+    /// Modes of the morph targets, in their order.
     pub modes: Vec<ModelMode>,
     /// Distance of the farthest vertex from the body's origin (m).
     pub size: f64,

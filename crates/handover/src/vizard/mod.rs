@@ -34,8 +34,8 @@ const UNIT: f64 = 149_597_870_700.0;
 /// Rotation rate of the Earth (rad/s).
 const EARTH_RATE: f64 = 7.292_115e-5;
 
-/// Returns the file with the run.
-pub fn write(run: &RunLog<'_>, options: &HandoverOptions) -> Result<Vec<u8>, HandoverError> {
+/// Returns the run as the bytes of a Vizard file (length-delimited protobuf).
+pub fn to_vizard(run: &RunLog<'_>, options: &HandoverOptions) -> Result<Vec<u8>, HandoverError> {
     let attitudes = run.attitude_rows()?;
     let orbit = run.orbit_rows()?;
     let rows = run.scene_rows(0)?;

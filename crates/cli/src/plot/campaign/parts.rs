@@ -44,7 +44,7 @@ pub fn campaign_runs(
 ) -> Result<CampaignRuns, CliError> {
     let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
     let mut columns = read(&[RUN, ERROR])?.into_iter();
-    let (Some(Some(ColumnCells::Integers(numbers))), Some(Some(ColumnCells::Words(errors)))) =
+    let (Some(Some(ColumnCells::Integers(numbers))), Some(Some(ColumnCells::Text(errors)))) =
         (columns.next(), columns.next())
     else {
         return Err(CliError::Arguments(format!("{}: has no runs", path.display())));
@@ -55,7 +55,7 @@ pub fn campaign_runs(
     let keys: Vec<&str> = campaign.keys().collect();
     let is_number = |field: &&ColumnHeading| match field.kind {
         ColumnKind::Integers | ColumnKind::Numbers => true,
-        ColumnKind::Words => goal::NAMES.contains(&field.name.as_str()),
+        ColumnKind::Text => goal::NAMES.contains(&field.name.as_str()),
         ColumnKind::Lists => false,
     };
     let is_metric = |field: &&ColumnHeading| !keys.contains(&field.name.as_str()) && is_number(field);
@@ -83,7 +83,7 @@ pub fn campaign_runs(
     let mut columns = read(&names)?.into_iter().map(|column| {
         let texts = match &column {
             Some(ColumnCells::Integers(_)) => TextCells::Integers,
-            Some(ColumnCells::Words(_)) => TextCells::Goals,
+            Some(ColumnCells::Text(_)) => TextCells::Goals,
             _ => TextCells::Numbers,
         };
         (texts, column.map_or_else(Vec::new, |column| column.numbers()))

@@ -23,7 +23,7 @@ pub enum FilterHistory {
     Elastic(ElasticHistory),
 }
 
-/// Recent past in flight code, with its storage.
+/// History of the rigid attitude filter (flight code), with the buffers that it borrows.
 #[derive(Clone, Debug)]
 pub struct RigidHistory {
     counts: AttitudeHistory,

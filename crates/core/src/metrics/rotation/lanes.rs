@@ -8,12 +8,12 @@ use flexsc_numerics::polynomial_lanes::Polynomials;
 use super::{ManoeuvreMetrics, integral};
 use crate::metrics::MetricsCollector;
 
-/// Piece of motion in each lane that has ended: one stretch of each run.
+/// Piece of motion in each lane that has ended: one piece of each run.
 #[derive(Debug)]
 pub struct LanePiece<'a, R> {
-    /// Start of the stretch (s).
+    /// Start of the piece (s).
     pub from: R,
-    /// Length of the stretch (s).
+    /// Length of the piece (s).
     pub length: R,
     /// Taylor series of the coordinates of all lanes, ordered by terms.
     pub series: &'a [R],
@@ -46,7 +46,7 @@ impl<R: LaneFloat> LaneManoeuvreMetrics<R> {
         Self { torque: zero, feedback: zero, error: zero, itae: (zero, zero) }
     }
 
-    /// Records a stretch of the motion of each run.
+    /// Records a piece of the motion of each run.
     #[inline(always)]
     pub fn observe(&mut self, runs: &mut [MetricsCollector], passed: &LanePiece<'_, R>) {
         let LanePiece { from, length, series, count, .. } = *passed;

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::*;
 
-/// Metrics of a stretch: largest and smallest value, integral, ITAE, time outside a band, zeros.
+/// Metrics of a piece: largest and smallest value, integral, ITAE, time outside a band, zeros.
 struct Arc {
     range: Range,
     integral: f64,

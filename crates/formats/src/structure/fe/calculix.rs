@@ -40,20 +40,20 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
             }
             continue;
         }
-        let squeezed = line.squeezed();
-        section = match squeezed.as_str() {
+        let line_text = line.without_spaces();
+        section = match line_text.as_str() {
             "EIGENVALUEOUTPUT" => At::Eigenvalues,
             "PARTICIPATIONFACTORS" => At::Factors,
             "EFFECTIVEMODALMASS" => At::Masses,
             "TOTALEFFECTIVEMASS" => At::TotalMass,
             _ if section == At::TotalMass
-                && squeezed.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
+                && line_text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
             {
                 mass = Some(total(&line)?);
                 At::Elsewhere
             }
-            _ if squeezed.is_empty()
-                || ["MODE", "REAL", "("].iter().any(|head| squeezed.starts_with(head)) =>
+            _ if line_text.is_empty()
+                || ["MODE", "REAL", "("].iter().any(|head| line_text.starts_with(head)) =>
             {
                 section
             }

@@ -110,7 +110,7 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         }
         // A keyword that ends with a comma continues on the next line.
         if text.starts_with('*') || keyword.ends_with(',') {
-            keyword.push_str(&line.squeezed().to_ascii_uppercase());
+            keyword.push_str(&line.without_spaces().to_ascii_uppercase());
             if !keyword.ends_with(',') {
                 section.is_whole(&line)?;
                 section = reader.open(&keyword, &line)?;

@@ -103,22 +103,22 @@ impl Reader {
         if text.starts_with(' ') && line.is_row() {
             return self.row(line);
         }
-        let squeezed = line.squeezed();
-        if let Some(rest) = squeezed.strip_prefix("OUTPUTFOREIGENVECTOR") {
+        let line_text = line.without_spaces();
+        if let Some(rest) = line_text.strip_prefix("OUTPUTFOREIGENVECTOR") {
             self.eigenvector = rest.parse().ok();
             self.at = At::Elsewhere;
-        } else if let Some(title) = title(&squeezed) {
+        } else if let Some(title) = title(&line_text) {
             self.at = title;
             match title {
-                At::Eigenvalues => self.titled = Some(remark(&squeezed)),
+                At::Eigenvalues => self.titled = Some(remark(&line_text)),
                 At::Factors => self.mystran = text.contains("M O D A L"),
                 _ => {}
             }
-        } else if self.at == At::Eigenvalues && remark(&squeezed) != Remark::None {
-            self.titled = Some(remark(&squeezed));
+        } else if self.at == At::Eigenvalues && remark(&line_text) != Remark::None {
+            self.titled = Some(remark(&line_text));
         } else if self.at == At::MassMatrix {
             self.mass_row(line)?;
-        } else if !heading(&squeezed) {
+        } else if !heading(&line_text) {
             self.at = At::Elsewhere;
         }
         Ok(())
@@ -224,23 +224,23 @@ impl Reader {
 }
 
 /// Returns the table that a title (without blanks) begins, if it is the title of a relevant or similar table.
-fn title(squeezed: &str) -> Option<At> {
-    Some(match squeezed {
+fn title(line_text: &str) -> Option<At> {
+    Some(match line_text {
         "MODALPARTICIPATIONFACTORS" => At::Factors,
         "MODALEFFECTIVEMASS" | "EFFECTIVEMODALMASSESORWEIGHTS" => At::Masses,
         "SPCFORCES" => At::Reactions,
         "A-SETRIGIDBODYMASSMATRIX" => At::MassMatrix,
         "MODALEFFECTIVEMASSFRACTION" | "MODALEFFECTIVEWEIGHT" => At::Elsewhere,
-        _ if squeezed.starts_with("6x6Rigidbodymassmatrix") => At::MassMatrix,
-        _ if squeezed.starts_with("REALEIGENVALUES") => At::Eigenvalues,
+        _ if line_text.starts_with("6x6Rigidbodymassmatrix") => At::MassMatrix,
+        _ if line_text.starts_with("REALEIGENVALUES") => At::Eigenvalues,
         _ => return None,
     })
 }
 
-fn remark(squeezed: &str) -> Remark {
-    if squeezed.contains("BEFOREAUGMENTATION") {
+fn remark(line_text: &str) -> Remark {
+    if line_text.contains("BEFOREAUGMENTATION") {
         Remark::Before
-    } else if squeezed.contains("AFTERAUGMENTATION") {
+    } else if line_text.contains("AFTERAUGMENTATION") {
         Remark::After
     } else {
         Remark::None
@@ -248,8 +248,8 @@ fn remark(squeezed: &str) -> Remark {
 }
 
 /// Returns true if a line may be between the title of a table and its rows, or between rows.
-fn heading(squeezed: &str) -> bool {
+fn heading(line_text: &str) -> bool {
     const BEGINNINGS: [&str; 11] =
         ["MODE", "NO.", "NUM", "ORDER", "MASS", "GRID", "SYS", "(", "Reference", "REFERENCE", "Units"];
-    squeezed.is_empty() || BEGINNINGS.iter().any(|beginning| squeezed.starts_with(beginning))
+    line_text.is_empty() || BEGINNINGS.iter().any(|beginning| line_text.starts_with(beginning))
 }

@@ -61,7 +61,7 @@ struct Reader {
 /// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut lines = Lines::new(text);
-    let first = lines.next()?.map(|line| line.squeezed()).unwrap_or_default();
+    let first = lines.next()?.map(|line| line.without_spaces()).unwrap_or_default();
     if !first.contains("Flex") {
         return Err("line 1: must be the heading of a flexible body of 42".to_owned());
     }
@@ -115,11 +115,11 @@ impl SectionKind {
 
 impl Reader {
     fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
-        let squeezed = line.squeezed();
-        if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
+        let line_text = line.without_spaces();
+        if line_text.starts_with('*') || line_text.starts_with("[EOF]") {
             self.close(&format!("before line {}", line.number))?;
             let count = |holds: SectionKind| if holds.is_full() { Some(self.modes) } else { None };
-            self.section = SectionKind::from_heading(&squeezed).map(|holds| Section {
+            self.section = SectionKind::from_heading(&line_text).map(|holds| Section {
                 holds,
                 count: count(holds),
                 read_count: 0,

@@ -54,8 +54,8 @@ impl<R: BufRead> Lines<R> {
 }
 
 impl TextLine {
-    /// Returns the line without blanks, because titles are spaced.
-    pub fn squeezed(&self) -> String {
+    /// Returns the line without white space: solvers print titles as `D I S P L A C E M E N T`.
+    pub fn without_spaces(&self) -> String {
         self.text.chars().filter(|c| !c.is_whitespace()).collect()
     }
 

@@ -241,7 +241,8 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// Checks that the hub keeps inertia besides that carried by the modes and that of the rotors about their axes.
+/// Checks that the hub's residual inertia is positive definite: its inertia less that of the modes and of the rotors
+/// about their axes.
 ///
 /// # Errors
 /// The key of the hub's inertia, and the least moment left.
