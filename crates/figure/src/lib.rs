@@ -9,6 +9,7 @@ mod draw;
 mod image;
 mod line;
 mod origin;
+mod over_time;
 pub mod palette;
 #[cfg(feature = "png")]
 mod pdf;
@@ -24,6 +25,7 @@ pub use contour::{Ring, ScalarField};
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
 pub use origin::is_figure;
+pub use over_time::{Lines, OverTime};
 pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use style::Style;

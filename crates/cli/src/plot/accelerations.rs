@@ -1,43 +1,34 @@
 //! Figure `accelerations` of a spacecraft: the readings of each accelerometer along its axes.
 
+use flexsc_core::control::sensor::Accelerometer;
 use flexsc_core::record::Accelerations;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+use flexsc_figure::{Figure, Lines, OverTime};
 
-use super::cycle_data::CycleData;
-use super::run_events::RunEvents;
-use super::{time, title};
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::title;
 
-const COLOURS: [plotters::style::RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "accelerations",
+    contents: "Three axes: readings of the accelerometers",
+    topics: &["/accelerations"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.sensor.accelerometers().next().is_some(),
+    draw: figure,
+};
 
-/// Returns true if a scenario has accelerometers.
-pub fn applies_to(story: &RunEvents) -> bool {
-    story.scenario.sensor.accelerometers().next().is_some()
-}
-
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let scenario = &story.scenario;
-    let all: Vec<_> = scenario.sensor.accelerometers().collect();
-    let panel =
-        |(place, (index, accelerometer)): (usize, &(usize, &flexsc_core::control::sensor::Accelerometer))| {
-            let rows =
-                || cycles.rows().filter(|(_, row): &(f64, &Accelerations)| row.sensor == *index as u64);
-            let own = accelerometer.along.is_empty();
-            let layer = |axis: usize| {
-                let points: Vec<Point> = rows().map(|(t, row)| (t, row.axes[axis].measured_m_s2)).collect();
-                let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
-                Layer::new(&name, COLOURS[axis], LayerShape::Line(0.8), points)
-            };
-            let axes = if own { 3 } else { accelerometer.along.len() };
-            let layers: Vec<Layer> = (0..axes).map(layer).collect();
-            let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-            let y =
-                FigureAxis::around(&scenario.study.sensor_points[*index], "m/s²", values.collect::<Vec<_>>());
-            let x = time(0.0..story.end);
-            Panel::new(if place + 1 == all.len() { x } else { x.unnamed() }, y, layers)
+    let whole = OverTime::new(title(story, "specific forces, as read by the accelerometers"), story.end, 200);
+    let panel = |whole: OverTime, (index, accelerometer): (usize, &Accelerometer)| {
+        let own = accelerometer.along.is_empty();
+        let line = |axis: usize| {
+            let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
+            let of = |row: &Accelerations| (row.sensor == index as u64).then(|| row.axes[axis].measured_m_s2);
+            (name, cycles.line_where(of))
         };
-    Figure {
-        title: title(story, "specific forces, as read by the accelerometers"),
-        panels: all.iter().enumerate().map(panel).collect(),
-        panel_height: 200,
-    }
+        let axes = if own { 3 } else { accelerometer.along.len() };
+        let lines = Lines::default().width(0.8).named((0..axes).map(line));
+        whole.panel(&scenario.study.sensor_points[index], "m/s²", lines)
+    };
+    scenario.sensor.accelerometers().fold(whole, panel).figure()
 }

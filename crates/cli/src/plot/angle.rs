@@ -2,9 +2,27 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::{arrival, time, title};
+use super::{arrival, dead_zone, time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "angle",
+    contents: "Angle of the hub, with its goal and settling time; with a switching law, at the end of the run",
+    topics: &[],
+    motion: MotionPart::Ends,
+    is_in: |story| story.scenario.axis_count() == 1,
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if run.story.switches() {
+        dead_zone::figure(run.story, run.motion)
+    } else {
+        figure(run.story, run.motion)
+    }
+}
 
 /// Errors below this fraction of the goal are rounding errors, and shown as zero on an axis that ends at `SMALL` (rad).
 const ROUNDING: f64 = 1e-13;
@@ -12,7 +30,7 @@ const SMALL: f64 = 2e-9;
 /// Half height of the second panel for a body that is brought to angle 0, as a multiple of the band.
 const BANDS: f64 = 4.0;
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let over_time =
         |values: &[f64]| -> Vec<Point> { motion.time.iter().copied().zip(values.iter().copied()).collect() };
     let x = time(0.0..story.end);

@@ -13,6 +13,11 @@ use super::{consistency, time, title};
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
+/// Returns true if a run has an attitude filter.
+pub fn applies_to(story: &RunEvents) -> bool {
+    story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
+}
+
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let over_time = |axis: usize, value_of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
         cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()

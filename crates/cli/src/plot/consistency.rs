@@ -4,16 +4,35 @@
 use flexsc_core::control::estimator::chi_square;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::estimate::filters_one_axis;
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
-use super::{filter_lock, time, title};
+use super::{attitude_filter, filter_lock, time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "consistency",
+    contents: "Consistency of a filter: NIS and NEES with 95 % bands; of an attitude filter, errors and NEES",
+    topics: &["/attitude_filter"],
+    motion: MotionPart::All,
+    is_in: |story| attitude_filter::applies_to(story) || filters_one_axis(story),
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if run.story.scenario.axis_count() == 3 {
+        attitude_filter::figure(run.story, run.cycles)
+    } else {
+        figure(run.story, run.motion)
+    }
+}
 
 /// Number of samples in an average, as in the filter's own test of lost lock.
 const WINDOW: usize = 50;
 /// Value above which an axis is logarithmic.
 const FAR: f64 = 10.0;
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let scenario = &story.scenario;
     let measurements = 1 + usize::from(scenario.sensor.rate_noise(0).is_some());
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));

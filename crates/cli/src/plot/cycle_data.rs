@@ -100,6 +100,21 @@ impl CycleData {
         self.0.iter().filter_map(|(time, report)| Some((*time, report.row()?)))
     }
 
+    /// Returns the first row of a type.
+    pub fn first<T: Any>(&self) -> Option<&T> {
+        self.rows().next().map(|(_, row)| row)
+    }
+
+    /// Returns a number of the rows of a type over time.
+    pub fn line<T: Any>(&self, of: impl Fn(&T) -> f64) -> Vec<Point> {
+        self.rows().map(|(time, row)| (time, of(row))).collect()
+    }
+
+    /// Returns a number of the rows of a type that have it over time.
+    pub fn line_where<T: Any>(&self, of: impl Fn(&T) -> Option<f64>) -> Vec<Point> {
+        self.rows().filter_map(|(time, row)| Some((time, of(row)?))).collect()
+    }
+
     /// Iterates over the values of a type in the reports of cycles, each with its time (s).
     fn values<T: Any>(&self) -> impl Iterator<Item = (f64, &T)> {
         let cycles = self.0.iter().filter(|(_, report)| report.get::<ThreeAxisCycle>().is_some());
@@ -114,7 +129,7 @@ impl CycleData {
     ) -> Vec<Point> {
         let cycles: Vec<Point> = self.values().map(|(time, cycle)| (time, of_cycle(cycle))).collect();
         if cycles.is_empty() {
-            return self.rows().map(|(time, row)| (time, of_row(row))).collect();
+            return self.line(of_row);
         }
         cycles
     }

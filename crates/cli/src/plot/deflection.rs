@@ -6,8 +6,18 @@ use flexsc_core::record::Vibrations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::cycle_data::CycleData;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "deflection",
+    contents: "Three axes: deflection of each point of the structure that modes move",
+    topics: &["/vibrations"],
+    motion: MotionPart::Nothing,
+    is_in: |story| !points(story).is_empty(),
+    draw: |run| figure(run.story, run.cycles),
+};
 
 /// Largest number of points with a panel each.
 const PANELS: usize = 6;
@@ -34,12 +44,7 @@ fn points(story: &RunEvents) -> Vec<(&str, Vec<Vector>)> {
         .collect()
 }
 
-/// Returns true if modes move any point relative to the first.
-pub fn applies_to(story: &RunEvents) -> bool {
-    !points(story).is_empty()
-}
-
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let all = points(story);
     let last = all.len().min(PANELS).saturating_sub(1);
     let panel = |(index, (name, shifts)): (usize, &(&str, Vec<Vector>))| {

@@ -2,74 +2,44 @@
 //! highest.
 
 use flexsc_core::record::DrivesMotion;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+use flexsc_figure::{Figure, Lines, OverTime, Point};
 
-use super::cycle_data::CycleData;
-use super::run_events::RunEvents;
-use super::{time, title};
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::title;
 
-/// Colours of drives, hinges and modes, cyclic.
-const COLOURS: [plotters::style::RGBColor; 7] = [
-    colour::BLUE,
-    colour::VERMILLION,
-    colour::GREEN,
-    colour::ORANGE,
-    colour::SKY,
-    colour::BLACK,
-    colour::GREY,
-];
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "drives",
+    contents: "Rotating appendages: drive angles and natural frequencies",
+    topics: &["/drives"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.study.articulation().is_some(),
+    draw: figure,
+};
 
 /// Ratio of its lowest to its highest value above which a frequency is constant.
 const CONSTANT: f64 = 0.999;
 
-/// Returns a panel with one line for each of several similar components.
-pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>) -> Panel {
-    let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
-    let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
-        Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.2), points)
-    });
-    Panel::new(x, FigureAxis::around(name, unit, values), layers.collect())
-}
-
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let line = |value_of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
-        cycles.rows().map(|(time, row)| (time, value_of(row))).collect()
-    };
+fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let (drives, modes) =
-        cycles.rows::<DrivesMotion>().next().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
-    let x = time(0.0..story.end);
-    let angles = (0..drives)
-        .map(|drive| (format!("drive {}", drive + 1), unwrapped(line(&|row| row.drives[drive].angle_rad))))
-        .collect();
-    let highest = |mode: usize| {
-        cycles.rows::<DrivesMotion>().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
+        cycles.first::<DrivesMotion>().map_or((0, 0), |row| (row.drives.len(), row.modes.len()));
+    let angle = |drive: usize| unwrapped(cycles.line(|row: &DrivesMotion| row.drives[drive].angle_rad));
+    let relative = |mode: usize| {
+        let line = cycles.line(|row: &DrivesMotion| row.modes[mode].frequency_rad_s);
+        let highest = line.iter().map(|(_, value)| *value).fold(0.0, f64::max);
+        let varies = line.iter().any(|(_, value)| *value < CONSTANT * highest);
+        let ratio = line.into_iter().map(|(time, value)| (time, value / highest)).collect();
+        varies.then(|| (format!("{highest:.3} rad/s"), ratio))
     };
-    let varies = |mode: &usize| {
-        let lowest = cycles.rows::<DrivesMotion>().map(|(_, row)| row.modes[*mode].frequency_rad_s);
-        lowest.fold(f64::INFINITY, f64::min) < CONSTANT * highest(*mode)
+    let frequencies: Vec<(String, Vec<Point>)> = (0..modes).filter_map(relative).collect();
+    let subject = match (frequencies.len(), modes - frequencies.len()) {
+        (0, _) => "drives".to_owned(),
+        (_, 0) => "drives and natural frequencies".to_owned(),
+        (_, constant) => format!("drives and natural frequencies ({constant} constant ones left out)"),
     };
-    let varying: Vec<usize> = (0..modes).filter(varies).collect();
-    let constant = modes - varying.len();
-    let frequencies = varying
-        .into_iter()
-        .map(|mode| {
-            let most = highest(mode);
-            let name = format!("{most:.3} rad/s");
-            (name, line(&|row| row.modes[mode].frequency_rad_s / most))
-        })
-        .collect();
-    let mut panels = vec![alike(x.unnamed(), "angle", "rad", angles)];
-    if modes > constant {
-        panels.push(alike(x, "frequency over its highest", "", frequencies));
-    } else if let Some(last) = panels.last_mut() {
-        last.x = x;
-    }
-    let subject = match (modes > constant, constant) {
-        (false, _) => "drives".to_owned(),
-        (true, 0) => "drives and natural frequencies".to_owned(),
-        (true, _) => format!("drives and natural frequencies ({constant} constant ones left out)"),
-    };
-    Figure { title: title(story, &subject), panels, panel_height: 240 }
+    OverTime::new(title(story, &subject), story.end, 240)
+        .panel("angle", "rad", Lines::default().numbered("drive", (0..drives).map(angle)))
+        .panel("frequency over its highest", "", Lines::default().named(frequencies))
+        .figure()
 }
 
 /// Adds a gap to a line wherever an angle wraps around.

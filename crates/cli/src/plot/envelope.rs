@@ -3,11 +3,29 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::{RunEvents, WindowMean};
 use super::{swings, time, title};
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "envelope",
+    contents: "Envelope of the elastic modes with its window means, and the elastic angle",
+    topics: &[],
+    motion: MotionPart::Ends,
+    is_in: has_envelope,
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if run.story.scenario.axis_count() == 3 { over_windows(run.story) } else { figure(run.story, run.motion) }
+}
+
+fn has_envelope(story: &RunEvents) -> bool {
+    story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
+}
+
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let all = motion.envelope.iter().map(|(_, value)| *value);
     let whole = Panel::new(
         time(0.0..story.end),
@@ -41,7 +59,7 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
 }
 
 /// Returns the figure of the window means alone, for three axes.
-pub fn over_windows(story: &RunEvents) -> Figure {
+fn over_windows(story: &RunEvents) -> Figure {
     let all = story.means.iter().map(|mean| mean.value);
     let line = Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means));
     let panel = Panel::new(time(0.0..story.end), FigureAxis::from_zero("envelope a", "rad", all), vec![line]);

@@ -1,13 +1,30 @@
 //! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, the true displacement,
 //! and the difference.
 
+use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{filter_lock, time, title};
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "estimate",
+    contents: "Displacement of the dominant mode, estimated and true",
+    topics: &[],
+    motion: MotionPart::All,
+    is_in: filters_one_axis,
+    draw: |run| figure(run.story, run.motion),
+};
+
+/// Returns true if a filter of one axis estimates its modes from measurements.
+pub fn filters_one_axis(story: &RunEvents) -> bool {
+    let estimator = story.scenario.estimator.as_ref();
+    story.scenario.axis_count() == 1 && estimator.is_some_and(EstimatorKind::filters_measurements)
+}
+
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let samples = &motion.estimates;
     let estimated: Vec<Point> = samples.iter().map(|e| (e.time, e.displacement)).collect();
     let truth: Vec<Point> = samples.iter().map(|e| (e.time, motion.displacement(e.mode, e.time))).collect();

@@ -4,16 +4,26 @@ use flexsc_core::Scenario;
 use flexsc_core::control::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{filter_lock, time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "extra",
+    contents: "Gain of the extra loop, and the frequency it is scheduled on",
+    topics: &[],
+    motion: MotionPart::All,
+    is_in: |story| extra(story).is_some(),
+    draw: |run| figure(run.story, run.motion),
+};
 
 /// Returns the extra loop of a scenario, if it has one.
 pub fn extra(story: &RunEvents) -> Option<&Extra> {
     story.scenario.law.pd()?.extra.as_ref()
 }
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let read: Vec<Point> = if motion.estimates.is_empty() {
         motion.time.iter().map(|t| (*t, frequency(&story.scenario, *t))).collect()
     } else {

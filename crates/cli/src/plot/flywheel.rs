@@ -3,16 +3,32 @@
 use flexsc_core::control::actuator::FlywheelRotor;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::{time, title};
+use super::{time, title, wheels};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "wheel",
+    contents: "Speed and momentum of the flywheel, or speed and torque of each wheel, with limits",
+    topics: &["/wheels", "/bearings", "/pointing"],
+    motion: MotionPart::All,
+    is_in: |story| {
+        rotor(story).is_some() && story.scenario.axis_count() == 1 || wheels::wheels(story).is_some()
+    },
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if wheels::wheels(run.story).is_some() { wheels::figure(run) } else { figure(run.story, run.motion) }
+}
 
 /// Returns the rotor of a scenario's wheel, if it has one that stores momentum.
-pub fn rotor(story: &RunEvents) -> Option<&FlywheelRotor> {
+fn rotor(story: &RunEvents) -> Option<&FlywheelRotor> {
     story.scenario.actuator.flywheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
 }
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
     let x = time(0.0..story.end);
     let panel = |x: FigureAxis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {

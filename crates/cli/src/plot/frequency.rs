@@ -3,14 +3,33 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::estimate::filters_one_axis;
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
-use super::{filter_lock, time, title};
+use super::{filter_lock, identified_frequencies, time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "frequency",
+    contents: "Frequency of the dominant mode, or of those that an attitude filter identifies, estimated and true",
+    topics: &["/attitude_filter_modes"],
+    motion: MotionPart::All,
+    is_in: |story| identified_frequencies::applies_to(story) || filters_one_axis(story),
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if run.story.scenario.axis_count() == 3 {
+        identified_frequencies::figure(run.story, run.cycles)
+    } else {
+        figure(run.story, run.motion)
+    }
+}
 
 /// Upper end of the axis, as a multiple of the largest frequency, even if the filter's uncertainty is larger.
 const BEYOND: f64 = 1.5;
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let line = |value: &dyn Fn(&DominantModeEstimate) -> f64| -> Vec<Point> {
         motion.estimates.iter().map(|estimate| (estimate.time, value(estimate))).collect()
     };

@@ -3,10 +3,20 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::envelope::means;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::{RunEvents, WindowMean};
 use super::{time, title};
 
-pub fn figure(story: &RunEvents) -> Figure {
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "gain",
+    contents: "Gain and decisions of the adaptation",
+    topics: &[],
+    motion: MotionPart::Nothing,
+    is_in: |story| !story.steps.is_empty(),
+    draw: |run| figure(run.story),
+};
+
+fn figure(story: &RunEvents) -> Figure {
     let x = time(0.0..story.end);
     let gains = story.steps.iter().map(|step| (step.time, step.gain));
     let line = steps([(0.0, story.start.1)].into_iter().chain(gains), story.end);

@@ -1,23 +1,28 @@
 //! Figure `hinges` of a spacecraft whose appendages swing on hinges: angles and rates of the hinges.
 
 use flexsc_core::record::{HingeMotion, Hinges};
-use flexsc_figure::{Figure, Point};
+use flexsc_figure::{Figure, Lines, OverTime};
 
-use super::cycle_data::CycleData;
-use super::drives::alike;
-use super::run_events::RunEvents;
-use super::{time, title};
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::title;
 
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let hinges = cycles.rows::<Hinges>().next().map_or(0, |(_, row)| row.hinges.len());
-    let lines = |value_of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
-        let line = |hinge: usize| {
-            cycles.rows::<Hinges>().map(|(time, row)| (time, value_of(&row.hinges[hinge]))).collect()
-        };
-        (0..hinges).map(|hinge| (format!("hinge {}", hinge + 1), line(hinge))).collect()
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "hinges",
+    contents: "Appendages on hinges: their angles and rates",
+    topics: &["/hinges"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.study.hinges() > 0,
+    draw: figure,
+};
+
+fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
+    let each = |of: fn(&HingeMotion) -> f64| {
+        let hinges = 0..cycles.first::<Hinges>().map_or(0, |row| row.hinges.len());
+        Lines::default()
+            .numbered("hinge", hinges.map(|hinge| cycles.line(|row: &Hinges| of(&row.hinges[hinge]))))
     };
-    let x = time(0.0..story.end);
-    let angles = alike(x.unnamed(), "angle", "rad", lines(&|hinge| hinge.angle_rad));
-    let rates = alike(x, "rate", "rad/s", lines(&|hinge| hinge.rate_rad_s));
-    Figure { title: title(story, "hinges"), panels: vec![angles, rates], panel_height: 240 }
+    OverTime::new(title(story, "hinges"), story.end, 240)
+        .panel("angle", "rad", each(|hinge| hinge.angle_rad))
+        .panel("rate", "rad/s", each(|hinge| hinge.rate_rad_s))
+        .figure()
 }

@@ -14,7 +14,7 @@ const BEYOND: f64 = 1.5;
 
 /// Returns true if an attitude filter identifies modes.
 pub fn applies_to(story: &RunEvents) -> bool {
-    modes(&story.scenario).is_some()
+    story.scenario.axis_count() == 3 && modes(&story.scenario).is_some()
 }
 
 /// Returns the indices of the identified modes.

@@ -59,6 +59,7 @@ use crate::quantity::in_unit;
 pub use campaign::{column_figures, directory_figures};
 use cycle_data::CycleData;
 pub use figure_kind::FigureKind;
+use figure_kind::{FigureSpec, MotionPart, RunData};
 pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use motion::MotionData;
@@ -254,41 +255,30 @@ fn drawn_over(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
         ))
     })?;
-    let any = |kinds: &[FigureKind]| kinds.iter().any(|kind| chosen.contains(kind));
-    let moving = any(&[FigureKind::PhasePlane, FigureKind::Envelope, FigureKind::Modes, FigureKind::Angle]);
-    let all = any(&[
-        FigureKind::Wheel,
-        FigureKind::Frequency,
-        FigureKind::Estimate,
-        FigureKind::Consistency,
-        FigureKind::Extra,
-    ]);
+    let chosen: Vec<&FigureSpec> = chosen.into_iter().filter_map(FigureKind::of_log).collect();
     let is_three_axis = story.scenario.axis_count() == 3;
-    let is_still = chosen.iter().all(|kind| *kind == FigureKind::Gain);
-    let topics: Vec<&str> = chosen.iter().flat_map(|kind| kind.topics()).copied().collect();
+    let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
+    let topics: Vec<&str> = chosen.iter().flat_map(|spec| spec.topics).copied().collect();
     let cycles = if is_three_axis && !topics.is_empty() {
         CycleData::read(&story, log, path, &topics)?
     } else {
         CycleData::default()
     };
-    let motion = if is_three_axis || is_still {
+    let motion = if is_three_axis || part == MotionPart::Nothing {
         MotionData::default()
-    } else if all || !story.switches() {
+    } else if part == MotionPart::All || !story.switches() {
         story.motion(log, path, 0.0, 0.0)?
-    } else if moving {
+    } else if part == MotionPart::Ends {
         let late = phase_plane::late(&story).min(swings(&story).start).min(torque::shown(&story).start);
         let late = story.shown.as_ref().map_or(late, |shown| shown.start.min(late));
         story.motion(log, path, phase_plane::early(&story), late)?
     } else {
         MotionData::default()
     };
-    let drawn = chosen.into_iter().filter_map(|kind| {
-        let figure = kind.figure(&story, &motion, &cycles)?;
-        let figure = match &story.shown {
-            Some(shown) => time_range::crop(figure, shown),
-            None => figure,
-        };
-        Some((kind.name(), failures::shaded(operation::shaded(figure, &story), &story)))
+    let run = RunData { story: &story, motion: &motion, cycles: &cycles };
+    let drawn = chosen.into_iter().map(|spec| {
+        let figure = story.shown.iter().fold((spec.draw)(&run), time_range::crop);
+        (spec.name.to_owned(), failures::shaded(operation::shaded(figure, &story), &story))
     });
     let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
     let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));

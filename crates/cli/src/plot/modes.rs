@@ -2,14 +2,24 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{swings, time, title};
 
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "modes",
+    contents: "Each elastic mode; with a switching law, at the end of the run",
+    topics: &[],
+    motion: MotionPart::Ends,
+    is_in: |story| story.scenario.axis_count() == 1 && story.scenario.mode_count() > 0,
+    draw: |run| figure(run.story, run.motion),
+};
+
 /// Largest number of modes with a panel each.
 const PANELS: usize = 6;
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let shown = swings(story);
     let frequencies = story.scenario.model.frequencies();
     let since = if story.scenario.drift.is_some() { " at the start" } else { "" };

@@ -5,8 +5,18 @@ use flexsc_core::record::{Light, Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::cycle_data::CycleData;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "orbit",
+    contents: "Three axes in orbit: magnetic field, nadir and Sun in body axes, and the eclipse",
+    topics: &["/orbit"],
+    motion: MotionPart::Nothing,
+    is_in: applies_to,
+    draw: |run| figure(run.story, run.cycles),
+};
 
 /// Function that reads a component of an axis.
 type AxisSeries = fn(&OrbitAxis) -> f64;
@@ -15,11 +25,12 @@ const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
 /// Returns true if a scenario has an orbit.
-pub fn applies_to(story: &RunEvents) -> bool {
-    story.scenario.environment.as_ref().is_some_and(|environment| environment.orbit.is_some())
+fn applies_to(story: &RunEvents) -> bool {
+    let environment = story.scenario.environment.as_ref();
+    story.scenario.axis_count() == 3 && environment.is_some_and(|environment| environment.orbit.is_some())
 }
 
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let shown: [(&str, &str, AxisSeries); 3] =
         [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
     let mut panels = Vec::new();

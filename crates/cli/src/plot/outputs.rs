@@ -2,14 +2,24 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, name_and_unit};
 
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{arrival, time, title};
 
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "outputs",
+    contents: "Each observed coordinate",
+    topics: &[],
+    motion: MotionPart::Unswitched,
+    is_in: |story| !story.scenario.model.outputs().is_empty() && !story.switches(),
+    draw: |run| figure(run.story, run.motion),
+};
+
 /// Largest number of coordinates with a panel each: the last ones, such as the outermost of a solar panel.
 const PANELS: usize = 6;
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let outputs = story.scenario.model.outputs();
     let skipped = motion.outputs.len().saturating_sub(PANELS);
     let panel =

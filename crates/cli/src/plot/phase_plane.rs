@@ -3,9 +3,19 @@
 use flexsc_core::control::law::{Relay, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::{RunEvents, SwitchingEvent};
 use super::title;
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "phase-plane",
+    contents: "Rate against angle, with the law's switching lines",
+    topics: &[],
+    motion: MotionPart::Ends,
+    is_in: |story| story.switches() && story.scenario.axis_count() == 1,
+    draw: |run| figure(run.story, run.motion),
+};
 
 /// Number of cycles that are shown at the start of a run, and at its end.
 const CYCLES: usize = 10;
@@ -23,7 +33,7 @@ pub fn early(story: &RunEvents) -> f64 {
     story.first_cycles(CYCLES, late(story))
 }
 
-pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let (early, late) = (early(story), late(story));
     let end = story.shown.as_ref().map_or(story.end, |shown| shown.end);
     let path = |shown: &dyn Fn(f64) -> bool| -> Vec<Point> {

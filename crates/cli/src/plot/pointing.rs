@@ -3,14 +3,24 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::cycle_data::CycleData;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
 
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "pointing",
+    contents: "Three axes: pointing error, with its goal band and dead zone",
+    topics: &["/pointing"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.axis_count() == 3,
+    draw: |run| figure(run.story, run.cycles),
+};
+
 /// Ratio of a band to the errors above which the band does not determine the height of a panel.
 const WIDE: f64 = 3.0;
 
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |axis: usize| {
         let points = cycles.errors(|error| error[axis]);
         let name = if axis == 0 { "pointing error" } else { "" };

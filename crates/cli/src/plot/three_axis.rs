@@ -6,6 +6,7 @@ use flexsc_core::record::{ChannelState, Position, TrackedMode, Tracking};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::cycle_data::CycleData;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
 
@@ -35,8 +36,17 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
     AXES.iter().enumerate().zip(all).map(panel).collect()
 }
 
+pub const RATES: FigureSpec = FigureSpec {
+    name: "rates",
+    contents: "Three axes: rates, rigid and at the gyro",
+    topics: &["/rates"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.axis_count() == 3,
+    draw: |run| rates(run.story, run.cycles),
+};
+
 /// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
-pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let measured = cycles.rates(|rigid, elastic| rigid[axis] + elastic[axis]);
         let rigid = cycles.rates(|rigid, _| rigid[axis]);
@@ -50,8 +60,17 @@ pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
 }
 
+pub const POSITION: FigureSpec = FigureSpec {
+    name: "position",
+    contents: "Three axes: position and velocity, where jets or forces move the spacecraft",
+    topics: &["/position"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.study.translation.is_some(),
+    draw: |run| position(run.story, run.cycles),
+};
+
 /// Returns the figure of the position of the first point, and its velocity.
-pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
     let panel = |x: FigureAxis, name: &str, unit: &'static str, coordinates: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
             let points = cycles.rows().map(|(time, position)| (time, coordinates[axis](position))).collect();
@@ -74,8 +93,17 @@ pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
     }
 }
 
+pub const ENERGY: FigureSpec = FigureSpec {
+    name: "energy",
+    contents: "Three axes: energy of the elastic modes, and propellant",
+    topics: &["/energy", "/jets"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.axis_count() == 3,
+    draw: |run| energy(run.story, run.cycles),
+};
+
 /// Returns the figure of the elastic modes' energy, and of the jets' propellant.
-pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let [elastic, visible] = cycles.elastic_energies();
     let fuel = cycles.fuel(story);
     let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
@@ -111,8 +139,17 @@ fn fires(panel: &Panel) -> bool {
     panel.layers.iter().any(|layer| matches!(layer.shape, LayerShape::Area(_)) && !layer.points.is_empty())
 }
 
+pub const JETS: FigureSpec = FigureSpec {
+    name: "jets",
+    contents: "Three axes: firing times of the jets",
+    topics: &["/jets"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.study.fires(),
+    draw: |run| jets(run.story, run.cycles),
+};
+
 /// Returns the figure of the jets' firing times in each cycle.
-pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
     let on = |cycle: &[f64; 3], axis: usize| cycle[axis];
     let (period, all) = cycles.pulses(story);
     let line = |axis: usize| {
@@ -148,8 +185,17 @@ pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
     Figure { title: title(story, "firing time of the jets in each cycle"), panels, panel_height: 160 }
 }
 
+pub const TRACKING: FigureSpec = FigureSpec {
+    name: "tracking",
+    contents: "Three axes: natural frequencies estimated by adaptive observers, and the true ones",
+    topics: &["/tracking"],
+    motion: MotionPart::Nothing,
+    is_in: |story| story.scenario.study.adaptive.is_some() && story.scenario.axis_count() == 3,
+    draw: |run| tracking(run.story, run.cycles),
+};
+
 /// Returns the figure of the tracked modes' natural frequencies, estimated and true.
-pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let ends = |points: Vec<Point>| -> Vec<Point> {
         points.first().into_iter().chain(points.last()).copied().collect()
     };
@@ -187,8 +233,20 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }
 
+pub const DAMPING: FigureSpec = FigureSpec {
+    name: "damping",
+    contents: "Three axes: elastic rates for active damping, its thresholds and pulses",
+    topics: &["/tracking"],
+    motion: MotionPart::Nothing,
+    is_in: |story| {
+        let authorities = &story.scenario.study.authorities;
+        story.scenario.axis_count() == 3 && authorities.iter().any(|authority| authority.threshold > 0.0)
+    },
+    draw: |run| damping(run.story, run.cycles),
+};
+
 /// Returns the figure of the elastic rates that active damping acts on, with its thresholds and its pulses.
-pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let values_of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
             cycles.rows::<Tracking>().map(|(time, row)| (time, value(&row.channels[axis]))).collect()

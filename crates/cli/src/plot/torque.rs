@@ -2,8 +2,22 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice, steps};
 
+use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::run_events::RunEvents;
-use super::{time, title};
+use super::{manoeuvre_torque, time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "torque",
+    contents: "Torque; with a switching law, at the end of the run",
+    topics: &[],
+    motion: MotionPart::Unswitched,
+    is_in: |story| story.scenario.axis_count() == 1,
+    draw: draw,
+};
+
+fn draw(run: &RunData<'_>) -> Figure {
+    if run.story.switches() { figure(run.story) } else { manoeuvre_torque::figure(run.story, run.motion) }
+}
 
 /// Approximate number of switchings that are shown: five cycles of a two-sided relay.
 const SWITCHINGS: usize = 30;
@@ -19,7 +33,7 @@ pub fn shown(story: &RunEvents) -> std::ops::Range<f64> {
     from..story.end
 }
 
-pub fn figure(story: &RunEvents) -> Figure {
+fn figure(story: &RunEvents) -> Figure {
     let commands = story.switchings.iter().map(|s| (s.time, s.torque));
     let line = steps([(0.0, story.start.0)].into_iter().chain(commands), story.end);
     let x = time(shown(story));

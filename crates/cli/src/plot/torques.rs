@@ -6,19 +6,30 @@ use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::cycle_data::CycleData;
+use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
+
+pub const SPEC: FigureSpec = FigureSpec {
+    name: "torques",
+    contents: "Three axes: torques demanded by the law, given by the actuators, and of disturbances",
+    topics: &["/torques"],
+    motion: MotionPart::Nothing,
+    is_in: applies_to,
+    draw: |run| figure(run.story, run.cycles),
+};
 
 /// Colours of the axes.
 const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
 /// Returns true if a log has torques: pulses of jets that act alone are in the figure `jets`.
-pub fn applies_to(story: &RunEvents) -> bool {
-    !story.scenario.study.jets_alone || story.scenario.environment.is_some()
+fn applies_to(story: &RunEvents) -> bool {
+    let scenario = &story.scenario;
+    scenario.axis_count() == 3 && (!scenario.study.jets_alone || scenario.environment.is_some())
 }
 
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let torque_about = |axis: usize, value_of: fn(&Torque) -> f64| -> Vec<Point> {
         cycles.rows::<Torques>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
     };

@@ -6,71 +6,39 @@ use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+use flexsc_figure::{Figure, Lines, OverTime};
 
-use super::cycle_data::CycleData;
+use super::figure_kind::RunData;
 use super::run_events::RunEvents;
-use super::{time, title};
-
-/// Colours of wheels, cyclic.
-const COLOURS: [plotters::style::RGBColor; 5] =
-    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
+use super::title;
 
 /// Returns the wheels of a scenario, if it has them.
 pub fn wheels(story: &RunEvents) -> Option<&Wheels> {
     story.scenario.actuator.wheels().map(|(wheels, _)| wheels)
 }
 
-pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let (speed, torque) = wheels(story).map_or((None, None), |wheels| {
         let by_momentum = wheels.momentum.map(|momentum| momentum.get() / wheels.inertia.get());
         let speeds = [wheels.speed_limit.map(Positive::get), by_momentum];
         (speeds.into_iter().flatten().reduce(f64::min), wheels.torque.map(Positive::get))
     });
-    let rubs = story.scenario.study.bearings.iter().any(Bearing::can_stick);
-    let count = cycles.rows::<record::Wheels>().next().map_or(0, |(_, row)| row.wheels.len());
-    let each = |value_of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
-        let line = |wheel: usize| {
-            cycles.rows::<record::Wheels>().map(|(time, row)| (time, value_of(&row.wheels[wheel]))).collect()
-        };
-        (0..count).map(line).collect()
+    let count = cycles.first::<record::Wheels>().map_or(0, |row| row.wheels.len());
+    let each = |limit: Option<f64>, value_of: fn(&record::Wheel) -> f64| {
+        let line = |wheel: usize| cycles.line(|row: &record::Wheels| value_of(&row.wheels[wheel]));
+        Lines::default().limits("limits", limit).numbered("wheel", (0..count).map(line))
     };
-    let panel =
-        |x: FigureAxis, name: &str, unit: &'static str, limit: Option<f64>, lines: Vec<Vec<Point>>| {
-            let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
-            let values = lines.iter().flatten().map(|(_, value)| *value);
-            let y = FigureAxis::around(name, unit, values.chain(limits.iter().copied()));
-            let level = |(index, height): (usize, &f64)| {
-                let name = if index == 0 { "limits" } else { "" };
-                Layer::new(name, colour::GREY, LayerShape::Dashes, vec![(0.0, *height), (story.end, *height)])
-            };
-            let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-            layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
-                let name = format!("wheel {}", wheel + 1);
-                Layer::new(&name, COLOURS[wheel % COLOURS.len()], LayerShape::Line(1.2), points)
-            }));
-            Panel::new(x, y, layers)
-        };
-    let x = time(0.0..story.end);
-    let last = if rubs { x.unnamed() } else { x.clone() };
-    let mut panels = vec![
-        panel(x.unnamed(), "speed", "rad/s", speed, each(|wheel| wheel.speed_rad_s)),
-        panel(last, "torque", "N m", torque, each(|wheel| wheel.torque_nm)),
-    ];
-    if rubs {
-        let friction = |wheel: usize| {
-            cycles
-                .rows::<record::Bearings>()
-                .map(|(time, row)| (time, row.wheels[wheel].friction_nm))
-                .collect()
-        };
-        panels.push(panel(x.unnamed(), "friction", "N m", None, (0..count).map(friction).collect()));
-        let error = |axis: usize| cycles.errors(|error| error[axis]);
-        let axes = AXES.iter().enumerate().map(|(axis, name)| {
-            Layer::new(name, COLOURS[axis % COLOURS.len()], LayerShape::Line(1.2), error(axis))
-        });
-        let values = (0..3).flat_map(|axis| error(axis).into_iter().map(|(_, value)| value));
-        panels.push(Panel::new(x, FigureAxis::around("error", "rad", values), axes.collect()));
+    let figure = OverTime::new(title(story, "wheels"), story.end, 200)
+        .panel("speed", "rad/s", each(speed, |wheel| wheel.speed_rad_s))
+        .panel("torque", "N m", each(torque, |wheel| wheel.torque_nm));
+    if !story.scenario.study.bearings.iter().any(Bearing::can_stick) {
+        return figure.figure();
     }
-    Figure { title: title(story, "wheels"), panels, panel_height: 200 }
+    let friction = |wheel: usize| cycles.line(|row: &record::Bearings| row.wheels[wheel].friction_nm);
+    let errors =
+        AXES.iter().enumerate().map(|(axis, name)| ((*name).to_owned(), cycles.errors(|error| error[axis])));
+    figure
+        .panel("friction", "N m", Lines::default().numbered("wheel", (0..count).map(friction)))
+        .panel("error", "rad", Lines::default().named(errors))
+        .figure()
 }

@@ -16,7 +16,7 @@ use super::super::motion::MotionData;
 use super::super::pointing::norm;
 use super::super::run_events::RunEvents;
 use super::super::time;
-use super::super::{FigureKind, readable};
+use super::super::{pointing, readable, three_axis};
 use crate::error::CliError;
 use crate::{progress, say};
 
@@ -122,7 +122,7 @@ fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
     let signal = |name: &str, unit, line, held| SignalFan { name: name.to_owned(), unit, line, held };
     let mut signals = Vec::new();
     if story.scenario.axis_count() == 3 {
-        let topics = [FigureKind::Pointing, FigureKind::Energy].map(FigureKind::topics).concat();
+        let topics = [pointing::SPEC.topics, three_axis::ENERGY.topics].concat();
         let cycles = CycleData::read(&story, &log, path, &topics)?;
         let [elastic, _] = cycles.elastic_energies();
         signals.push(signal("pointing error", "rad", cycles.errors(norm), false));

@@ -19,7 +19,7 @@ use flexsc_core::campaign::{ColumnCells, RowMaker};
 use flexsc_figure::{Figure, Named};
 
 use super::PlotArgs;
-use super::figure_kind::{FigureKind, select};
+use super::figure_kind::{CampaignFigure, FigureKind, select};
 use super::figure_name::FigureName;
 use crate::campaign::MAIN;
 use crate::error::CliError;
@@ -44,7 +44,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         let path = directory.display();
         return Err(CliError::Arguments(format!("--what: {topic} is for logs, and {path} is a directory")));
     }
-    let fans = if asked.is_empty() || asked.contains(&FigureKind::Fan) {
+    let fans = if asked.is_empty() || asked.contains(&FigureKind::OfCampaign(CampaignFigure::Fan)) {
         fan::logs(directory, &files, tables.is_empty() || !asked.is_empty())?
     } else {
         BTreeMap::new()
@@ -58,7 +58,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         )));
     }
     let mut available: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
-    available.extend((!fans.is_empty()).then_some(FigureKind::Fan));
+    available.extend((!fans.is_empty()).then_some(FigureKind::OfCampaign(CampaignFigure::Fan)));
     let all = select(&asked, &available).map_err(|(missing, there)| {
         let path = directory.display();
         CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
@@ -117,12 +117,12 @@ pub fn directory_figures(
     let mut tables = table::read(directory, &files, metric)?;
     tables.extend(parts::read(directory, &files, metric)?);
     let mut figures = Vec::new();
-    if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::Fan) {
+    if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::OfCampaign(CampaignFigure::Fan)) {
         for runs in &tables {
             figures.extend(run_figures(runs, kinds, metric, directory)?);
         }
     }
-    if kinds.is_empty() || kinds.contains(&FigureKind::Fan) {
+    if kinds.is_empty() || kinds.contains(&FigureKind::OfCampaign(CampaignFigure::Fan)) {
         for (name, paths) in fan::logs(directory, &files, false)? {
             figures.push((format!("{name}-fan"), fan::figure(&name, &paths)?));
         }
@@ -165,10 +165,10 @@ fn files(directory: &Path) -> Result<Vec<String>, CliError> {
 fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
     let swept = runs.swept().len();
     [
-        (FigureKind::Curve, swept == 1),
-        (FigureKind::Region, swept == 2),
-        (FigureKind::Distribution, true),
-        (FigureKind::Scatter, !scatter::keys(runs).is_empty()),
+        (FigureKind::OfCampaign(CampaignFigure::Curve), swept == 1),
+        (FigureKind::OfCampaign(CampaignFigure::Region), swept == 2),
+        (FigureKind::OfCampaign(CampaignFigure::Distribution), true),
+        (FigureKind::OfCampaign(CampaignFigure::Scatter), !scatter::keys(runs).is_empty()),
     ]
     .into_iter()
     .filter_map(|(kind, is)| is.then_some(kind))
@@ -178,9 +178,12 @@ fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
 /// Returns the kinds of figures that are drawn if none is named.
 fn natural(runs: &CampaignRuns) -> Vec<FigureKind> {
     let wanted = match runs.swept().len() {
-        1 => vec![FigureKind::Curve],
-        2 => vec![FigureKind::Region],
-        _ => vec![FigureKind::Distribution, FigureKind::Scatter],
+        1 => vec![FigureKind::OfCampaign(CampaignFigure::Curve)],
+        2 => vec![FigureKind::OfCampaign(CampaignFigure::Region)],
+        _ => vec![
+            FigureKind::OfCampaign(CampaignFigure::Distribution),
+            FigureKind::OfCampaign(CampaignFigure::Scatter),
+        ],
     };
     let drawable = drawable(runs);
     wanted.into_iter().filter(|kind| drawable.contains(kind)).collect()
@@ -229,10 +232,14 @@ fn drawn(kind: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Ve
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };
     match kind {
-        FigureKind::Distribution => each(&|metric| Some(distribution::figure(runs, metric))),
-        FigureKind::Scatter => each(&|metric| Some(scatter::figure(runs, metric))),
-        FigureKind::Region => each(&|metric| region::figure(runs, metric)),
-        FigureKind::Curve => {
+        FigureKind::OfCampaign(CampaignFigure::Distribution) => {
+            each(&|metric| Some(distribution::figure(runs, metric)))
+        }
+        FigureKind::OfCampaign(CampaignFigure::Scatter) => {
+            each(&|metric| Some(scatter::figure(runs, metric)))
+        }
+        FigureKind::OfCampaign(CampaignFigure::Region) => each(&|metric| region::figure(runs, metric)),
+        FigureKind::OfCampaign(CampaignFigure::Curve) => {
             let key = runs.swept().into_iter().next().filter(|_| !metrics.is_empty());
             let curve = key.map(|key| curve::figure(runs, metrics, key));
             curve.map(|figure| (format!("{}-{}", runs.name, kind.name()), figure)).into_iter().collect()

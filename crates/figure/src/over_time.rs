@@ -1,0 +1,129 @@
+//! Figures over time, panel by panel: lines with limits, and axes that follow from them.
+
+use plotters::style::RGBColor;
+
+use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+
+/// Colours of lines, in their order; cyclic.
+const COLOURS: [RGBColor; 7] = [
+    colour::BLUE,
+    colour::VERMILLION,
+    colour::GREEN,
+    colour::ORANGE,
+    colour::SKY,
+    colour::BLACK,
+    colour::GREY,
+];
+
+/// Figure over time whose panels are added from top to bottom.
+pub struct OverTime {
+    end: f64,
+    figure: Figure,
+}
+
+/// Contents of a panel over time: its vertical axis covers all of them.
+pub struct Lines {
+    layers: Vec<Layer>,
+    limit: Option<(String, f64)>,
+    lines: usize,
+    width: f64,
+    is_from_zero: bool,
+}
+
+impl OverTime {
+    /// Creates a figure from 0 to `end` (s), whose panels are `height` pixels high.
+    pub fn new(title: String, end: f64, height: u32) -> Self {
+        Self { end, figure: Figure { title, panels: Vec::new(), panel_height: height } }
+    }
+
+    /// Adds a panel; nothing if it has no layers.
+    #[must_use]
+    pub fn panel(mut self, name: &str, unit: &'static str, lines: Lines) -> Self {
+        let Lines { layers: own, limit, is_from_zero, .. } = lines;
+        if own.is_empty() {
+            return self;
+        }
+        let level = |name: &str, height: f64| {
+            let points = vec![(0.0, height), (self.end, height)];
+            Layer::new(name, colour::GREY, LayerShape::Dashes, points)
+        };
+        let limits = limit.iter().flat_map(|(name, limit)| [level(name, *limit), level("", -limit)]);
+        let layers: Vec<Layer> = limits.chain(own).collect();
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let y = if is_from_zero {
+            FigureAxis::from_zero(name, unit, values)
+        } else {
+            FigureAxis::around(name, unit, values)
+        };
+        if let Some(above) = self.figure.panels.last_mut() {
+            above.x = above.x.unnamed();
+        }
+        self.figure.panels.push(Panel::new(FigureAxis::exact("time", "s", 0.0..self.end), y, layers));
+        self
+    }
+
+    /// Returns the figure.
+    pub fn figure(self) -> Figure {
+        self.figure
+    }
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self { layers: Vec::new(), limit: None, lines: 0, width: 1.2, is_from_zero: false }
+    }
+}
+
+impl Lines {
+    /// Adds dashed lines at a limit and at its negative below the other layers, if there is one.
+    #[must_use]
+    pub fn limits(self, name: &str, limit: Option<f64>) -> Self {
+        Self { limit: limit.map(|limit| (name.to_owned(), limit)), ..self }
+    }
+
+    /// Lets the vertical axis begin at 0.
+    #[must_use]
+    pub fn from_zero(self) -> Self {
+        Self { is_from_zero: true, ..self }
+    }
+
+    /// Sets the width of the lines that follow (pixels).
+    #[must_use]
+    pub fn width(self, width: f64) -> Self {
+        Self { width, ..self }
+    }
+
+    /// Adds a layer of any shape and colour.
+    #[must_use]
+    pub fn layer(mut self, layer: Layer) -> Self {
+        self.layers.push(layer);
+        self
+    }
+
+    /// Adds a line in the next colour.
+    #[must_use]
+    pub fn line(mut self, name: &str, points: Vec<Point>) -> Self {
+        let colour = COLOURS[self.lines % COLOURS.len()];
+        self.lines += 1;
+        let shape = LayerShape::Line(self.width);
+        self.layer(Layer::new(name, colour, shape, points))
+    }
+
+    /// Adds lines with names of their own.
+    #[must_use]
+    pub fn named(self, lines: impl IntoIterator<Item = (String, Vec<Point>)>) -> Self {
+        lines.into_iter().fold(self, |all, (name, points)| all.line(&name, points))
+    }
+
+    /// Adds a line for each of a list, named with its number from 1 on.
+    #[must_use]
+    pub fn numbered(self, name: &str, lines: impl IntoIterator<Item = Vec<Point>>) -> Self {
+        self.named((1..).zip(lines).map(|(number, points)| (format!("{name} {number}"), points)))
+    }
+
+    /// Adds the components x, y and z of a vector.
+    #[must_use]
+    pub fn vector(self, components: impl Fn(usize) -> Vec<Point>) -> Self {
+        [0, 1, 2].into_iter().fold(self, |all, axis| all.line(["x", "y", "z"][axis], components(axis)))
+    }
+}
