@@ -4,13 +4,14 @@ use flexsc_core::control::sensor::Accelerometer;
 use flexsc_core::record::Accelerations;
 use flexsc_figure::{Figure, Lines, OverTime};
 
+use super::cycle_data::RowSource;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "accelerations",
     contents: "Three axes: readings of the accelerometers",
-    topics: &["/accelerations"],
+    rows: &[RowSource::of::<Accelerations>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.sensor.accelerometers().next().is_some(),
     draw: figure,

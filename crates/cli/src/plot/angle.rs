@@ -10,7 +10,7 @@ use super::{arrival, dead_zone, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "angle",
     contents: "Angle of the hub, with its goal and settling time; with a switching law, at the end of the run",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Ends,
     is_in: |story| story.scenario.axis_count() == 1,
     draw: draw,

@@ -2,8 +2,10 @@
 //! measurement and the normalised estimation error squared per state are both about 1 if they are consistent.
 
 use flexsc_core::control::estimator::chi_square;
+use flexsc_core::record::AttitudeEstimate;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::cycle_data::RowSource;
 use super::estimate::filters_one_axis;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
@@ -13,7 +15,7 @@ use super::{attitude_filter, filter_lock, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "consistency",
     contents: "Consistency of a filter: NIS and NEES with 95 % bands; of an attitude filter, errors and NEES",
-    topics: &["/attitude_filter"],
+    rows: &[RowSource::of::<AttitudeEstimate>()],
     motion: MotionPart::All,
     is_in: |story| attitude_filter::applies_to(story) || filters_one_axis(story),
     draw: draw,

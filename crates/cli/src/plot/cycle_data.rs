@@ -8,9 +8,8 @@ use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::row::TopicRow;
 use flexsc_core::record::{
-    Accelerations, AttitudeEstimate, Bearings, Columns, ControlMomentGyros, DrivesMotion, ElasticEstimates,
-    Energy, Hinges, Jets, LineOfSightSample, Log, LogRow, Magnetorquers, Orbit, Pointing, Position, Rates,
-    Record, RecordError, Report, Sample, ThreeAxisCycle, Torques, Tracking, Vibrations, Wheels,
+    Columns, Energy, Jets, Log, LogRow, Pointing, Rates, Record, RecordError, Report, Sample, ThreeAxisCycle,
+    Wheels,
 };
 use flexsc_figure::Point;
 
@@ -21,43 +20,28 @@ use crate::error::CliError;
 #[derive(Default)]
 pub struct CycleData(Vec<(f64, Report)>);
 
-/// Topic of rows, and the function that reads them; it returns `None` for rows of another form.
-type RowReader = (&'static str, fn(&Columns) -> Option<Vec<(f64, Report)>>);
-
-/// Topics that figures show, with their readers.
-const READERS: [RowReader; 19] = [
-    reader::<Pointing>(),
-    reader::<Rates>(),
-    reader::<Energy>(),
-    reader::<Vibrations>(),
-    reader::<Position>(),
-    reader::<Torques>(),
-    reader::<Jets>(),
-    reader::<Tracking>(),
-    reader::<Wheels>(),
-    reader::<Bearings>(),
-    reader::<ControlMomentGyros>(),
-    reader::<Magnetorquers>(),
-    reader::<Accelerations>(),
-    reader::<LineOfSightSample>(),
-    reader::<Orbit>(),
-    reader::<DrivesMotion>(),
-    reader::<Hinges>(),
-    reader::<AttitudeEstimate>(),
-    reader::<ElasticEstimates>(),
-];
-
-const fn reader<R: TopicRow + LogRow>() -> RowReader {
-    (R::TOPIC.name, read::<R>)
+/// Topic whose rows a figure shows.
+#[derive(Copy, Clone)]
+pub struct RowSource {
+    topic: &'static str,
+    /// Reads the rows of a log's table; `None` for rows of another form.
+    read: fn(&Columns) -> Option<Vec<(f64, Report)>>,
 }
 
-fn read<R: TopicRow + LogRow>(columns: &Columns) -> Option<Vec<(f64, Report)>> {
-    let report = |(time, row): (f64, R)| {
-        let mut report = Report::new();
-        report.add(row);
-        (time, report)
-    };
-    Some(columns.timed_rows::<R>()?.into_iter().map(report).collect())
+impl RowSource {
+    /// Returns the topic of a type of rows.
+    pub const fn of<R: TopicRow + LogRow>() -> Self {
+        Self { topic: R::TOPIC.name, read: Self::read::<R> }
+    }
+
+    fn read<R: TopicRow + LogRow>(columns: &Columns) -> Option<Vec<(f64, Report)>> {
+        let report = |(time, row): (f64, R)| {
+            let mut report = Report::new();
+            report.add(row);
+            (time, report)
+        };
+        Some(columns.timed_rows::<R>()?.into_iter().map(report).collect())
+    }
 }
 
 impl CycleData {
@@ -65,13 +49,13 @@ impl CycleData {
     ///
     /// # Errors
     /// A run that cannot be repeated.
-    pub fn read(story: &RunEvents, log: &Log, path: &Path, topics: &[&str]) -> Result<Self, CliError> {
+    pub fn read(story: &RunEvents, log: &Log, path: &Path, sources: &[RowSource]) -> Result<Self, CliError> {
         let is_full = log.topics().iter().any(|topic| topic == Pointing::TOPIC.name);
-        let is_event = |topic: &&&str| **topic == Jets::TOPIC.name;
-        let missing = topics.iter().find(|topic| !is_full && !is_event(topic));
+        let is_event = |source: &&RowSource| source.topic == Jets::TOPIC.name;
+        let missing = sources.iter().find(|source| !is_full && !is_event(source));
         let unread = match missing {
-            Some(topic) => topic,
-            None => match Self::from_log(log, topics)? {
+            Some(source) => source.topic,
+            None => match Self::from_log(log, sources)? {
                 Ok(cycles) => return Ok(cycles),
                 Err(topic) => topic,
             },
@@ -81,15 +65,15 @@ impl CycleData {
         Ok(cycles)
     }
 
-    /// Reads the rows of some topics of a log, or returns the topic whose rows have another form.
-    fn from_log<'a>(log: &Log, topics: &[&'a str]) -> Result<Result<Self, &'a str>, CliError> {
+    /// Reads the rows of a log, or returns the topic whose rows have another form.
+    fn from_log(log: &Log, sources: &[RowSource]) -> Result<Result<Self, &'static str>, CliError> {
+        let topics: Vec<&str> = sources.iter().map(|source| source.topic).collect();
         let mut reports = Vec::new();
-        for (topic, table) in topics.iter().zip(log.tables(topics)?) {
-            let reader = READERS.iter().find(|(name, _)| name == topic);
-            let (Some(table), Some((_, read))) = (table, reader) else { continue };
-            match read(&table) {
+        for (source, table) in sources.iter().zip(log.tables(&topics)?) {
+            let Some(table) = table else { continue };
+            match (source.read)(&table) {
                 Some(rows) => reports.extend(rows),
-                None => return Ok(Err(topic)),
+                None => return Ok(Err(source.topic)),
             }
         }
         Ok(Ok(Self(reports)))

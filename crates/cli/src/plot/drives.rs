@@ -4,13 +4,14 @@
 use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, Lines, OverTime, Point};
 
+use super::cycle_data::RowSource;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "drives",
     contents: "Rotating appendages: drive angles and natural frequencies",
-    topics: &["/drives"],
+    rows: &[RowSource::of::<DrivesMotion>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.articulation().is_some(),
     draw: figure,

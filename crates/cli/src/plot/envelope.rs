@@ -11,7 +11,7 @@ use super::{swings, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "envelope",
     contents: "Envelope of the elastic modes with its window means, and the elastic angle",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Ends,
     is_in: has_envelope,
     draw: draw,

@@ -12,7 +12,7 @@ use super::{filter_lock, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "estimate",
     contents: "Displacement of the dominant mode, estimated and true",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::All,
     is_in: filters_one_axis,
     draw: |run| figure(run.story, run.motion),

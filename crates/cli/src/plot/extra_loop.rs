@@ -12,7 +12,7 @@ use super::{filter_lock, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "extra",
     contents: "Gain of the extra loop, and the frequency it is scheduled on",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::All,
     is_in: |story| extra(story).is_some(),
     draw: |run| figure(run.story, run.motion),

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use flexsc_figure::Figure;
 
-use super::cycle_data::CycleData;
+use super::cycle_data::{CycleData, RowSource};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{
@@ -19,8 +19,8 @@ pub struct FigureSpec {
     pub name: &'static str,
     /// Contents, as `--help` lists them.
     pub contents: &'static str,
-    /// Topics of a three-axis run whose rows the figure shows.
-    pub topics: &'static [&'static str],
+    /// Rows of a three-axis run that the figure shows.
+    pub rows: &'static [RowSource],
     /// Part of the motion of a one-axis run that the figure shows.
     pub motion: MotionPart,
     /// Returns true if a log has the data of the figure.

@@ -1,8 +1,10 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
 use flexsc_core::control::actuator::FlywheelRotor;
+use flexsc_core::record::{Bearings, Pointing, Wheels};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::cycle_data::RowSource;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
@@ -11,7 +13,7 @@ use super::{time, title, wheels};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "wheel",
     contents: "Speed and momentum of the flywheel, or speed and torque of each wheel, with limits",
-    topics: &["/wheels", "/bearings", "/pointing"],
+    rows: &[RowSource::of::<Wheels>(), RowSource::of::<Bearings>(), RowSource::of::<Pointing>()],
     motion: MotionPart::All,
     is_in: |story| {
         rotor(story).is_some() && story.scenario.axis_count() == 1 || wheels::wheels(story).is_some()

@@ -1,8 +1,10 @@
 //! Figure `frequency`: the natural frequency of the dominant mode as a filter estimates it, the true frequency, and the
 //! error with two standard deviations to each side.
 
+use flexsc_core::record::ElasticEstimates;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::cycle_data::RowSource;
 use super::estimate::filters_one_axis;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
@@ -12,7 +14,7 @@ use super::{filter_lock, identified_frequencies, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "frequency",
     contents: "Frequency of the dominant mode, or of those that an attitude filter identifies, estimated and true",
-    topics: &["/attitude_filter_modes"],
+    rows: &[RowSource::of::<ElasticEstimates>()],
     motion: MotionPart::All,
     is_in: |story| identified_frequencies::applies_to(story) || filters_one_axis(story),
     draw: draw,

@@ -10,7 +10,7 @@ use super::{time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "gain",
     contents: "Gain and decisions of the adaptation",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Nothing,
     is_in: |story| !story.steps.is_empty(),
     draw: |run| figure(run.story),

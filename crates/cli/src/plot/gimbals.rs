@@ -5,13 +5,14 @@ use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::{ControlMomentGyro, ControlMomentGyros};
 use flexsc_figure::{Figure, Lines, OverTime};
 
+use super::cycle_data::RowSource;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "gimbals",
     contents: "Control moment gyros: gimbal angles and rates, singularity measure, momentum",
-    topics: &["/control_moment_gyros"],
+    rows: &[RowSource::of::<ControlMomentGyros>()],
     motion: MotionPart::Nothing,
     is_in: |story| !story.scenario.study.gimbals.is_empty(),
     draw: figure,

@@ -1,9 +1,10 @@
 //! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum of the wheels or the
 //! rate of the body.
 
-use flexsc_core::record::Magnetorquers;
+use flexsc_core::record::{Magnetorquers, Rates, Wheels};
 use flexsc_figure::{Figure, Lines, OverTime};
 
+use super::cycle_data::RowSource;
 use super::figure_kind::{FigureSpec, MotionPart, RunData};
 use super::pointing::norm;
 use super::title;
@@ -11,7 +12,7 @@ use super::title;
 pub const SPEC: FigureSpec = FigureSpec {
     name: "magnetorquers",
     contents: "Three axes: magnetic moments, and the momentum of the wheels or the rate",
-    topics: &["/magnetorquers", "/wheels", "/rates"],
+    rows: &[RowSource::of::<Magnetorquers>(), RowSource::of::<Wheels>(), RowSource::of::<Rates>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.actuator.magnetorquers().is_some(),
     draw: figure,

@@ -57,7 +57,7 @@ use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
 use crate::quantity::in_unit;
 pub use campaign::{column_figures, directory_figures};
-use cycle_data::CycleData;
+use cycle_data::{CycleData, RowSource};
 pub use figure_kind::FigureKind;
 use figure_kind::{FigureSpec, MotionPart, RunData};
 pub use figure_name::FigureName;
@@ -258,9 +258,9 @@ fn drawn_over(
     let chosen: Vec<&FigureSpec> = chosen.into_iter().filter_map(FigureKind::of_log).collect();
     let is_three_axis = story.scenario.axis_count() == 3;
     let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
-    let topics: Vec<&str> = chosen.iter().flat_map(|spec| spec.topics).copied().collect();
-    let cycles = if is_three_axis && !topics.is_empty() {
-        CycleData::read(&story, log, path, &topics)?
+    let rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();
+    let cycles = if is_three_axis && !rows.is_empty() {
+        CycleData::read(&story, log, path, &rows)?
     } else {
         CycleData::default()
     };

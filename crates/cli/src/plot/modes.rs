@@ -10,7 +10,7 @@ use super::{swings, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "modes",
     contents: "Each elastic mode; with a switching law, at the end of the run",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Ends,
     is_in: |story| story.scenario.axis_count() == 1 && story.scenario.mode_count() > 0,
     draw: |run| figure(run.story, run.motion),

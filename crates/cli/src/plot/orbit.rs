@@ -4,7 +4,7 @@
 use flexsc_core::record::{Light, Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::cycle_data::CycleData;
+use super::cycle_data::{CycleData, RowSource};
 use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
@@ -12,7 +12,7 @@ use super::{time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "orbit",
     contents: "Three axes in orbit: magnetic field, nadir and Sun in body axes, and the eclipse",
-    topics: &["/orbit"],
+    rows: &[RowSource::of::<Orbit>()],
     motion: MotionPart::Nothing,
     is_in: applies_to,
     draw: |run| figure(run.story, run.cycles),

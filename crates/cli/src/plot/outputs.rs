@@ -10,7 +10,7 @@ use super::{arrival, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "outputs",
     contents: "Each observed coordinate",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Unswitched,
     is_in: |story| !story.scenario.model.outputs().is_empty() && !story.switches(),
     draw: |run| figure(run.story, run.motion),

@@ -11,7 +11,7 @@ use super::title;
 pub const SPEC: FigureSpec = FigureSpec {
     name: "phase-plane",
     contents: "Rate against angle, with the law's switching lines",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Ends,
     is_in: |story| story.switches() && story.scenario.axis_count() == 1,
     draw: |run| figure(run.story, run.motion),

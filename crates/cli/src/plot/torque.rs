@@ -9,7 +9,7 @@ use super::{manoeuvre_torque, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "torque",
     contents: "Torque; with a switching law, at the end of the run",
-    topics: &[],
+    rows: &[],
     motion: MotionPart::Unswitched,
     is_in: |story| story.scenario.axis_count() == 1,
     draw: draw,

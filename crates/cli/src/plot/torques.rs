@@ -5,7 +5,7 @@ use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
-use super::cycle_data::CycleData;
+use super::cycle_data::{CycleData, RowSource};
 use super::figure_kind::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
@@ -14,7 +14,7 @@ use super::{time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "torques",
     contents: "Three axes: torques demanded by the law, given by the actuators, and of disturbances",
-    topics: &["/torques"],
+    rows: &[RowSource::of::<Torques>()],
     motion: MotionPart::Nothing,
     is_in: applies_to,
     draw: |run| figure(run.story, run.cycles),

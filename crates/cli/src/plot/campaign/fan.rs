@@ -122,8 +122,8 @@ fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
     let signal = |name: &str, unit, line, held| SignalFan { name: name.to_owned(), unit, line, held };
     let mut signals = Vec::new();
     if story.scenario.axis_count() == 3 {
-        let topics = [pointing::SPEC.topics, three_axis::ENERGY.topics].concat();
-        let cycles = CycleData::read(&story, &log, path, &topics)?;
+        let rows = [pointing::SPEC.rows, three_axis::ENERGY.rows].concat();
+        let cycles = CycleData::read(&story, &log, path, &rows)?;
         let [elastic, _] = cycles.elastic_energies();
         signals.push(signal("pointing error", "rad", cycles.errors(norm), false));
         signals.push(signal("elastic energy", "J", elastic, false));
