@@ -24,6 +24,8 @@ MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', 
 # Comments that mark the numbers of a page for its test.
 MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
 KEYS = Keys(flexsc.schema())
+# Pages that end with what tests make and compare.
+WHOLE = {"combinations.md": "tests/frozen/combinations.md", "papers.md": "tests/frozen/papers.md"}
 
 
 def on_files(files: Files, config: Any) -> Files:
@@ -45,9 +47,12 @@ def on_files(files: Files, config: Any) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
-    """Adds anchors of keys, drops the marks of numbers, and links files outside docs/ in the repository."""
+    """Adds tables and anchors, drops the marks of numbers, and links files outside docs/ on GitHub."""
     if page.file.src_uri.startswith("scenario/"):
         markdown = KEYS.anchored(page.file.name + ".md", markdown)
+    if page.file.src_uri in WHOLE:
+        made = (ROOT / WHOLE[page.file.src_uri]).read_text("utf-8")
+        markdown += "\n" + made[re.search("^## ", made, re.MULTILINE).start() :]
     above = "../" * (1 + page.file.src_uri.count("/"))
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
 

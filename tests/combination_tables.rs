@@ -1,4 +1,4 @@
-//! Tables of docs/combinations.md: laws by actuators, and for each law the estimators and sensors in words.
+//! Tables of which parts go together: laws by actuators, and for each law the estimators and sensors in words.
 
 use std::fmt::Write as _;
 

@@ -2,7 +2,7 @@
 //!
 //! What is accepted runs for 4 s, a second longer than a window of the envelope and the first of several
 //! laws, in one and in pieces, and keeps the invariants of `tests/invariants.rs`; what is refused names a key
-//! and a reason. The tables in docs/combinations.md are made here.
+//! and a reason. The tables in `tests/frozen/combinations.md`, which the site shows, are made here.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};
@@ -13,6 +13,7 @@ use flexsc_core::{Document, Scenario, ScenarioError};
 use toml::Table;
 
 use crate::combination_tables::{Accepted, section, total};
+use crate::frozen::is_frozen_file;
 use crate::invariants::{
     External, Flown, energy_does_not_grow, metrics_are_numbers, momentum_is_that_of_rates_and_rotors,
     pieces_give_the_whole, torque_changes_the_momentum, torque_changes_the_rate,
@@ -292,9 +293,5 @@ fn parts_combine_as_the_documents_say() {
         made.push(section(body.name, accepted));
     }
     let made = format!("{}\n", made.concat().trim_end());
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/combinations.md");
-    let kept = std::fs::read_to_string(path).expect("the document");
-    let made_file = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("combinations.md");
-    std::fs::write(&made_file, &made).expect("a file");
-    assert!(kept.ends_with(&made), "docs/combinations.md is not what {} holds", made_file.display());
+    is_frozen_file("tests/frozen/combinations.md", made.as_bytes());
 }

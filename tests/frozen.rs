@@ -37,6 +37,22 @@ pub fn is_frozen(name: &str, text: &str) {
     settings.bind(|| insta::assert_snapshot!(name, text));
 }
 
+/// Compares bytes with those of a file of the repository, which `INSTA_UPDATE=always` writes anew: pages in Markdown and
+/// their figures, which are read as they are.
+#[track_caller]
+pub fn is_frozen_file(path: &str, made: &[u8]) {
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path);
+    if std::env::var_os("INSTA_UPDATE").is_some_and(|update| update == "always") {
+        std::fs::write(&file, made).expect("a file");
+    }
+    let kept = std::fs::read(&file).unwrap_or_default();
+    let [old, new] = [&kept, made].map(String::from_utf8_lossy);
+    for (line, (old, new)) in old.lines().zip(new.lines()).enumerate() {
+        assert!(old == new, "{path}:{}: has `{old}`, made is `{new}`", line + 1);
+    }
+    assert!(kept == made, "{path} has another end");
+}
+
 #[test]
 fn logs_and_metrics_of_shipped_scenarios_are_frozen() {
     let names = shipped();

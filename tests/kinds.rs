@@ -1,6 +1,6 @@
 //! Kinds of parts, and bodies, of which `tests/combinations.rs` makes every combination.
 
-/// Kind of a part: its name, its name in docs/combinations.md, and its text.
+/// Kind of a part: its name, its name in the tables of combinations, and its text.
 pub type Kind = (&'static str, &'static str, &'static str);
 
 pub const LAWS: [Kind; 11] = [

@@ -17,8 +17,7 @@ from conftest import command_path
 ROOT = Path(__file__).parents[2]
 # What package indexes show.
 PACKAGE = ROOT / "crates/py/README.md"
-# `flexsc reproduce` runs the commands of papers.md.
-PAGES = [ROOT / "README.md", PACKAGE, *sorted(set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs/papers.md"})]
+PAGES = [ROOT / "README.md", PACKAGE, *sorted((ROOT / "docs").rglob("*.md"))]
 VERBS = (
     "check|completions|cycle|damping|examples|export|export-fmu|identify|layout|log|map|merge|modes|new|observer|"
     "plan|plot|schema|simulate|sweep|top|tune"

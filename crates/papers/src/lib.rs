@@ -70,7 +70,7 @@ pub fn documentation(sections: &[String]) -> String {
 }
 
 const HEAD: &str = "# Published results and our values\n\n\
-    <!-- Written by `flexsc reproduce -o . --docs docs` from crates/papers/templates: change it there. -->\n\n\
+    <!-- Written by `flexsc reproduce -o . --docs DIR` from crates/papers/templates: change it there. -->\n\n\
     - **Relay**: the printed numbers hold to their digits; late means are not smooth over the gain, and resonance stays bounded.\n\
     - **Finite rotation**: every printed number is recomputed; three formulas are misprints, and one system of equations contradicts itself.\n\
     - **Wheels**: 13 of 15 statements hold with constants that meet the printed design condition. No set has the unstable band, and\n  \

@@ -1,6 +1,6 @@
 //! Page of a paper: its template, filled with the output of the commands that it names.
 //!
-//! The template is the paper's section of docs/papers.md. It can use
+//! The template is the paper's section of the page, which `tests/frozen/papers.md` keeps. It can use
 //! - `run("simulate scenarios/relay-fixed.toml")`: output of the command with `--json`,
 //! - `each("plan ... suppress={}", [0, 1])`: list of outputs, with each value in place of `{}`,
 //! - `column("simulate ...", "/attitude", "angle_rad")`: column of the run's full log,

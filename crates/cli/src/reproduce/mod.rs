@@ -1,4 +1,4 @@
-//! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
+//! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in Markdown for the site.
 
 mod command;
 mod command_output;
