@@ -1,10 +1,17 @@
-"""Keys of a scenario: an anchor where docs/scenario describes each, and an entry of the search."""
+"""Keys of a scenario: tables in docs/scenario, an anchor where a page has a key, and an entry of the search.
+
+A page has a line ``Keys: `flexsc schema sensor.gyro` `` where the site has the table that this command gives.
+"""
 
 from __future__ import annotations
 
 import html
 import itertools
+import json
 import re
+import shutil
+import subprocess
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +21,8 @@ Schema = dict[str, Any]
 FOLDER = Path(__file__).resolve().parents[1] / "docs/scenario"
 CODE = re.compile(r"`([^`]+)`")
 CELL = re.compile(r"(?<!\\)\|")
+TABLE = re.compile(r"Keys: `flexsc schema ([\w.]+)`")
+COMMAND = shutil.which("flexsc", path=str(Path(sys.executable).parent)) or "flexsc"
 
 
 class Place(NamedTuple):
@@ -44,8 +53,15 @@ class Keys:
         for owner, path, description in self._walk(schema, "", "", ()):
             self.descriptions.setdefault(path, description)
             owners.setdefault((owner, path.rsplit(".", 1)[-1]), []).append(path)
+        pages = sorted(folder.glob("*.md"))
+        self.tables = {
+            match[1].strip("."): rows(match[1].strip("."))
+            for page in pages
+            for line in page.read_text("utf-8").split("\n")
+            if (match := TABLE.match(line))
+        }
         self.sections: list[Section] = []
-        for page in sorted(folder.glob("*.md")):
+        for page in pages:
             self.sections += self._read(page)
         # A type has the same keys wherever it stands: one place is enough.
         for paths in owners.values():
@@ -53,9 +69,33 @@ class Keys:
                 path, place = self._nearest(paths)
                 self.places[path] = place
 
+    def expanded(self, markdown: str) -> tuple[list[str], dict[int, str]]:
+        """The lines of a page with its tables of keys, and the key in each line of such a table."""
+        lines: list[str] = []
+        paths: dict[int, str] = {}
+        heading = ""
+        for line in markdown.split("\n"):
+            if not (match := TABLE.match(line)):
+                heading = line if line.startswith("#") else heading
+                lines.append(line)
+                continue
+            table = match[1].strip(".")
+            if table and f"[{table}]" not in heading:
+                lines += [f"`[{table}]`:", ""]
+            lines += ["| key | unit | default | meaning |", "|---|---|---|---|"]
+            for key in self.tables[table]:
+                path = f"{table}.{key['key']}" if table else key["key"]
+                # The keys of a table within it, which has a place of its own, stand there.
+                if not any(len(own) > len(table) and path.startswith(f"{own}.") for own in self.tables):
+                    paths[len(lines)] = path.replace("[i]", "").replace(".NAME", "")
+                    default = key["default"]
+                    cells = (f"`{key['key']}`", key["unit"], code(default), key["meaning"])
+                    lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        return lines, paths
+
     def anchored(self, page: str, markdown: str) -> str:
-        """The Markdown of a page with an anchor at each key."""
-        lines = markdown.split("\n")
+        """The Markdown of a page with its tables, and with an anchor at each key."""
+        lines, _ = self.expanded(markdown)
         for key, place in self.places.items():
             if place.page == page and not self._is_heading(key):
                 anchor = f'<a id="{key}"></a>'
@@ -107,8 +147,13 @@ class Keys:
         """Finds the keys in the tables of a page, and returns its sections."""
         sections: list[Section] = []
         fenced, head, kind = False, [""], ""
-        for number, line in enumerate(path.read_text("utf-8").split("\n")):
+        lines, paths = self.expanded(path.read_text("utf-8"))
+        for number, line in enumerate(lines):
             place = Place(path.name, number)
+            if number in paths:
+                if paths[number] in self.descriptions:
+                    self.places.setdefault(paths[number], place)
+                continue
             if line.startswith("```"):
                 fenced = not fenced
             elif line.startswith("#") and not fenced:
@@ -160,6 +205,19 @@ class Keys:
             page = Counter(pages(path)).most_common(1)[0][0]
             return path, Place(page, 0)
         return path, nearest.heading
+
+
+def rows(table: str) -> list[dict[str, str]]:
+    """The keys of a table as the command has them."""
+    done = subprocess.run(
+        [COMMAND, "schema", table or ".", "--json"], capture_output=True, text=True, check=True
+    )
+    return json.loads(done.stdout)
+
+
+def code(default: str) -> str:
+    """A default in a cell: a value is code, `required` a word."""
+    return default if default in ("", "required") else f"`{default}`"
 
 
 def written(cell: str) -> Iterator[str]:

@@ -233,8 +233,16 @@ impl JsonSchema for HarmonicTable {
                 {
                     "type": "object",
                     "properties": {
-                        "years": { "type": "array", "items": { "type": "number" } },
-                        "rows": { "type": "array", "items": { "type": "array", "items": { "type": "number" } } }
+                        "years": {
+                            "type": "array",
+                            "items": { "type": "number" },
+                            "description": "Years, increasing."
+                        },
+                        "rows": {
+                            "type": "array",
+                            "items": { "type": "array", "items": { "type": "number" } },
+                            "description": "Rows of degree n, order m and a value for each year, of g, or of h with the order -m."
+                        }
                     },
                     "required": ["years", "rows"],
                     "additionalProperties": false

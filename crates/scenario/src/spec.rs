@@ -28,7 +28,7 @@ use crate::uncertain::{Correlated, Distribution};
 #[serde(deny_unknown_fields, rename = "Scenario")]
 #[schemars(description = "A scenario.")]
 pub struct ScenarioSpec {
-    /// Name of the study; default: the name of its file.
+    /// Name of the study, whose log is `NAME.mcap`; default: the name of its file.
     #[serde(default)]
     pub name: String,
     /// Description of the study.
@@ -39,7 +39,8 @@ pub struct ScenarioSpec {
     pub seed: u64,
     /// Simulated time (s).
     pub duration: Span,
-    /// Date and time of the start; a log counts its time from here.
+    /// Date and time of the start, such as `2026-03-20T14:46:00Z`, from which a log counts its time; a second 60 is a leap
+    /// second, at the end of June or December. Default: none.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::parse")]
     #[schemars(with = "Option<String>")]
     pub epoch: Option<Datetime>,

@@ -18,13 +18,14 @@ use crate::sine::Sine;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Disturbance {
-    /// Axis about which it acts, on a body with three.
+    /// Axis about which it acts at the first point, on a body with three, where a torque must have one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<Axis>,
     /// Torque (N m).
     #[serde(default)]
     pub torque: Finite,
-    /// Sine terms added to the torque, on a `[spacecraft]`.
+    /// Sine terms added to the torque, on a `[spacecraft]`: amplitude sin(frequency t + phase), t from the start of
+    /// the run.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sines: Vec<Sine>,
     /// Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a push.
@@ -36,7 +37,7 @@ pub struct Disturbance {
     /// Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
     #[serde(default)]
     pub noise: NonNegative,
-    /// Pulses in place of a steady torque or force.
+    /// Pulses in place of a steady torque or force, each at the start of a period.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pulse: Option<Pulses>,
     /// Time for which a draw of the noise is held (s).

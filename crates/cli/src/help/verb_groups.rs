@@ -324,7 +324,7 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                 "schema",
                 [
                     ("flexsc schema > scenario.schema.json", "the JSON Schema of scenarios, for editors"),
-                    ("flexsc schema --metrics", "metrics with their units and meanings"),
+                    ("flexsc schema sensor.gyro", "the keys of a table with their meanings"),
                 ],
             ),
             (

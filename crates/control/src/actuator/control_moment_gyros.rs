@@ -52,7 +52,7 @@ pub struct ControlMomentGyros {
     /// Null motion towards preferred gimbal angles; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub null_motion: Option<Box<NullMotion>>,
-    /// Intervals in which gimbals fail.
+    /// Intervals in which the gimbal rates fail: of all, or of the `gimbal` of a number from 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -25,7 +25,7 @@ pub struct Wheel {
     /// The rate that the back-EMF opposes.
     #[serde(default)]
     pub opposes: BackEmfRate,
-    /// The wheel.
+    /// The wheel, whose speed and momentum `/wheel` then logs; it must be the only actuator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotor: Option<FlywheelRotor>,
     /// Commands smaller than this are not executed.
@@ -34,7 +34,7 @@ pub struct Wheel {
     /// Quantum of the command; 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Largest command; no limit by default.
+    /// Largest command, in units of the command; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
     /// Time from a sample to the execution of the command computed from it (s).
@@ -53,7 +53,8 @@ pub enum BackEmfRate {
     /// The measured rate, elastic part included, as in the papers; it overstates the damping of the modes.
     #[default]
     BodyRate,
-    /// The rigid rate; the momentum of the wheel then agrees exactly with the torque on the body.
+    /// The rigid rate; the momentum of the wheel then agrees exactly with the torque on the body, which damps the
+    /// modes far less.
     RigidRate,
 }
 
@@ -67,7 +68,8 @@ pub struct FlywheelRotor {
     /// Speed at the start (rad/s).
     #[serde(default)]
     pub speed: Finite,
-    /// Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default.
+    /// Largest speed (rad/s), beyond which the motor cannot accelerate it, and with which a `[law.relay]` needs a
+    /// sampled sensor; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
 }

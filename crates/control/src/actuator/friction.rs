@@ -16,13 +16,15 @@ const STOPS: f64 = 500.0;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
-    /// Coulomb friction t (N m): one number for all wheels, or one for each.
+    /// Coulomb friction t (N m), at most 10 times `torque` and 500 rad/s² times `inertia`: one number for all
+    /// wheels, or one for each.
     #[serde(default)]
     pub coulomb: PerWheel<NonNegative>,
     /// Viscous friction c (N m s/rad): one number for all wheels, or one for each.
     #[serde(default)]
     pub viscous: PerWheel<NonNegative>,
-    /// Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb friction.
+    /// Torque up to which the bearing holds a wheel at rest (N m): one number for all wheels, or one for each;
+    /// default: the Coulomb friction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breakaway: Option<PerWheel<NonNegative>>,
 }

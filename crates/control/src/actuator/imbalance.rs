@@ -19,16 +19,19 @@ use super::per_wheel::PerWheel;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Imbalance {
-    /// Static imbalance (kg m): the force once per turn; one number for all wheels, or one for each.
+    /// Static imbalance (kg m): the force across the axis once per turn is this times the square of the speed; one
+    /// number for all wheels, or one for each.
     #[serde(default, rename = "static")]
     pub static_: PerWheel<NonNegative>,
-    /// Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for each.
+    /// Dynamic imbalance (kg m²): the torque across the axis once per turn is this times the square of the speed;
+    /// one number for all wheels, or one for each.
     #[serde(default)]
     pub dynamic: PerWheel<NonNegative>,
     /// Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
     #[serde(default)]
     pub phase: PerWheel<Finite>,
-    /// Angle of the rotor at the start (rad); one number for all wheels, or one for each.
+    /// Angle of the rotor at the start (rad); one number for all wheels, or one for each: with equal angles, wheels
+    /// that turn against each other cancel in part.
     #[serde(default, skip_serializing_if = "PerWheel::is_default")]
     pub angle: PerWheel<Finite>,
     /// Further harmonics of the speed, the same for all wheels.

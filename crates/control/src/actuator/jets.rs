@@ -20,26 +20,26 @@ const G_0: f64 = 9.806_65;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Jets {
-    /// Shortest pulse (s).
+    /// Shortest pulse (s); a shorter one is not given, and does not carry over to the next.
     #[serde(default)]
     pub minimum_on: NonNegative,
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Period of the pulses (s); default: that of the law.
+    /// Period of the pulses (s); default: that of the law, which must then be one for all axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
     /// Time of the first cycle of pulses, for jets with a `period` (s); default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Time>,
-    /// Specific impulse (s).
+    /// Specific impulse (s): thrust per unit of propellant weight flow.
     pub specific_impulse: Positive,
     /// Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle.
     #[serde(default)]
     pub delay: u32,
     /// The thrusters.
     pub thrusters: Vec<Thruster>,
-    /// How the demand is converted into pulses.
+    /// How the demand is converted into pulses; default: `groups`.
     #[serde(default, skip_serializing_if = "is_default")]
     pub allocation: FiringMethod,
     /// For `least_propellant`: whether the forces of the pulses must cancel.
@@ -48,10 +48,11 @@ pub struct Jets {
     /// For `least_propellant`: burns, in which a force is commanded beside the torques.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub burns: Vec<Burn>,
-    /// For `groups`: the thrusters that act together.
+    /// For `groups`: the thrusters that act together about each axis about which the jets act.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<ThrusterGroups>,
-    /// Intervals in which the jets fail.
+    /// Intervals in which the jets fail, all or the one named `thruster`: `stuck` at 1 fires all the time, and
+    /// `added` is a leak (N).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -70,7 +70,7 @@ impl Default for Robustness {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NullMotion {
-    /// Preferred angle of each gimbal (rad).
+    /// Preferred angle of each gimbal, of four or more (rad).
     pub angles: Vec<Finite>,
     /// Gain with which the gimbals turn towards them, as far as no torque results (1/s).
     pub gain: Positive,

@@ -15,7 +15,8 @@ use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thrusters {
-    /// Torque of a pulse (N m): one number for all axes, or a list of three.
+    /// Torque of a pulse (N m): one number for all axes, or a list of three. Each period has one pulse, centred in
+    /// it, with the impulse of a hold; what it cannot give carries over, up to one whole period.
     pub torque: PerAxis<Positive>,
     /// Period of the pulses (s).
     pub period: Span,

@@ -15,7 +15,8 @@ pub enum AllocationCriterion {
     /// Smallest sum of squared wheel torques, by the pseudo-inverse.
     #[default]
     PseudoInverse,
-    /// Smallest largest wheel torque: more torque about most axes, but more reversals of the wheels.
+    /// Smallest largest wheel torque, for at most four wheels: more torque about most axes, but more reversals of
+    /// the wheels.
     LeastLargest,
 }
 

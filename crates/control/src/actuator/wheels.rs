@@ -32,7 +32,8 @@ pub struct Wheels {
     /// Axis of each wheel in the body's axes, of any length.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<[Finite; 3]>,
-    /// Moment of inertia of each wheel about its axis (kg m²).
+    /// Moment of inertia of each wheel about its axis (kg m²). The inertia tensor of a `[body.spatial]` excludes
+    /// it; that of a `[spacecraft]` includes the locked wheels.
     pub inertia: Positive,
     /// Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole torque is scaled
     /// down and keeps its axis.
@@ -50,7 +51,8 @@ pub struct Wheels {
     /// Friction of the bearings; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Box<Friction>>,
-    /// Friction compensation by the drives, from the wheel speeds available to them; none by default.
+    /// Friction that the drives assume and compensate within `torque`, from the true or measured wheel speeds; none
+    /// by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compensation: Option<Box<FrictionCompensation>>,
     /// Imbalance of the wheels; none by default.
@@ -65,7 +67,7 @@ pub struct Wheels {
     /// Unloading by jets or magnetorquers; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unloading: Option<Box<WheelUnloading>>,
-    /// Intervals in which their motors fail.
+    /// Intervals in which the motors fail: all, or the `wheel` of a number from 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }
@@ -97,7 +99,8 @@ pub enum Arrangement {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpeedBias {
-    /// Bias speed of the first wheel (rad/s).
+    /// Bias speed (rad/s): that of the wheel with the largest part in the null vector of the axes, and of all four
+    /// in a pyramid, two in each direction.
     pub speed: Finite,
     /// Gain with which the wheels are brought to the bias speed (1/s).
     pub gain: Positive,

@@ -12,9 +12,10 @@ use crate::part::Part;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ZeroOrderHold {
-    /// Period (s).
+    /// Period of the hold (s): it gives the mean of the planned torque over the period plus the law's torque at its
+    /// start.
     pub period: Span,
-    /// Time of the first period (s); default: 0.
+    /// Time of the first period (s), before which it gives nothing; default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Time>,
     /// Intervals in which the actuator fails.

@@ -26,7 +26,7 @@ pub enum Objective {
     TorqueMean,
     /// Number of switchings of the law, about all axes.
     Switchings,
-    /// Number of pulses of thrusters or jets.
+    /// Number of pulses of jets, or how often thrusters begin to push.
     Firings,
     /// Mean of the absolute mechanical power of all wheels (W).
     WheelPowerMean,

@@ -21,11 +21,11 @@ use crate::part::Part;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RandomSearch {
-    /// Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a PD law, `bandwidth` of an
-    /// attitude law, `yaw.pd.k_d` of a law `per_axis`.
+    /// Tuned parameter of the law, by its key within the law's table: `k_t` of a relay (the default), `k_p` of a PD
+    /// law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
     #[serde(default = "k_t", skip_serializing_if = "is_k_t")]
     pub tunes: String,
-    /// Quantity that is measured over each window and made smaller.
+    /// Quantity that is measured over each window and made smaller; default: `envelope_mean`.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
     pub objective: Objective,
     /// Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`.
@@ -33,7 +33,7 @@ pub struct RandomSearch {
     pub window: Option<Span>,
     /// Largest move of the gain in one window, delta `k_t`.
     pub step: Positive,
-    /// Smallest and largest gain.
+    /// Smallest and largest gain, which include its value at the start; for `k_t` between 0 and 1.
     pub bounds: [Finite; 2],
     /// A relative change of the objective below this counts as settled, `delta_0`.
     #[serde(default = "five_percent")]

@@ -207,7 +207,7 @@ pub fn start(known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator> {
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Feeds")]
 pub enum EstimateOutputs {
-    /// None: angle and rate are as measured.
+    /// The dominant mode only; angle and rate are as measured.
     Modes,
     /// Angle and rate of the hub, elastic part included.
     Hub,

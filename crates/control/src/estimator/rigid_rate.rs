@@ -21,7 +21,7 @@ use crate::state_estimate::StateEstimate;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RigidRate {
-    /// Fraction l of the innovation by which each sample corrects the rate.
+    /// Fraction l of the innovation, between 0 and 1, by which each sample corrects the rate.
     pub correction: Fraction,
     /// Estimated rates before the first sample (rad/s).
     #[serde(default)]

@@ -16,8 +16,9 @@ const CYCLES: f64 = 2.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ActiveDamping {
-    /// Elastic rate about each axis above which the jets fire (rad/s); default, for the mode that a long burn excites most:
-    /// 1.5 times the amplitude of the limit cycle due to the delay, and at least the change by two whole cycles of firing.
+    /// Elastic rate about each axis above which the jets fire (rad/s), three numbers, of which one axis uses the
+    /// first; default, for the mode that a long burn excites most: 1.5 times the amplitude of the limit cycle due
+    /// to the delay, and at least the change by two whole cycles of firing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<[Positive; 3]>,
     /// Fraction of the threshold at which the pulses of active damping stop.
@@ -35,13 +36,15 @@ pub struct ActiveDamping {
 #[serde(deny_unknown_fields, default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a key that stands alone")]
 pub struct DampingGuards {
-    /// Suppress pulses that would drive the rigid motion out of the dead zone.
+    /// Suppress pulses after which the rigid motion would need one.
     pub dead_zone: bool,
     /// Without the predictor, damp only modes whose phase factor is at least 0.5.
     pub eligibility: bool,
-    /// Act only while the innovations of the observer are small.
+    /// Act only while the observer tracks: the mean square innovation is below a tenth of that of the elastic rate,
+    /// or below (3.16e-6 rad/s)².
     pub residual: bool,
-    /// Pause active damping when the pulses do not help.
+    /// Pause active damping for 300 cycles if the mean elastic rate of 75 cycles with a pulse exceeds 0.9 times
+    /// that of the 75 before.
     pub watchdog: bool,
 }
 

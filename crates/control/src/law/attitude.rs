@@ -34,10 +34,11 @@ pub struct AttitudeLaw {
     /// Damping ratio zeta of the error.
     #[serde(default = "damping")]
     pub damping: Positive,
-    /// Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's own.
+    /// Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's own in
+    /// each run, so write it out to study its errors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<[[Finite; 3]; 3]>,
-    /// How a rotation is converted into an error, on a body with three axes.
+    /// How a rotation is converted into an error, on a body with three axes; default: `quaternion`.
     #[serde(default, skip_serializing_if = "AttitudeErrorMeasure::is_default")]
     pub error: AttitudeErrorMeasure,
     /// Integral of the error; none by default.

@@ -16,7 +16,8 @@ pub enum Filter {
     Notch(Notch),
     /// w²/(s² + 2 zeta w s + w²).
     LowPass(LowPass),
-    /// (1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag.
+    /// (1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag, exact at sqrt(zero pole), where
+    /// its phase is largest.
     Lead(Lead),
     /// (b0 + b1/z + b2/z²)/(1 + a1/z + a2/z²), with the coefficients as given.
     Biquad(Coefficients),

@@ -33,16 +33,17 @@ pub struct Pd {
     /// How the derivative is taken.
     #[serde(default)]
     pub differentiation: Differentiation,
-    /// How a rotation is converted into an error, on a body with three axes.
+    /// How a rotation is converted into an error, on a body with three axes; default: `quaternion`.
     #[serde(default, skip_serializing_if = "AttitudeErrorMeasure::is_default")]
     pub error: AttitudeErrorMeasure,
     /// Extra loop on the dominant mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extra: Option<Extra>,
-    /// Largest torque (N m); no limit by default.
+    /// Largest torque (N m; for a wheel, in units of its command); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
-    /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
+    /// Whether the law tracks a manoeuvre while it lasts; otherwise it waits and takes over at the end of the
+    /// manoeuvre.
     #[serde(default, skip_serializing_if = "is_false")]
     pub track: bool,
 }

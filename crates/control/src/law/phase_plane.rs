@@ -28,7 +28,7 @@ use crate::state_estimate::{DampingStatus, StateEstimate};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PhasePlane {
-    /// Cycle of gyro, estimator, law and jets (s).
+    /// Cycle of law and jets, and of gyro and estimator if they have no period of their own (s).
     pub period: Span,
     /// Half width of the dead zone (rad).
     pub dead_zone: Positive,
@@ -66,9 +66,9 @@ fn half() -> Fraction {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Target")]
 pub struct AttitudeTarget {
-    /// Start time (s).
+    /// Start time (s), later than that of the target before.
     pub from: Time,
-    /// Frame relative to which the attitude is given.
+    /// Frame relative to which the attitude is given; default: inertial.
     #[serde(default, skip_serializing_if = "is_inertial")]
     pub frame: Frame,
     /// Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are relative to the attitude
@@ -78,7 +78,7 @@ pub struct AttitudeTarget {
     /// Axis of the body that is as near to a direction as `primary` lets it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub secondary: Option<PointedAxis>,
-    /// Roll (rad).
+    /// Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned axis, then roll.
     #[serde(default, deserialize_with = "within_a_turn")]
     pub roll: Finite,
     /// Pitch (rad).
@@ -93,13 +93,14 @@ pub struct AttitudeTarget {
     /// Largest rate of the slew (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
-    /// How the rate of the slew rises and falls.
+    /// How the rate of the slew rises and falls; default: trapezoid.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: SlewProfile,
     /// Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<Planned>,
-    /// Duration of the slew by that command (s).
+    /// Duration of the slew by that command (s), without what a shaper adds and without the decay of a rate before
+    /// it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<Positive>,
     /// Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.

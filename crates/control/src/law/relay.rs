@@ -39,7 +39,7 @@ pub struct Relay {
     pub strong: Positive,
     /// Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia).
     pub weak: NonNegative,
-    /// Braking gain: duration of the brake per second of the push.
+    /// Braking gain, between 0 and 1: duration of the brake per second of the push.
     pub k_t: Fraction,
     /// Which boundaries of the dead zone push back.
     #[serde(default)]

@@ -32,7 +32,7 @@ pub struct Stages {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// Start time (s); 0 for the first stage.
+    /// Start time (s), later than that of the stage before; 0 for the first stage.
     #[serde(default)]
     pub from: Time,
     /// The law.

@@ -35,7 +35,7 @@ const MOST: usize = 64;
 pub struct StateSpace {
     /// Period of its samples (s).
     pub period: Span,
-    /// Matrix A, row by row; default: there are no states.
+    /// Matrix A, row by row, for at most 64 states; default: there are no states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<Finite>>,
     /// Matrix B: one row per state; one column for each input, or for the angle error (rad) and optionally a second for the rate error (rad/s).
@@ -59,13 +59,14 @@ pub struct StateSpace {
     /// Quantity that it commands.
     #[serde(default)]
     pub command: OutputQuantity,
-    /// Factor on the output.
+    /// Factor on the output, which an adaptation may tune; default: 1.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub gain: Positive,
     /// Largest command, in its unit; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit: Option<Positive>,
-    /// Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the manoeuvre.
+    /// Whether the law tracks a manoeuvre while it lasts, as with accelerations it always does; otherwise it takes
+    /// over at the end of the manoeuvre.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub track: bool,
     /// Number of states in the log, if there are more than those of the law: of several modes, the largest.

@@ -22,9 +22,10 @@ use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis, S
 pub struct OperatingMode {
     /// Name: letters, digits, `_` and `-`.
     pub name: String,
-    /// The law.
+    /// The law: any but `stages`.
     pub law: LawKind,
-    /// Target attitude of a body with three axes, from the start of the mode on; default: the target stays.
+    /// Target attitude of a body with three axes, from the start of the mode on; default: the target stays, and
+    /// `[[target]]` holds if no mode has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target: Option<ModeTarget>,
     /// Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for the second of a kind; default:
@@ -65,7 +66,7 @@ fn is_zero(time: &Time) -> bool {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModeTarget {
-    /// Frame relative to which the attitude is given.
+    /// Frame relative to which the attitude is given; default: inertial.
     #[serde(default, skip_serializing_if = "is_inertial")]
     pub frame: Frame,
     /// Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are relative to the attitude
@@ -90,7 +91,7 @@ pub struct ModeTarget {
     /// Largest rate of the slew (rad/s); no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_limit: Option<Positive>,
-    /// How the rate of the slew rises and falls.
+    /// How the rate of the slew rises and falls; default: trapezoid.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
     pub profile: SlewProfile,
     /// Start of the slew; default: the estimated attitude after a law that does not control the attitude, else the reference.

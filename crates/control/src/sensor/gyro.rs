@@ -29,7 +29,7 @@ pub struct Gyro {
     /// Point of the structure at which it is mounted, on a body with three axes; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Period of its samples (s); default: that of the law.
+    /// Period of its samples (s); default: that of the law, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
     /// Standard deviation of the white noise about each axis (rad/s).
@@ -55,10 +55,11 @@ pub struct Gyro {
     /// is 0 at the start.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub bias_instability: PerAxis<NonNegative>,
-    /// Correlation time of that part (s).
+    /// Correlation time of that part (s), required with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correlation_time: Option<Positive>,
-    /// How late it reports a rate (s), a whole number of periods.
+    /// How late it reports a rate (s), a whole number of periods; until the first report it gives the rate of the
+    /// start. Default: 0.
     #[serde(default, skip_serializing_if = "is_prompt")]
     pub latency: Time,
     /// Relative error of the scale about each axis.

@@ -16,9 +16,9 @@ use crate::part::Part;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sampled {
-    /// Period of the samples (s).
+    /// Period of the samples (s), at which guards of the law are tested.
     pub period: Span,
-    /// Standard deviation of the white noise (rad).
+    /// Standard deviation of the white noise (rad), on three axes about each of them.
     #[serde(default)]
     pub noise: NonNegative,
     /// Constant error (rad).
@@ -46,7 +46,7 @@ pub struct Sampled {
 pub enum SensorFailure {
     /// It repeats the last measurement before the failure.
     Stuck(Interval),
-    /// It gives no measurement.
+    /// It gives no measurement; the last one remains valid.
     Silent(Interval),
 }
 

@@ -35,7 +35,8 @@ pub struct StarTracker {
     /// Time from the middle of an exposure to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at an instant.
+    /// Exposure time (s), at most `period` and twice `latency`: a reading is the mean attitude over the exposure;
+    /// default: 0, the attitude at an instant.
     #[serde(default, skip_serializing_if = "is_instant")]
     pub exposure: Time,
     /// Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit.

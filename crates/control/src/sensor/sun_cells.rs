@@ -32,7 +32,7 @@ const MOST_CELLS: usize = 64;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SunCells {
-    /// The cells.
+    /// The cells, three to 64, whose normals are not all in a plane.
     pub cells: Vec<SunCell>,
     /// Half angle within which light reaches a cell (rad), at most pi/2; default: pi/2.
     #[serde(default = "half_sphere")]

@@ -268,9 +268,10 @@ class ActiveDamping(Part):
     """Active damping.
 
     Args:
-        threshold: Elastic rate about each axis above which the jets fire (rad/s); default, for the mode
-            that a long burn excites most: 1.5 times the amplitude of the limit cycle due to the delay, and
-            at least the change by two whole cycles of firing.
+        threshold: Elastic rate about each axis above which the jets fire (rad/s), three numbers, of which
+            one axis uses the first; default, for the mode that a long burn excites most: 1.5 times the
+            amplitude of the limit cycle due to the delay, and at least the change by two whole cycles of
+            firing.
         release: Fraction of the threshold at which the pulses of active damping stop. Default: 0.5.
         pulse_width: Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it
             fills the cycle. Default: true.
@@ -279,9 +280,9 @@ class ActiveDamping(Part):
     """
 
     threshold: Vector | None = None
-    """Elastic rate about each axis above which the jets fire (rad/s); default, for the mode that a long
-    burn excites most: 1.5 times the amplitude of the limit cycle due to the delay, and at least the
-    change by two whole cycles of firing.
+    """Elastic rate about each axis above which the jets fire (rad/s), three numbers, of which one axis uses
+    the first; default, for the mode that a long burn excites most: 1.5 times the amplitude of the limit
+    cycle due to the delay, and at least the change by two whole cycles of firing.
     """
     release: float | None = None
     """Fraction of the threshold at which the pulses of active damping stop. Default: 0.5."""
@@ -299,14 +300,17 @@ class Adaptive(Part):
     """Adaptive observers of the rigid rates and elastic modes of a spatial body.
 
     Args:
-        form: Form of the observers.
-        trackers: The modes to track; default: the dominant modes of the body.
+        form: Form of the observers; default: `gradient`.
+        trackers: The modes to track about each axis, on three axes, such as `roll = [{ frequency = 1.7,
+            influence = [0, 0, 3], bounds = [1.0, 2.4] }]`; an axis that is left out tracks none. Default:
+            the dominant modes of the body.
         count: Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
-        merge: Relative frequency difference below which modes of the body are tracked as one. Default:
-            0.08.
+        merge: Relative frequency difference below which modes of the body are tracked as one: the
+            influences add up, the frequency is their mean weighted by these. Default: 0.08.
         cross_axis: Whether an axis accounts for the jets of the other axes; default: true in the form
             `gradient`, else false.
-        frequency_error: Relative error of the frequencies at the start. Default: 0.0.
+        frequency_error: Relative error of the frequencies at the start; a frequency stays within its
+            bounds. Default: 0.0.
         influence_error: Relative error of the influences at the start. Default: 0.0.
         adapt: Whether frequencies and influences are identified. Default: true.
     """
@@ -314,19 +318,24 @@ class Adaptive(Part):
     _tag: ClassVar[str | None] = "adaptive"
 
     form: ObserverFormKind | None = None
-    """Form of the observers."""
+    """Form of the observers; default: `gradient`."""
     trackers: Given | None = None
-    """The modes to track; default: the dominant modes of the body."""
+    """The modes to track about each axis, on three axes, such as `roll = [{ frequency = 1.7, influence =
+    [0, 0, 3], bounds = [1.0, 2.4] }]`; an axis that is left out tracks none. Default: the dominant modes
+    of the body.
+    """
     count: int | None = None
     """Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`."""
     merge: float | None = None
-    """Relative frequency difference below which modes of the body are tracked as one. Default: 0.08."""
+    """Relative frequency difference below which modes of the body are tracked as one: the influences add
+    up, the frequency is their mean weighted by these. Default: 0.08.
+    """
     cross_axis: bool | None = None
     """Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else
     false.
     """
     frequency_error: float | None = None
-    """Relative error of the frequencies at the start. Default: 0.0."""
+    """Relative error of the frequencies at the start; a frequency stays within its bounds. Default: 0.0."""
     influence_error: float | None = None
     """Relative error of the influences at the start. Default: 0.0."""
     adapt: bool | None = None
@@ -386,13 +395,18 @@ class Appendage(Part):
             default: none.
         plate: For a thin plate in the plane of its own x and y: the axis along which it extends; the first
             moments then follow from the participations in rotation.
-        points: Named points of the appendage, measured from its root in its own axes.
-        modes: Clamped modes: a table, or the path of a CSV file or of results of a finite-element program.
-            Without modes it is rigid.
-        damping: Damping ratios of modes read from finite-element results.
-        keep: Number of modes to keep from finite-element results, lowest frequencies first; default: all.
+        points: Named points of the appendage, measured from its root in its own axes; a name is unique in
+            the spacecraft.
+        modes: Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of
+            Nastran or MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt`
+            of 42. Without modes it is rigid.
+        damping: Damping ratio of modes read from finite-element results, or a list with one for each;
+            required where the file has none, as all but those of 42.
+        keep: Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first;
+            default: all.
         thermal: Thermal bending in sunlight; default: none.
-        units: Units of finite-element results; default: metres and kilograms.
+        units: Units of finite-element results, except for 42, whose files are in SI units; default: metres
+            and kilograms.
     """
 
     name: str
@@ -420,19 +434,28 @@ class Appendage(Part):
     then follow from the participations in rotation.
     """
     points: Sequence[NamedPoint] | None = None
-    """Named points of the appendage, measured from its root in its own axes."""
+    """Named points of the appendage, measured from its root in its own axes; a name is unique in the
+    spacecraft.
+    """
     modes: Sequence[ClampedMode] | str | None = None
-    """Clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without
+    """Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of Nastran or
+    MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt` of 42. Without
     modes it is rigid.
     """
     damping: float | Vector | None = None
-    """Damping ratios of modes read from finite-element results."""
+    """Damping ratio of modes read from finite-element results, or a list with one for each; required where
+    the file has none, as all but those of 42.
+    """
     keep: int | None = None
-    """Number of modes to keep from finite-element results, lowest frequencies first; default: all."""
+    """Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first; default:
+    all.
+    """
     thermal: Thermal | None = None
     """Thermal bending in sunlight; default: none."""
     units: Literal["m", "mm"] | None = None
-    """Units of finite-element results; default: metres and kilograms."""
+    """Units of finite-element results, except for 42, whose files are in SI units; default: metres and
+    kilograms.
+    """
 
 
 class AppendageDrive(Part):
@@ -445,8 +468,10 @@ class AppendageDrive(Part):
         rate: Constant rate of the drive (rad/s).
         from_: Time at which it begins to turn (s); default: the start of the run.
         until: Time at which it begins to stop (s); default: it does not stop.
-        acceleration: Acceleration with which its rate changes (rad/s²); default: the rate jumps.
-        table: Table of angles over time, with constant rates between the points.
+        acceleration: Acceleration with which its rate changes (rad/s²), which rounds the corners of a
+            table; default: the rate jumps, and excites the modes and the hub.
+        table: Table of angles over time, with constant rates between the points, at rest before the first
+            and after the last.
         track: Object that the drive tracks.
         normal: Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the
             drive's axis; default: z.
@@ -463,9 +488,13 @@ class AppendageDrive(Part):
     until: float | None = None
     """Time at which it begins to stop (s); default: it does not stop."""
     acceleration: float | None = None
-    """Acceleration with which its rate changes (rad/s²); default: the rate jumps."""
+    """Acceleration with which its rate changes (rad/s²), which rounds the corners of a table; default: the
+    rate jumps, and excites the modes and the hub.
+    """
     table: Sequence[DrivePoint] | None = None
-    """Table of angles over time, with constant rates between the points."""
+    """Table of angles over time, with constant rates between the points, at rest before the first and after
+    the last.
+    """
     track: Literal["sun"] | None = None
     """Object that the drive tracks."""
     normal: Vector | None = None
@@ -562,16 +591,17 @@ class AttitudeEstimator(Part):
     Args:
         form: How the gains are computed. Default: "extended".
         angle_random_walk: Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default:
-            the largest of the gyro's own.
+            the largest of the gyro's own, which for one that samples the rate is its noise times the root
+            of the period.
         rate_random_walk: Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the
-            gyro's own.
+            gyro's own, with a `bias_instability` as the walk that it is over a short time.
         attitude_noise: Standard deviation of a measured attitude about each axis of its sensor (rad);
             default: the sensor's own.
         field_noise: Standard deviation of a measured magnetic field along each axis (T); default: the
             magnetometer's own.
         field_degree: Degree of the magnetic field that the filter takes as the reference of magnetometers,
             from 1 to that of the environment's; default: the environment's field itself, without a model
-            error.
+            error. The error of a lower degree is correlated in time: cover it by `field_noise`.
         sun_noise: Standard deviation of a measured direction to the Sun (rad); default: that of the Sun
             sensor or cells.
         earth_noise: Standard deviation of a measured direction to the planet (rad); default: the Earth
@@ -589,10 +619,12 @@ class AttitudeEstimator(Part):
     """How the gains are computed. Default: "extended"."""
     angle_random_walk: float | None = None
     """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the
-    gyro's own.
+    gyro's own, which for one that samples the rate is its noise times the root of the period.
     """
     rate_random_walk: float | None = None
-    """Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own."""
+    """Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own, with a
+    `bias_instability` as the walk that it is over a short time.
+    """
     attitude_noise: Vector | None = None
     """Standard deviation of a measured attitude about each axis of its sensor (rad); default: the sensor's
     own.
@@ -602,7 +634,8 @@ class AttitudeEstimator(Part):
     """
     field_degree: int | None = None
     """Degree of the magnetic field that the filter takes as the reference of magnetometers, from 1 to that
-    of the environment's; default: the environment's field itself, without a model error.
+    of the environment's; default: the environment's field itself, without a model error. The error of a
+    lower degree is correlated in time: cover it by `field_noise`.
     """
     sun_noise: float | None = None
     """Standard deviation of a measured direction to the Sun (rad); default: that of the Sun sensor or
@@ -644,8 +677,8 @@ class AttitudeLaw(Part):
         bandwidth: Bandwidth wn (rad/s): the natural frequency of the error of a rigid body.
         damping: Damping ratio zeta of the error. Default: 0.7.
         inertia: Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default:
-            the body's own.
-        error: How a rotation is converted into an error, on a body with three axes.
+            the body's own in each run, so write it out to study its errors.
+        error: How a rotation is converted into an error, on a body with three axes; default: `quaternion`.
         integral: Integral of the error; none by default.
         rate_limit: Largest rate at which an error is corrected (rad/s); no limit by default.
         filters: Filters of the fed-back acceleration, applied in this order.
@@ -661,10 +694,10 @@ class AttitudeLaw(Part):
     """Damping ratio zeta of the error. Default: 0.7."""
     inertia: Rows | None = None
     """Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's
-    own.
+    own in each run, so write it out to study its errors.
     """
     error: Literal["quaternion", "rodrigues"] | None = None
-    """How a rotation is converted into an error, on a body with three axes."""
+    """How a rotation is converted into an error, on a body with three axes; default: `quaternion`."""
     integral: Integral | None = None
     """Integral of the error; none by default."""
     rate_limit: float | None = None
@@ -678,29 +711,31 @@ class AttitudeTarget(Part):
     axis.
 
     Args:
-        from_: Start time (s).
-        frame: Frame relative to which the attitude is given.
+        from_: Start time (s), later than that of the target before.
+        frame: Frame relative to which the attitude is given; default: inertial.
         primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
             are relative to the attitude that these two give.
         secondary: Axis of the body that is as near to a direction as `primary` lets it.
-        roll: Roll (rad). Default: 0.0.
+        roll: Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned
+            axis, then roll. Default: 0.0.
         pitch: Pitch (rad). Default: 0.0.
         yaw: Yaw (rad). Default: 0.0.
         acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
             jumps.
         rate_limit: Largest rate of the slew (rad/s); no limit by default.
-        profile: How the rate of the slew rises and falls.
+        profile: How the rate of the slew rises and falls; default: trapezoid.
         command: Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
-        duration: Duration of the slew by that command (s).
+        duration: Duration of the slew by that command (s), without what a shaper adds and without the decay
+            of a rate before it.
         shaper: Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.
         table: Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at
             rest at both ends.
     """
 
     from_: float
-    """Start time (s)."""
+    """Start time (s), later than that of the target before."""
     frame: Literal["inertial", "nadir", "sun"] | None = None
-    """Frame relative to which the attitude is given."""
+    """Frame relative to which the attitude is given; default: inertial."""
     primary: PointedAxis | None = None
     """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
     relative to the attitude that these two give.
@@ -708,7 +743,9 @@ class AttitudeTarget(Part):
     secondary: PointedAxis | None = None
     """Axis of the body that is as near to a direction as `primary` lets it."""
     roll: float | None = None
-    """Roll (rad). Default: 0.0."""
+    """Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned axis,
+    then roll. Default: 0.0.
+    """
     pitch: float | None = None
     """Pitch (rad). Default: 0.0."""
     yaw: float | None = None
@@ -718,11 +755,13 @@ class AttitudeTarget(Part):
     rate_limit: float | None = None
     """Largest rate of the slew (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
-    """How the rate of the slew rises and falls."""
+    """How the rate of the slew rises and falls; default: trapezoid."""
     command: CommandKind | None = None
     """Command planned for the slew, in place of `acceleration`; it may leave modes at rest."""
     duration: float | None = None
-    """Duration of the slew by that command (s)."""
+    """Duration of the slew by that command (s), without what a shaper adds and without the decay of a rate
+    before it.
+    """
     shaper: ShaperKind | None = None
     """Shaper that suppresses modes: the acceleration of the slew is convolved with impulses."""
     table: Sequence[AttitudeAt] | None = None
@@ -846,7 +885,7 @@ class ClampedMode(Part):
             of any length.
         rotation: Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
         moments: First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows
-            along r, columns along phi.
+            along r, columns along phi. `rotation` follows from them, and is left out or agrees.
         displacement: Modal displacement at the start (m sqrt(kg)). Default: 0.0.
         rate: Modal rate at the start (m sqrt(kg)/s). Default: 0.0.
         shapes: Shape of the mode at each point of the appendage, relative to the fixed root, by the name of
@@ -867,7 +906,7 @@ class ClampedMode(Part):
     """Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m)."""
     moments: Rows | None = None
     """First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows along r,
-    columns along phi.
+    columns along phi. `rotation` follows from them, and is left out or agrees.
     """
     displacement: float | None = None
     """Modal displacement at the start (m sqrt(kg)). Default: 0.0."""
@@ -936,7 +975,7 @@ class ControlMomentGyros(Part):
         steering: How the demanded torque becomes gimbal rates. Default: "singularity_robust".
         robust: The weight of `singularity_robust` steering.
         null_motion: Null motion towards preferred gimbal angles; none by default.
-        faults: Intervals in which gimbals fail.
+        faults: Intervals in which the gimbal rates fail: of all, or of the `gimbal` of a number from 1.
     """
 
     _tag: ClassVar[str | None] = "control_moment_gyros"
@@ -972,7 +1011,7 @@ class ControlMomentGyros(Part):
     null_motion: NullMotion | None = None
     """Null motion towards preferred gimbal angles; none by default."""
     faults: Sequence[FailureKind] | None = None
-    """Intervals in which gimbals fail."""
+    """Intervals in which the gimbal rates fail: of all, or of the `gimbal` of a number from 1."""
 
 
 class Correlated(Part):
@@ -1011,21 +1050,27 @@ class DampingGuards(Part):
     """Guards of active damping.
 
     Args:
-        dead_zone: Suppress pulses that would drive the rigid motion out of the dead zone. Default: true.
+        dead_zone: Suppress pulses after which the rigid motion would need one. Default: true.
         eligibility: Without the predictor, damp only modes whose phase factor is at least 0.5. Default:
             true.
-        residual: Act only while the innovations of the observer are small. Default: true.
-        watchdog: Pause active damping when the pulses do not help. Default: true.
+        residual: Act only while the observer tracks: the mean square innovation is below a tenth of that of
+            the elastic rate, or below (3.16e-6 rad/s)². Default: true.
+        watchdog: Pause active damping for 300 cycles if the mean elastic rate of 75 cycles with a pulse
+            exceeds 0.9 times that of the 75 before. Default: true.
     """
 
     dead_zone: bool | None = None
-    """Suppress pulses that would drive the rigid motion out of the dead zone. Default: true."""
+    """Suppress pulses after which the rigid motion would need one. Default: true."""
     eligibility: bool | None = None
     """Without the predictor, damp only modes whose phase factor is at least 0.5. Default: true."""
     residual: bool | None = None
-    """Act only while the innovations of the observer are small. Default: true."""
+    """Act only while the observer tracks: the mean square innovation is below a tenth of that of the
+    elastic rate, or below (3.16e-6 rad/s)². Default: true.
+    """
     watchdog: bool | None = None
-    """Pause active damping when the pulses do not help. Default: true."""
+    """Pause active damping for 300 cycles if the mean elastic rate of 75 cycles with a pulse exceeds 0.9
+    times that of the 75 before. Default: true.
+    """
 
 
 class Dead(Part):
@@ -1089,26 +1134,30 @@ class Disturbance(Part):
     """A disturbance: a torque about an axis, or a force at a point.
 
     Args:
-        about: Axis about which it acts, on a body with three.
+        about: Axis about which it acts at the first point, on a body with three, where a torque must have
+            one.
         torque: Torque (N m). Default: 0.0.
-        sines: Sine terms added to the torque, on a `[spacecraft]`.
+        sines: Sine terms added to the torque, on a `[spacecraft]`: amplitude sin(frequency t + phase), t
+            from the start of the run.
         force: Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck
             jet, a push.
         point: Name of the point at which the force acts; default: the first.
         noise: Spectral density of white noise added to the torque ((N m)² s); each draw is held for
             `period`. Default: 0.0.
-        pulse: Pulses in place of a steady torque or force.
+        pulse: Pulses in place of a steady torque or force, each at the start of a period.
         period: Time for which a draw of the noise is held (s).
         from_: Start time (s). Default: 0.0.
         to: End time (s); default: the end of the run.
     """
 
     about: Literal["roll", "pitch", "yaw"] | None = None
-    """Axis about which it acts, on a body with three."""
+    """Axis about which it acts at the first point, on a body with three, where a torque must have one."""
     torque: float | None = None
     """Torque (N m). Default: 0.0."""
     sines: Sequence[Sine] | None = None
-    """Sine terms added to the torque, on a `[spacecraft]`."""
+    """Sine terms added to the torque, on a `[spacecraft]`: amplitude sin(frequency t + phase), t from the
+    start of the run.
+    """
     force: Vector | None = None
     """Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a
     push.
@@ -1120,7 +1169,7 @@ class Disturbance(Part):
     Default: 0.0.
     """
     pulse: Pulses | None = None
-    """Pulses in place of a steady torque or force."""
+    """Pulses in place of a steady torque or force, each at the start of a period."""
     period: float | None = None
     """Time for which a draw of the noise is held (s)."""
     from_: float | None = None
@@ -1133,42 +1182,49 @@ class Drag(Part):
     """Drag of the atmosphere.
 
     Args:
-        plates: The plates.
-        model: Model of the density.
+        plates: The plates: the force is -rho/2 C A (n.v) v where the outward normal n faces the flow; a
+            plate with two sides is two entries.
+        model: Model of the density; default: exponential.
         density: Density of the exponential model (kg/m³), at `altitude`.
         scale_height: Scale height, in which the density falls to 1/e (m); default: the density is uniform.
-        altitude: Height above the planet's radius at which `density` holds (m); default: that of the semi-
-            major axis.
-        table: Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a
-            .csv file.
+        altitude: Height above the planet's radius at which `density` holds (m), required with a `tle` or an
+            `ephemeris`; default: that of the semi-major axis.
+        table: Heights above the ellipsoid of WGS 84 and densities (m, kg/m³) of the model `table`,
+            exponential between rows, or the path of a .csv file; they must cover the orbit.
         bulge_exponent: Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the
             equator, 6 for polar ones; default: 4.
-        scale: Factor of the density, of every model; default: 1.
+        scale: Factor of the density, of every model, from 0.001 to 1000, for campaigns and worst cases;
+            default: 1.
         coefficient: Drag coefficient. Default: 2.2.
         rotation: Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default:
             7.292115e-05.
     """
 
     plates: Sequence[DragPlate]
-    """The plates."""
+    """The plates: the force is -rho/2 C A (n.v) v where the outward normal n faces the flow; a plate with
+    two sides is two entries.
+    """
     model: Literal["exponential", "harris_priester", "table"] | None = None
-    """Model of the density."""
+    """Model of the density; default: exponential."""
     density: float | None = None
     """Density of the exponential model (kg/m³), at `altitude`."""
     scale_height: float | None = None
     """Scale height, in which the density falls to 1/e (m); default: the density is uniform."""
     altitude: float | None = None
-    """Height above the planet's radius at which `density` holds (m); default: that of the semi-major axis.
+    """Height above the planet's radius at which `density` holds (m), required with a `tle` or an
+    `ephemeris`; default: that of the semi-major axis.
     """
     table: Rows | str | None = None
-    """Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a .csv file.
+    """Heights above the ellipsoid of WGS 84 and densities (m, kg/m³) of the model `table`, exponential
+    between rows, or the path of a .csv file; they must cover the orbit.
     """
     bulge_exponent: float | None = None
     """Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the equator, 6 for
     polar ones; default: 4.
     """
     scale: float | None = None
-    """Factor of the density, of every model; default: 1."""
+    """Factor of the density, of every model, from 0.001 to 1000, for campaigns and worst cases; default: 1.
+    """
     coefficient: float | None = None
     """Drag coefficient. Default: 2.2."""
     rotation: float | None = None
@@ -1295,7 +1351,7 @@ class ElasticStates(Part):
     """Elastic modes as states of the filter.
 
     Args:
-        modes: Indices of the free modes.
+        modes: Indices of the free modes, as `flexsc modes` lists them.
         noise: Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5).
         frequencies: Natural frequencies in the filter's model (rad/s); default: the body's own.
         factor: Factor on the frequencies: the error of the filter's model. Default: 1.0.
@@ -1303,14 +1359,15 @@ class ElasticStates(Part):
             then identifies; default: it takes them as known.
         frequency_walk: Random walk of the logarithm of each identified frequency (1/sqrt(s)); default:
             none.
-        displacement: Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001.
+        displacement: Standard deviation of each displacement at the start (m sqrt(kg)), about a mode at
+            rest. Default: 0.001.
         rate: Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement
             times the frequency.
         feeds: Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid.
     """
 
     modes: Sequence[int]
-    """Indices of the free modes."""
+    """Indices of the free modes, as `flexsc modes` lists them."""
     noise: float
     """Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5)."""
     frequencies: Vector | None = None
@@ -1324,7 +1381,9 @@ class ElasticStates(Part):
     frequency_walk: float | None = None
     """Random walk of the logarithm of each identified frequency (1/sqrt(s)); default: none."""
     displacement: float | None = None
-    """Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001."""
+    """Standard deviation of each displacement at the start (m sqrt(kg)), about a mode at rest. Default:
+    0.001.
+    """
     rate: float | None = None
     """Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times
     the frequency.
@@ -1358,13 +1417,15 @@ class Environment(Part):
     Args:
         orbit: Orbit of the body; default: none, or the one given with a torque below.
         magnetic_field: The magnetic field of the orbit's planet.
-        sun: Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet
-            casts a shadow.
-        shadow: Shape of the shadow that the orbit's planet casts; default: a cone.
+        sun: Direction to the Sun in inertial axes, of any length, constant and at 1 au, or `"epoch"`: that
+            from the Earth at the date, in equatorial axes with x to the equinox, within 0.01 degrees. The
+            orbit's planet casts a shadow.
+        shadow: Shape of the shadow that the orbit's planet casts, whose edges are events; it needs `orbit`
+            and `sun`. Default: a cone.
         gravity_gradient: Gravity gradient of a circular orbit.
         solar_pressure: Pressure of sunlight.
         dipole: A magnetic moment of the body in the field of its planet.
-        drag: Drag of the atmosphere on plates.
+        drag: Drag of the atmosphere on plates: a torque, by which the orbit does not decay.
         torque: A torque that is constant in inertial axes (N m).
     """
 
@@ -1373,11 +1434,14 @@ class Environment(Part):
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
     sun: Vector | Literal["epoch"] | None = None
-    """Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a
-    shadow.
+    """Direction to the Sun in inertial axes, of any length, constant and at 1 au, or `"epoch"`: that from
+    the Earth at the date, in equatorial axes with x to the equinox, within 0.01 degrees. The orbit's
+    planet casts a shadow.
     """
     shadow: Literal["cone", "cylinder"] | None = None
-    """Shape of the shadow that the orbit's planet casts; default: a cone."""
+    """Shape of the shadow that the orbit's planet casts, whose edges are events; it needs `orbit` and
+    `sun`. Default: a cone.
+    """
     gravity_gradient: GravityGradient | None = None
     """Gravity gradient of a circular orbit."""
     solar_pressure: SolarPressure | None = None
@@ -1385,7 +1449,7 @@ class Environment(Part):
     dipole: Dipole | None = None
     """A magnetic moment of the body in the field of its planet."""
     drag: Drag | None = None
-    """Drag of the atmosphere on plates."""
+    """Drag of the atmosphere on plates: a torque, by which the orbit does not decay."""
     torque: Vector | None = None
     """A torque that is constant in inertial axes (N m)."""
 
@@ -1394,8 +1458,11 @@ class EphemerisOrbit(Part):
     """Orbit by positions at instants.
 
     Args:
-        ephemeris: Positions, or the path of their file.
-        frame: Axes of the rows; default: those that the file names, else the run's inertial axes.
+        ephemeris: Positions, rows [t, x, y, z] (s, m) in inertial axes from the planet's centre, or the
+            path of their file.
+        frame: Axes of the rows: `EME2000`, `GCRF` and `ICRF` are rotated by the precession to the start,
+            which needs a date, the others are taken as inertial axes; default: those that the file names,
+            else the run's inertial axes.
         gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
@@ -1403,9 +1470,14 @@ class EphemerisOrbit(Part):
     """
 
     ephemeris: Rows | str
-    """Positions, or the path of their file."""
+    """Positions, rows [t, x, y, z] (s, m) in inertial axes from the planet's centre, or the path of their
+    file.
+    """
     frame: Literal["EME2000", "GCRF", "ICRF", "MOD", "TEME", "TOD"] | None = None
-    """Axes of the rows; default: those that the file names, else the run's inertial axes."""
+    """Axes of the rows: `EME2000`, `GCRF` and `ICRF` are rotated by the precession to the start, which
+    needs a date, the others are taken as inertial axes; default: those that the file names, else the
+    run's inertial axes.
+    """
     gravity: float | None = None
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
@@ -1437,10 +1509,12 @@ class ExtendedKalman(Part):
     """An extended Kalman filter of the motion and the natural frequencies.
 
     Args:
-        modes: Modes of the filter's model; default: the body's own at the start.
+        modes: Modes of the filter's model; default: the body's own at the start of each run.
         moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
             1e-13.
-        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        angle_noise: Standard deviation of the measured angle (rad), required where the sensor has none,
+            such as a gyro; default: that of the sensor, with the square of its `resolution` over 12 added
+            to the variance.
         initial: Standard deviations of the estimate at the start.
         prior: Initial state estimate of the filter. Default: "drawn".
         dominant: Criterion for the dominant mode. Default: "excitability".
@@ -1450,14 +1524,16 @@ class ExtendedKalman(Part):
             angle and rate. By default, `modes` for a law that reads the dominant mode, else `hub`.
         watch_only: Whether the filter runs for assessment only: the law does not read it.
         ratios: Which frequencies drift together. Default: "common".
-        ratio: Initial estimate of the frequency ratio. Default: 1.0.
+        ratio: Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn
+            around it. Default: 1.0.
         ratio_sd: Standard deviation of the initial ratio. Default: 0.03.
         ratio_rate_sd: Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s).
             Default: 0.003.
         ratio_noise: Spectral density of the white noise in a ratio (1/s). Default: 1e-08.
         ratio_rate_noise: Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08.
         bounds: Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
-        substeps: Number of prediction steps per period. Default: 2.
+        substeps: Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default:
+            2.
         gate: Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios
             are not updated. Default: 3.0.
     """
@@ -1465,11 +1541,13 @@ class ExtendedKalman(Part):
     _tag: ClassVar[str | None] = "extended_kalman"
 
     modes: Sequence[Mode] | None = None
-    """Modes of the filter's model; default: the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start of each run."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); default: that of the sensor."""
+    """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
+    default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
+    """
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -1488,7 +1566,9 @@ class ExtendedKalman(Part):
     ratios: Literal["common", "each"] | None = None
     """Which frequencies drift together. Default: "common"."""
     ratio: float | None = None
-    """Initial estimate of the frequency ratio. Default: 1.0."""
+    """Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn around it.
+    Default: 1.0.
+    """
     ratio_sd: float | None = None
     """Standard deviation of the initial ratio. Default: 0.03."""
     ratio_rate_sd: float | None = None
@@ -1500,7 +1580,7 @@ class ExtendedKalman(Part):
     bounds: Vector | None = None
     """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
     substeps: int | None = None
-    """Number of prediction steps per period. Default: 2."""
+    """Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default: 2."""
     gate: float | None = None
     """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
     updated. Default: 3.0.
@@ -1512,18 +1592,23 @@ class Friction(Part):
     wheel at rest.
 
     Args:
-        coulomb: Coulomb friction t (N m): one number for all wheels, or one for each. Default: 0.0.
+        coulomb: Coulomb friction t (N m), at most 10 times `torque` and 500 rad/s² times `inertia`: one
+            number for all wheels, or one for each. Default: 0.0.
         viscous: Viscous friction c (N m s/rad): one number for all wheels, or one for each. Default: 0.0.
-        breakaway: Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb
-            friction.
+        breakaway: Torque up to which the bearing holds a wheel at rest (N m): one number for all wheels, or
+            one for each; default: the Coulomb friction.
     """
 
     coulomb: float | Vector | None = None
-    """Coulomb friction t (N m): one number for all wheels, or one for each. Default: 0.0."""
+    """Coulomb friction t (N m), at most 10 times `torque` and 500 rad/s² times `inertia`: one number for
+    all wheels, or one for each. Default: 0.0.
+    """
     viscous: float | Vector | None = None
     """Viscous friction c (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
     breakaway: float | Vector | None = None
-    """Torque up to which the bearing holds a wheel at rest (N m); default: the Coulomb friction."""
+    """Torque up to which the bearing holds a wheel at rest (N m): one number for all wheels, or one for
+    each; default: the Coulomb friction.
+    """
 
 
 class Gain(Part, kw_only=False):
@@ -1634,7 +1719,7 @@ class Gyro(Part):
     Args:
         point: Point of the structure at which it is mounted, on a body with three axes; default: the first
             of the body's points.
-        period: Period of its samples (s); default: that of the law.
+        period: Period of its samples (s); default: that of the law, if it has one.
         noise: Standard deviation of the white noise about each axis (rad/s). Default: 0.0.
         bias: Constant error about each axis (rad/s). Default: 0.0.
         resolution: Quantum of the output about each axis (rad/s); 0 for none. Default: 0.0.
@@ -1644,8 +1729,9 @@ class Gyro(Part):
             over to the next sample; 0 for none.
         bias_instability: Standard deviation of the part of the bias about each axis that wanders,
             exponentially correlated (rad/s); 0 for none. It is 0 at the start.
-        correlation_time: Correlation time of that part (s).
-        latency: How late it reports a rate (s), a whole number of periods.
+        correlation_time: Correlation time of that part (s), required with it.
+        latency: How late it reports a rate (s), a whole number of periods; until the first report it gives
+            the rate of the start. Default: 0.
         scale: Relative error of the scale about each axis.
         misalignment: Misalignment (rad), on a body with three axes: row i gives what axis i measures of the
             rates about the other axes; the diagonal is 0.
@@ -1660,7 +1746,7 @@ class Gyro(Part):
     body's points.
     """
     period: float | None = None
-    """Period of its samples (s); default: that of the law."""
+    """Period of its samples (s); default: that of the law, if it has one."""
     noise: float | Vector | None = None
     """Standard deviation of the white noise about each axis (rad/s). Default: 0.0."""
     bias: float | Vector | None = None
@@ -1680,9 +1766,11 @@ class Gyro(Part):
     (rad/s); 0 for none. It is 0 at the start.
     """
     correlation_time: float | None = None
-    """Correlation time of that part (s)."""
+    """Correlation time of that part (s), required with it."""
     latency: float | None = None
-    """How late it reports a rate (s), a whole number of periods."""
+    """How late it reports a rate (s), a whole number of periods; until the first report it gives the rate
+    of the start. Default: 0.
+    """
     scale: float | Vector | None = None
     """Relative error of the scale about each axis."""
     misalignment: Rows | None = None
@@ -1723,22 +1811,25 @@ class Hinge(Part):
 
     Args:
         about: Axis through the root, in the axes of the appendage, of any nonzero length.
-        stiffness: Stiffness of its spring (N m/rad).
+        stiffness: Stiffness of its spring, above 0 (N m/rad); the spring is relaxed at angle 0.
         damping: Viscous damping (N m s/rad). Default: 0.0.
-        angle: Angle at the start (rad); at 0 the spring is relaxed. Default: 0.0.
-        rate: Rate at the start (rad/s). Default: 0.0.
+        angle: Angle at the start (rad), -3.2 to 3.2; the hub starts with the attitude of the spacecraft
+            whatever the angle. Default: 0.0.
+        rate: Rate at the start (rad/s); the hub starts with the rate of the spacecraft. Default: 0.0.
     """
 
     about: Vector
     """Axis through the root, in the axes of the appendage, of any nonzero length."""
     stiffness: float
-    """Stiffness of its spring (N m/rad)."""
+    """Stiffness of its spring, above 0 (N m/rad); the spring is relaxed at angle 0."""
     damping: float | None = None
     """Viscous damping (N m s/rad). Default: 0.0."""
     angle: float | None = None
-    """Angle at the start (rad); at 0 the spring is relaxed. Default: 0.0."""
+    """Angle at the start (rad), -3.2 to 3.2; the hub starts with the attitude of the spacecraft whatever
+    the angle. Default: 0.0.
+    """
     rate: float | None = None
-    """Rate at the start (rad/s). Default: 0.0."""
+    """Rate at the start (rad/s); the hub starts with the rate of the spacecraft. Default: 0.0."""
 
 
 class HoldActuator(Part):
@@ -1746,17 +1837,20 @@ class HoldActuator(Part):
     start.
 
     Args:
-        period: Period (s).
-        phase: Time of the first period (s); default: 0.
+        period: Period of the hold (s): it gives the mean of the planned torque over the period plus the
+            law's torque at its start.
+        phase: Time of the first period (s), before which it gives nothing; default: 0.
         faults: Intervals in which the actuator fails.
     """
 
     _tag: ClassVar[str | None] = "hold"
 
     period: float
-    """Period (s)."""
+    """Period of the hold (s): it gives the mean of the planned torque over the period plus the law's torque
+    at its start.
+    """
     phase: float | None = None
-    """Time of the first period (s); default: 0."""
+    """Time of the first period (s), before which it gives nothing; default: 0."""
     faults: Sequence[FailureKind] | None = None
     """Intervals in which the actuator fails."""
 
@@ -1781,13 +1875,14 @@ class Imbalance(Part):
     `angle`.
 
     Args:
-        static: Static imbalance (kg m): the force once per turn; one number for all wheels, or one for
-            each. Default: 0.0.
-        dynamic: Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for
-            each. Default: 0.0.
+        static: Static imbalance (kg m): the force across the axis once per turn is this times the square of
+            the speed; one number for all wheels, or one for each. Default: 0.0.
+        dynamic: Dynamic imbalance (kg m²): the torque across the axis once per turn is this times the
+            square of the speed; one number for all wheels, or one for each. Default: 0.0.
         phase: Phase lead of the torque over the force (rad); one number for all wheels, or one for each.
             Default: 0.0.
-        angle: Angle of the rotor at the start (rad); one number for all wheels, or one for each.
+        angle: Angle of the rotor at the start (rad); one number for all wheels, or one for each: with equal
+            angles, wheels that turn against each other cancel in part.
         harmonics: Further harmonics of the speed, the same for all wheels.
         point: Point of the structure at which the wheels are mounted; default: the first of the body's
             points.
@@ -1795,19 +1890,21 @@ class Imbalance(Part):
     """
 
     static: float | Vector | None = None
-    """Static imbalance (kg m): the force once per turn; one number for all wheels, or one for each.
-    Default: 0.0.
+    """Static imbalance (kg m): the force across the axis once per turn is this times the square of the
+    speed; one number for all wheels, or one for each. Default: 0.0.
     """
     dynamic: float | Vector | None = None
-    """Dynamic imbalance (kg m²): the torque once per turn; one number for all wheels, or one for each.
-    Default: 0.0.
+    """Dynamic imbalance (kg m²): the torque across the axis once per turn is this times the square of the
+    speed; one number for all wheels, or one for each. Default: 0.0.
     """
     phase: float | Vector | None = None
     """Phase lead of the torque over the force (rad); one number for all wheels, or one for each. Default:
     0.0.
     """
     angle: float | Vector | None = None
-    """Angle of the rotor at the start (rad); one number for all wheels, or one for each."""
+    """Angle of the rotor at the start (rad); one number for all wheels, or one for each: with equal angles,
+    wheels that turn against each other cancel in part.
+    """
     harmonics: Sequence[Harmonic] | None = None
     """Further harmonics of the speed, the same for all wheels."""
     point: str | None = None
@@ -1871,33 +1968,35 @@ class Jets(Part):
     """Thrusters at points of a spatial body.
 
     Args:
-        specific_impulse: Specific impulse (s).
+        specific_impulse: Specific impulse (s): thrust per unit of propellant weight flow.
         thrusters: The thrusters.
-        minimum_on: Shortest pulse (s). Default: 0.0.
+        minimum_on: Shortest pulse (s); a shorter one is not given, and does not carry over to the next.
+            Default: 0.0.
         quantum: Quantum of a pulse's length (s); 0 for none. Default: 0.0.
-        period: Period of the pulses (s); default: that of the law.
+        period: Period of the pulses (s); default: that of the law, which must then be one for all axes.
         phase: Time of the first cycle of pulses, for jets with a `period` (s); default: 0.
         delay: Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle.
             Default: 0.
-        allocation: How the demand is converted into pulses.
+        allocation: How the demand is converted into pulses; default: `groups`.
         force_free: For `least_propellant`: whether the forces of the pulses must cancel.
         burns: For `least_propellant`: burns, in which a force is commanded beside the torques.
-        groups: For `groups`: the thrusters that act together.
-        faults: Intervals in which the jets fail.
+        groups: For `groups`: the thrusters that act together about each axis about which the jets act.
+        faults: Intervals in which the jets fail, all or the one named `thruster`: `stuck` at 1 fires all
+            the time, and `added` is a leak (N).
     """
 
     _tag: ClassVar[str | None] = "jets"
 
     specific_impulse: float
-    """Specific impulse (s)."""
+    """Specific impulse (s): thrust per unit of propellant weight flow."""
     thrusters: Sequence[Thruster]
     """The thrusters."""
     minimum_on: float | None = None
-    """Shortest pulse (s). Default: 0.0."""
+    """Shortest pulse (s); a shorter one is not given, and does not carry over to the next. Default: 0.0."""
     quantum: float | None = None
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
     period: float | None = None
-    """Period of the pulses (s); default: that of the law."""
+    """Period of the pulses (s); default: that of the law, which must then be one for all axes."""
     phase: float | None = None
     """Time of the first cycle of pulses, for jets with a `period` (s); default: 0."""
     delay: int | None = None
@@ -1905,25 +2004,29 @@ class Jets(Part):
     0.
     """
     allocation: Literal["groups", "least_propellant"] | None = None
-    """How the demand is converted into pulses."""
+    """How the demand is converted into pulses; default: `groups`."""
     force_free: bool | None = None
     """For `least_propellant`: whether the forces of the pulses must cancel."""
     burns: Sequence[Burn] | None = None
     """For `least_propellant`: burns, in which a force is commanded beside the torques."""
     groups: Groups | None = None
-    """For `groups`: the thrusters that act together."""
+    """For `groups`: the thrusters that act together about each axis about which the jets act."""
     faults: Sequence[FailureKind] | None = None
-    """Intervals in which the jets fail."""
+    """Intervals in which the jets fail, all or the one named `thruster`: `stuck` at 1 fires all the time,
+    and `added` is a leak (N).
+    """
 
 
 class Kalman(Part):
     """A Kalman filter of the motion, with constant natural frequencies.
 
     Args:
-        modes: Modes of the filter's model; default: the body's own at the start.
+        modes: Modes of the filter's model; default: the body's own at the start of each run.
         moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
             1e-13.
-        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        angle_noise: Standard deviation of the measured angle (rad), required where the sensor has none,
+            such as a gyro; default: that of the sensor, with the square of its `resolution` over 12 added
+            to the variance.
         initial: Standard deviations of the estimate at the start.
         prior: Initial state estimate of the filter. Default: "drawn".
         dominant: Criterion for the dominant mode. Default: "excitability".
@@ -1937,11 +2040,13 @@ class Kalman(Part):
     _tag: ClassVar[str | None] = "kalman"
 
     modes: Sequence[Mode] | None = None
-    """Modes of the filter's model; default: the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start of each run."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); default: that of the sensor."""
+    """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
+    default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
+    """
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -1963,7 +2068,8 @@ class Kepler(Part):
     """A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
 
     Args:
-        semi_major_axis: Semi-major axis (m); for a circular orbit, its radius.
+        semi_major_axis: Semi-major axis (m); for a circular orbit, its radius. Inertial axes are then those
+            of the planet's equator, z along its axis.
         eccentricity: Eccentricity. Default: 0.0.
         inclination: Inclination to the equator (rad). Default: 0.0.
         node: Angle from the inertial x to the ascending node (rad). Default: 0.0.
@@ -1974,12 +2080,15 @@ class Kepler(Part):
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
             Default: 6378137.0.
-        j2: Coefficient J2 of the planet's oblateness, which turns the plane and the perigee at their mean
-            rates: `true` for that of the Earth, or a number; default: a sphere.
+        j2: Coefficient J2 of the planet's oblateness, by which node, perigee and anomaly drift at their
+            mean rates, without the short-period terms of some kilometres: `true` for that of the Earth, or
+            a number; default: a sphere.
     """
 
     semi_major_axis: float
-    """Semi-major axis (m); for a circular orbit, its radius."""
+    """Semi-major axis (m); for a circular orbit, its radius. Inertial axes are then those of the planet's
+    equator, z along its axis.
+    """
     eccentricity: float | None = None
     """Eccentricity. Default: 0.0."""
     inclination: float | None = None
@@ -1996,13 +2105,15 @@ class Kepler(Part):
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
     j2: bool | float | None = None
-    """Coefficient J2 of the planet's oblateness, which turns the plane and the perigee at their mean rates:
-    `true` for that of the Earth, or a number; default: a sphere.
+    """Coefficient J2 of the planet's oblateness, by which node, perigee and anomaly drift at their mean
+    rates, without the short-period terms of some kilometres: `true` for that of the Earth, or a number;
+    default: a sphere.
     """
 
 
 class Lead(Part):
-    """(1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag.
+    """(1 + s/zero)/(1 + s/pole): a lead with the zero below the pole, else a lag, exact at sqrt(zero pole),
+    where its phase is largest.
 
     Args:
         zero: The zero (rad/s).
@@ -2123,8 +2234,9 @@ class MagneticField(Part):
     r - g) with r the direction from the planet's centre and g, which points south.
 
     Args:
-        model: Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario
-            with an `epoch` unless `coefficients` or `radius` differ from their defaults.
+        model: Model of the field, which stays that of the `epoch` during the run and is refused outside its
+            years; default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch`
+            unless `coefficients` or `radius` differ from their defaults.
         table: Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model.
         degree: Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's
             highest, 13 of IGRF-14, 12 of WMM2025, and up to 13 of a table.
@@ -2135,12 +2247,13 @@ class MagneticField(Part):
             radius. Default: 6371200.0.
         rotation: Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
         meridian: Angle from the inertial x to the prime meridian at the start (rad); default: that of
-            Greenwich at the scenario's `epoch`, 0 without one.
+            Greenwich at the scenario's `epoch`, so that field and Sun belong to one hour, 0 without one.
     """
 
     model: Literal["dipole", "IGRF-14", "WMM2025", "table"] | None = None
-    """Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an
-    `epoch` unless `coefficients` or `radius` differ from their defaults.
+    """Model of the field, which stays that of the `epoch` during the run and is refused outside its years;
+    default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch` unless
+    `coefficients` or `radius` differ from their defaults.
     """
     table: Mapping[str, object] | str | None = None
     """Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model."""
@@ -2160,7 +2273,7 @@ class MagneticField(Part):
     """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
     meridian: float | None = None
     """Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the
-    scenario's `epoch`, 0 without one.
+    scenario's `epoch`, so that field and Sun belong to one hour, 0 without one.
     """
 
 
@@ -2265,9 +2378,10 @@ class Matrices(Part):
     """The matrices of a structure.
 
     Args:
-        mass: Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements).
+        mass: Mass matrix, symmetric and positive definite, up to order 2000 (kg m² for angles, kg for
+            displacements): rows, or a file.
         stiffness: Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for
-            angles, N/m for displacements).
+            angles, N/m for displacements): rows, or a file.
         coordinates: Names of the coordinates; default: `q0`, `q1` and so on.
         hub: Index of the coordinate that is the hub's angle, counted from 0. Default: 0.
         rotation: Displacement of each coordinate under a unit rigid rotation; default: 1 for the hub's
@@ -2285,10 +2399,12 @@ class Matrices(Part):
     _tag: ClassVar[str | None] = "matrices"
 
     mass: Rows | str
-    """Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements)."""
+    """Mass matrix, symmetric and positive definite, up to order 2000 (kg m² for angles, kg for
+    displacements): rows, or a file.
+    """
     stiffness: Rows | str
     """Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for
-    displacements).
+    displacements): rows, or a file.
     """
     coordinates: Sequence[str] | None = None
     """Names of the coordinates; default: `q0`, `q1` and so on."""
@@ -2351,7 +2467,8 @@ class Mode(Part):
     Args:
         frequency: Natural frequency w (rad/s).
         gain: Modal gain k: modal acceleration per unit of rigid acceleration.
-        damping: Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0.
+        damping: Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an
+            `[estimator.envelope]`. Default: 0.0.
         displacement: Displacement at the start (rad). Default: 0.0.
         rate: Rate at the start (rad/s). Default: 0.0.
     """
@@ -2361,7 +2478,9 @@ class Mode(Part):
     gain: float
     """Modal gain k: modal acceleration per unit of rigid acceleration."""
     damping: float | None = None
-    """Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0."""
+    """Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an
+    `[estimator.envelope]`. Default: 0.0.
+    """
     displacement: float | None = None
     """Displacement at the start (rad). Default: 0.0."""
     rate: float | None = None
@@ -2396,7 +2515,7 @@ class ModeTarget(Part):
     rotated x axis.
 
     Args:
-        frame: Frame relative to which the attitude is given.
+        frame: Frame relative to which the attitude is given; default: inertial.
         primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
             are relative to the attitude that these two give.
         secondary: Axis of the body that is as near to a direction as `primary` lets it.
@@ -2406,13 +2525,13 @@ class ModeTarget(Part):
         acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
             jumps.
         rate_limit: Largest rate of the slew (rad/s); no limit by default.
-        profile: How the rate of the slew rises and falls.
+        profile: How the rate of the slew rises and falls; default: trapezoid.
         slew_from: Start of the slew; default: the estimated attitude after a law that does not control the
             attitude, else the reference.
     """
 
     frame: Literal["inertial", "nadir", "sun"] | None = None
-    """Frame relative to which the attitude is given."""
+    """Frame relative to which the attitude is given; default: inertial."""
     primary: PointedAxis | None = None
     """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
     relative to the attitude that these two give.
@@ -2430,7 +2549,7 @@ class ModeTarget(Part):
     rate_limit: float | None = None
     """Largest rate of the slew (rad/s); no limit by default."""
     profile: Literal["trapezoid", "versine"] | None = None
-    """How the rate of the slew rises and falls."""
+    """How the rate of the slew rises and falls; default: trapezoid."""
     slew_from: Literal["reference", "estimate"] | None = None
     """Start of the slew; default: the estimated attitude after a law that does not control the attitude,
     else the reference.
@@ -2493,12 +2612,12 @@ class NullMotion(Part):
     """Null motion: gimbal rates whose torques cancel each other, towards preferred gimbal angles.
 
     Args:
-        angles: Preferred angle of each gimbal (rad).
+        angles: Preferred angle of each gimbal, of four or more (rad).
         gain: Gain with which the gimbals turn towards them, as far as no torque results (1/s).
     """
 
     angles: Vector
-    """Preferred angle of each gimbal (rad)."""
+    """Preferred angle of each gimbal, of four or more (rad)."""
     gain: float
     """Gain with which the gimbals turn towards them, as far as no torque results (1/s)."""
 
@@ -2515,9 +2634,9 @@ class OperatingMode(Part):
 
     Args:
         name: Name: letters, digits, `_` and `-`.
-        law: The law.
+        law: The law: any but `stages`.
         target: Target attitude of a body with three axes, from the start of the mode on; default: the
-            target stays.
+            target stays, and `[[target]]` holds if no mode has one.
         sensors: Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for
             the second of a kind; default: all. The others give no readings.
         actuators: Kinds of the `[[actuator]]` entries that execute the commands of the law, such as
@@ -2528,9 +2647,10 @@ class OperatingMode(Part):
     name: str
     """Name: letters, digits, `_` and `-`."""
     law: LawKind
-    """The law."""
+    """The law: any but `stages`."""
     target: ModeTarget | None = None
-    """Target attitude of a body with three axes, from the start of the mode on; default: the target stays.
+    """Target attitude of a body with three axes, from the start of the mode on; default: the target stays,
+    and `[[target]]` holds if no mode has one.
     """
     sensors: Sequence[str] | None = None
     """Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for the second
@@ -2649,11 +2769,11 @@ class Pd(Part):
         k_d: Derivative gain (N m s/rad; without the second where the difference is raw).
         period: Period of its samples (s).
         differentiation: How the derivative is taken. Default: "exact".
-        error: How a rotation is converted into an error, on a body with three axes.
+        error: How a rotation is converted into an error, on a body with three axes; default: `quaternion`.
         extra: Extra loop on the dominant mode.
-        limit: Largest torque (N m); no limit by default.
-        track: Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
-            manoeuvre.
+        limit: Largest torque (N m; for a wheel, in units of its command); no limit by default.
+        track: Whether the law tracks a manoeuvre while it lasts; otherwise it waits and takes over at the
+            end of the manoeuvre.
     """
 
     _tag: ClassVar[str | None] = "pd"
@@ -2667,14 +2787,14 @@ class Pd(Part):
     differentiation: Literal["exact", "difference", "raw"] | None = None
     """How the derivative is taken. Default: "exact"."""
     error: Literal["quaternion", "rodrigues"] | None = None
-    """How a rotation is converted into an error, on a body with three axes."""
+    """How a rotation is converted into an error, on a body with three axes; default: `quaternion`."""
     extra: ExtraKind | None = None
     """Extra loop on the dominant mode."""
     limit: float | None = None
-    """Largest torque (N m); no limit by default."""
+    """Largest torque (N m; for a wheel, in units of its command); no limit by default."""
     track: bool | None = None
-    """Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
-    manoeuvre.
+    """Whether the law tracks a manoeuvre while it lasts; otherwise it waits and takes over at the end of
+    the manoeuvre.
     """
 
 
@@ -2702,7 +2822,8 @@ class Periodic(Part):
 
     Args:
         constant: Constant part (N m).
-        amplitude: Amplitude of the periodic part (N m).
+        amplitude: Amplitude of the periodic part (N m), about each axis: amplitude sin(2 pi t/period +
+            phase).
         period: Period (s); about 5560 s for a station in a low orbit. Default: 5560.0.
         phase: Phase at the start (rad).
     """
@@ -2710,7 +2831,7 @@ class Periodic(Part):
     constant: Vector | None = None
     """Constant part (N m)."""
     amplitude: Vector | None = None
-    """Amplitude of the periodic part (N m)."""
+    """Amplitude of the periodic part (N m), about each axis: amplitude sin(2 pi t/period + phase)."""
     period: float | None = None
     """Period (s); about 5560 s for a station in a low orbit. Default: 5560.0."""
     phase: Vector | None = None
@@ -2721,7 +2842,7 @@ class PhasePlane(Part):
     """A relay in the phase plane, with pulses of computed length.
 
     Args:
-        period: Cycle of gyro, estimator, law and jets (s).
+        period: Cycle of law and jets, and of gyro and estimator if they have no period of their own (s).
         dead_zone: Half width of the dead zone (rad).
         rate_limit: Largest rate at which the law turns the body (rad/s).
         switch_on: Rate error above which the jets begin to fire (rad/s); near and beyond the edges of the
@@ -2737,7 +2858,7 @@ class PhasePlane(Part):
     _tag: ClassVar[str | None] = "phase_plane"
 
     period: float
-    """Cycle of gyro, estimator, law and jets (s)."""
+    """Cycle of law and jets, and of gyro and estimator if they have no period of their own (s)."""
     dead_zone: float
     """Half width of the dead zone (rad)."""
     rate_limit: float
@@ -2771,7 +2892,8 @@ class Planar(Part):
         damping_matrix: Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`[i][j] x_j' to
             x_i'', beside the damping ratios.
         modes: Elastic modes.
-        outputs: Coordinates that are observed in addition to the hub's angle.
+        outputs: Coordinates that are observed in addition to the hub's angle: y = rigid x_r + sum of
+            `modes`[i] x_i.
     """
 
     _tag: ClassVar[str | None] = "planar"
@@ -2791,7 +2913,8 @@ class Planar(Part):
     modes: Sequence[Mode] | None = None
     """Elastic modes."""
     outputs: Sequence[Output] | None = None
-    """Coordinates that are observed in addition to the hub's angle."""
+    """Coordinates that are observed in addition to the hub's angle: y = rigid x_r + sum of `modes`[i] x_i.
+    """
 
 
 class Point(Part):
@@ -2893,10 +3016,10 @@ class RandomSearch(Part):
 
     Args:
         step: Largest move of the gain in one window, delta `k_t`.
-        bounds: Smallest and largest gain.
-        tunes: Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a
-            PD law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
-        objective: Quantity that is measured over each window and made smaller.
+        bounds: Smallest and largest gain, which include its value at the start; for `k_t` between 0 and 1.
+        tunes: Tuned parameter of the law, by its key within the law's table: `k_t` of a relay (the
+            default), `k_p` of a PD law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
+        objective: Quantity that is measured over each window and made smaller; default: `envelope_mean`.
         window: Length of the windows (s); for `envelope_mean`, they are those of the
             `[estimator.envelope]`.
         tolerance: A relative change of the objective below this counts as settled, `delta_0`. Default:
@@ -2913,10 +3036,10 @@ class RandomSearch(Part):
     step: float
     """Largest move of the gain in one window, delta `k_t`."""
     bounds: Vector
-    """Smallest and largest gain."""
+    """Smallest and largest gain, which include its value at the start; for `k_t` between 0 and 1."""
     tunes: str | None = None
-    """Tuned parameter of the law, by its key within the law's table: `k_t` of a relay, `k_p` of a PD law,
-    `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
+    """Tuned parameter of the law, by its key within the law's table: `k_t` of a relay (the default), `k_p`
+    of a PD law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
     """
     objective: Literal[
         "envelope_mean",
@@ -2930,7 +3053,7 @@ class RandomSearch(Part):
         "firings",
         "wheel_power_mean",
     ] | None = None
-    """Quantity that is measured over each window and made smaller."""
+    """Quantity that is measured over each window and made smaller; default: `envelope_mean`."""
     window: float | None = None
     """Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`."""
     tolerance: float | None = None
@@ -2948,7 +3071,7 @@ class RandomSearch(Part):
 
 
 class Recurrence(Part):
-    """The recurrence of [Timakov14].
+    """The recurrence of [Timakov14], for one mode about each axis.
 
     Args:
         damping: Damping ratio of the mode, which is not identified. Default: 0.005.
@@ -3059,7 +3182,7 @@ class Relay(Part):
         hysteresis: Hysteresis, gamma (rad): how far back inside a boundary the brake begins.
         strong: Strong torque `m_u` (N m; rad/s² on a body without inertia).
         weak: Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia).
-        k_t: Braking gain: duration of the brake per second of the push.
+        k_t: Braking gain, between 0 and 1: duration of the brake per second of the push.
         sides: Which boundaries of the dead zone push back. Default: "two".
     """
 
@@ -3074,7 +3197,7 @@ class Relay(Part):
     weak: float
     """Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia)."""
     k_t: float
-    """Braking gain: duration of the brake per second of the push."""
+    """Braking gain, between 0 and 1: duration of the brake per second of the push."""
     sides: Literal["two", "one"] | None = None
     """Which boundaries of the dead zone push back. Default: "two"."""
 
@@ -3150,14 +3273,14 @@ class RigidRate(Part):
     """The rigid rates of a spatial body.
 
     Args:
-        correction: Fraction l of the innovation by which each sample corrects the rate.
+        correction: Fraction l of the innovation, between 0 and 1, by which each sample corrects the rate.
         rate: Estimated rates before the first sample (rad/s). Default: 0.0.
     """
 
     _tag: ClassVar[str | None] = "rigid_rate"
 
     correction: float
-    """Fraction l of the innovation by which each sample corrects the rate."""
+    """Fraction l of the innovation, between 0 and 1, by which each sample corrects the rate."""
     rate: float | Vector | None = None
     """Estimated rates before the first sample (rad/s). Default: 0.0."""
 
@@ -3192,8 +3315,8 @@ class Rotor(Part):
     Args:
         inertia: Moment of inertia (kg m²).
         speed: Speed at the start (rad/s). Default: 0.0.
-        speed_limit: Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by
-            default.
+        speed_limit: Largest speed (rad/s), beyond which the motor cannot accelerate it, and with which a
+            `[law.relay]` needs a sampled sensor; no limit by default.
     """
 
     inertia: float
@@ -3201,15 +3324,17 @@ class Rotor(Part):
     speed: float | None = None
     """Speed at the start (rad/s). Default: 0.0."""
     speed_limit: float | None = None
-    """Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default."""
+    """Largest speed (rad/s), beyond which the motor cannot accelerate it, and with which a `[law.relay]`
+    needs a sampled sensor; no limit by default.
+    """
 
 
 class Sampled(Part):
     """A sample at each period, held until the next: guards are tested at samples.
 
     Args:
-        period: Period of the samples (s).
-        noise: Standard deviation of the white noise (rad). Default: 0.0.
+        period: Period of the samples (s), at which guards of the law are tested.
+        noise: Standard deviation of the white noise (rad), on three axes about each of them. Default: 0.0.
         bias: Constant error (rad). Default: 0.0.
         resolution: Quantum of the output (rad); 0 for none. Default: 0.0.
         rate_noise: Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro,
@@ -3222,9 +3347,9 @@ class Sampled(Part):
     _tag: ClassVar[str | None] = "sampled"
 
     period: float
-    """Period of the samples (s)."""
+    """Period of the samples (s), at which guards of the law are tested."""
     noise: float | None = None
-    """Standard deviation of the white noise (rad). Default: 0.0."""
+    """Standard deviation of the white noise (rad), on three axes about each of them. Default: 0.0."""
     bias: float | None = None
     """Constant error (rad). Default: 0.0."""
     resolution: float | None = None
@@ -3351,7 +3476,7 @@ class Shape(Part):
 
 
 class Silent(Part):
-    """It gives no measurement.
+    """It gives no measurement; the last one remains valid.
 
     Args:
         from_: Start time (s).
@@ -3424,8 +3549,9 @@ class Site(Part):
 
     Args:
         latitude: Geodetic latitude (rad).
-        longitude: Longitude east of Greenwich (rad).
-        height: Height above the ellipsoid (m). Default: 0.0.
+        longitude: Longitude east of Greenwich (rad), whose angle at the start is that of the `epoch`, or 0
+            without one.
+        height: Height above the ellipsoid of WGS 84 (m). Default: 0.0.
     """
 
     _tag: ClassVar[str | None] = "site"
@@ -3433,9 +3559,10 @@ class Site(Part):
     latitude: float
     """Geodetic latitude (rad)."""
     longitude: float
-    """Longitude east of Greenwich (rad)."""
+    """Longitude east of Greenwich (rad), whose angle at the start is that of the `epoch`, or 0 without one.
+    """
     height: float | None = None
-    """Height above the ellipsoid (m). Default: 0.0."""
+    """Height above the ellipsoid of WGS 84 (m). Default: 0.0."""
 
 
 class SmallAngles(Part):
@@ -3457,23 +3584,29 @@ class SolarPressure(Part):
     """Pressure of sunlight: one `force` at a point, or `plates`.
 
     Args:
-        force: The force (N), constant in inertial axes.
+        force: The force (N), constant in inertial axes whatever the Sun's distance; required without
+            `plates`.
         at: Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a
             spatial body.
-        plates: Plates that sunlight presses on.
+        plates: Plates in place of one force: where the normal n faces the Sun s with the cosine c, the
+            force is -P A c ((1 - specular) s + 2 (specular c + diffuse/3) n). A plate with two sides is two
+            entries; plates do not shade each other, and the force bends nothing.
         pressure: Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun =
             "epoch"` it falls with the square of the Sun's distance at the date.
         shadow: Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet.
     """
 
     force: Vector | None = None
-    """The force (N), constant in inertial axes."""
+    """The force (N), constant in inertial axes whatever the Sun's distance; required without `plates`."""
     at: Vector | None = None
     """Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
     """
     plates: Sequence[LitPlate] | None = None
-    """Plates that sunlight presses on."""
+    """Plates in place of one force: where the normal n faces the Sun s with the cosine c, the force is -P A
+    c ((1 - specular) s + 2 (specular c + diffuse/3) n). A plate with two sides is two entries; plates do
+    not shade each other, and the force bends nothing.
+    """
     pressure: float | None = None
     """Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun = "epoch"`
     it falls with the square of the Sun's distance at the date.
@@ -3494,13 +3627,15 @@ class Spacecraft(Part):
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
             inertial ones, or `"target"` for that of the target.
         attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
-            axes; default: none.
+            axes, each component from -2π to 2π; default: none.
         rate: Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for
             those of the target; without vibration they are the rates of the hub.
-        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
-        small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
-        whole_damping: Whether runs keep the full damping matrix of the free modes; default: if its off-
-            diagonal terms are not negligible.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000;
+            default: none.
+        small_angles: Small rotations about a fixed target, in closed form, in place of any rotation; `{}`
+            takes both defaults.
+        whole_damping: Whether runs keep the full damping matrix of the free modes, as linear tools always
+            do; default: if its off-diagonal terms are not negligible.
         points: Named points of the hub, at which jets and sensors are mounted; default: one at O, named
             `hub`.
     """
@@ -3518,20 +3653,24 @@ class Spacecraft(Part):
     ones, or `"target"` for that of the target.
     """
     attitude_error: Vector | None = None
-    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default:
-    none.
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each
+    component from -2π to 2π; default: none.
     """
     rate: Vector | Literal["target"] | None = None
     """Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of
     the target; without vibration they are the rates of the hub.
     """
     rate_error: Vector | None = None
-    """Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none."""
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default:
+    none.
+    """
     small_angles: SmallAngles | None = None
-    """Small rotations about a fixed target, in closed form, in place of any rotation."""
+    """Small rotations about a fixed target, in closed form, in place of any rotation; `{}` takes both
+    defaults.
+    """
     whole_damping: bool | None = None
-    """Whether runs keep the full damping matrix of the free modes; default: if its off-diagonal terms are
-    not negligible.
+    """Whether runs keep the full damping matrix of the free modes, as linear tools always do; default: if
+    its off-diagonal terms are not negligible.
     """
     points: Sequence[NamedPoint] | None = None
     """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""
@@ -3545,12 +3684,13 @@ class Spatial(Part):
         attitude: Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into
             inertial ones, or `"target"` for that of the target.
         attitude_error: Rotation vector (rad) from `attitude` to the attitude at the start, in the body's
-            axes; default: none.
+            axes, each component from -2π to 2π; default: none.
         rate: Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
-        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
+        rate_error: Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000;
+            default: none.
         small_angles: Small rotations about a fixed target, in closed form, in place of any rotation.
         points: Named points of the structure, at which jets and sensors are mounted.
-        modes: Elastic modes: a table, or the path of a CSV file.
+        modes: Elastic modes: a table, or the path of a CSV file. Each mode has a shape at every point.
         disturbance: Torque of the environment; none by default.
     """
 
@@ -3563,19 +3703,21 @@ class Spatial(Part):
     ones, or `"target"` for that of the target.
     """
     attitude_error: Vector | None = None
-    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default:
-    none.
+    """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each
+    component from -2π to 2π; default: none.
     """
     rate: Vector | Literal["target"] | None = None
     """Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target."""
     rate_error: Vector | None = None
-    """Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none."""
+    """Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default:
+    none.
+    """
     small_angles: SmallAngles | None = None
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
     points: Sequence[NamedPoint] | None = None
     """Named points of the structure, at which jets and sensors are mounted."""
     modes: Sequence[SpatialMode] | str | None = None
-    """Elastic modes: a table, or the path of a CSV file."""
+    """Elastic modes: a table, or the path of a CSV file. Each mode has a shape at every point."""
     disturbance: Periodic | None = None
     """Torque of the environment; none by default."""
 
@@ -3608,12 +3750,15 @@ class SpeedBias(Part):
     torque requires.
 
     Args:
-        speed: Bias speed of the first wheel (rad/s).
+        speed: Bias speed (rad/s): that of the wheel with the largest part in the null vector of the axes,
+            and of all four in a pyramid, two in each direction.
         gain: Gain with which the wheels are brought to the bias speed (1/s).
     """
 
     speed: float
-    """Bias speed of the first wheel (rad/s)."""
+    """Bias speed (rad/s): that of the wheel with the largest part in the null vector of the axes, and of
+    all four in a pyramid, two in each direction.
+    """
     gain: float
     """Gain with which the wheels are brought to the bias speed (1/s)."""
 
@@ -3623,7 +3768,7 @@ class Stage(Part):
 
     Args:
         law: The law.
-        from_: Start time (s); 0 for the first stage. Default: 0.0.
+        from_: Start time (s), later than that of the stage before; 0 for the first stage. Default: 0.0.
         actuators: Kinds of the `[[actuator]]` entries that execute the commands of the law, such as
             `["wheels"]`; default: all.
     """
@@ -3631,7 +3776,7 @@ class Stage(Part):
     law: LawKind
     """The law."""
     from_: float | None = None
-    """Start time (s); 0 for the first stage. Default: 0.0."""
+    """Start time (s), later than that of the stage before; 0 for the first stage. Default: 0.0."""
     actuators: Sequence[Literal[
         "ideal",
         "hold",
@@ -3668,8 +3813,8 @@ class StarTracker(Part):
         axes: Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that
             transforms vectors from its axes to the body's; default: the identity.
         latency: Time from the middle of an exposure to its output (s). Default: 0.0.
-        exposure: Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at
-            an instant.
+        exposure: Exposure time (s), at most `period` and twice `latency`: a reading is the mean attitude
+            over the exposure; default: 0, the attitude at an instant.
         blackout_rate: Rate at the star tracker from which on it gives no measurement (rad/s); default: no
             limit.
         exclusion: Angles between the boresight, its z axis, and bright bodies below which it gives no
@@ -3695,8 +3840,8 @@ class StarTracker(Part):
     latency: float | None = None
     """Time from the middle of an exposure to its output (s). Default: 0.0."""
     exposure: float | None = None
-    """Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at an
-    instant.
+    """Exposure time (s), at most `period` and twice `latency`: a reading is the mean attitude over the
+    exposure; default: 0, the attitude at an instant.
     """
     blackout_rate: float | None = None
     """Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit."""
@@ -3713,7 +3858,7 @@ class StateSpaceLaw(Part):
 
     Args:
         period: Period of its samples (s).
-        a: Matrix A, row by row; default: there are no states.
+        a: Matrix A, row by row, for at most 64 states; default: there are no states.
         b: Matrix B: one row per state; one column for each input, or for the angle error (rad) and
             optionally a second for the rate error (rad/s).
         c: Matrix C: one row, or one for each output.
@@ -3722,10 +3867,10 @@ class StateSpaceLaw(Part):
         outputs: Axes of the outputs of one law about three axes together; default: roll, pitch and yaw.
         of: Whether the matrices are in discrete or continuous time. Default: "samples".
         command: Quantity that it commands. Default: "torque".
-        gain: Factor on the output.
+        gain: Factor on the output, which an adaptation may tune; default: 1.
         limit: Largest command, in its unit; no limit by default.
-        track: Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
-            manoeuvre.
+        track: Whether the law tracks a manoeuvre while it lasts, as with accelerations it always does;
+            otherwise it takes over at the end of the manoeuvre.
     """
 
     _tag: ClassVar[str | None] = "state_space"
@@ -3733,7 +3878,7 @@ class StateSpaceLaw(Part):
     period: float
     """Period of its samples (s)."""
     a: Rows | None = None
-    """Matrix A, row by row; default: there are no states."""
+    """Matrix A, row by row, for at most 64 states; default: there are no states."""
     b: Rows | None = None
     """Matrix B: one row per state; one column for each input, or for the angle error (rad) and optionally a
     second for the rate error (rad/s).
@@ -3751,12 +3896,12 @@ class StateSpaceLaw(Part):
     command: Literal["torque", "acceleration"] | None = None
     """Quantity that it commands. Default: "torque"."""
     gain: float | None = None
-    """Factor on the output."""
+    """Factor on the output, which an adaptation may tune; default: 1."""
     limit: float | None = None
     """Largest command, in its unit; no limit by default."""
     track: bool | None = None
-    """Whether the law tracks a manoeuvre while it lasts; otherwise it takes over at the end of the
-    manoeuvre.
+    """Whether the law tracks a manoeuvre while it lasts, as with accelerations it always does; otherwise it
+    takes over at the end of the manoeuvre.
     """
 
 
@@ -3815,14 +3960,14 @@ class Sum(Part):
 
     Args:
         name: Name, such as `tip`.
-        weights: Weight of each coordinate.
+        weights: Weight of each coordinate, or a table of weights by the names of coordinates.
         unit: Unit. Default: "rad".
     """
 
     name: str
     """Name, such as `tip`."""
     weights: Vector | Mapping[str, float]
-    """Weight of each coordinate."""
+    """Weight of each coordinate, or a table of weights by the names of coordinates."""
     unit: str | None = None
     """Unit. Default: "rad"."""
 
@@ -3848,7 +3993,7 @@ class SunCells(Part):
     """The direction to the Sun, from the currents of cells.
 
     Args:
-        cells: The cells.
+        cells: The cells, three to 64, whose normals are not all in a plane.
         period: Period of their samples (s).
         field_of_view: Half angle within which light reaches a cell (rad), at most pi/2; default: pi/2.
             Default: 1.5707963267948966.
@@ -3863,7 +4008,7 @@ class SunCells(Part):
     _tag: ClassVar[str | None] = "sun_cells"
 
     cells: Sequence[SunCell]
-    """The cells."""
+    """The cells, three to 64, whose normals are not all in a plane."""
     period: float
     """Period of their samples (s)."""
     field_of_view: float | None = None
@@ -4025,7 +4170,9 @@ class Thrusters(Part):
     """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
 
     Args:
-        torque: Torque of a pulse (N m): one number for all axes, or a list of three.
+        torque: Torque of a pulse (N m): one number for all axes, or a list of three. Each period has one
+            pulse, centred in it, with the impulse of a hold; what it cannot give carries over, up to one
+            whole period.
         period: Period of the pulses (s).
         phase: Time of the first period (s); default: 0.
         minimum_on: Shortest pulse (s). Default: 0.0.
@@ -4036,7 +4183,9 @@ class Thrusters(Part):
     _tag: ClassVar[str | None] = "thrusters"
 
     torque: float | Vector
-    """Torque of a pulse (N m): one number for all axes, or a list of three."""
+    """Torque of a pulse (N m): one number for all axes, or a list of three. Each period has one pulse,
+    centred in it, with the impulse of a hold; what it cannot give carries over, up to one whole period.
+    """
     period: float
     """Period of the pulses (s)."""
     phase: float | None = None
@@ -4091,12 +4240,12 @@ class Turn(Part):
     """A turn about a fixed axis.
 
     Args:
-        about: Axis, of any nonzero length.
+        about: Axis, of any nonzero length; of several turns, each is about axes turned by those before.
         by: The angle (rad).
     """
 
     about: Vector
-    """Axis, of any nonzero length."""
+    """Axis, of any nonzero length; of several turns, each is about axes turned by those before."""
     by: float
     """The angle (rad)."""
 
@@ -4106,7 +4255,11 @@ class TwoLineOrbit(Part):
     the mean equator and equinox by the nutation.
 
     Args:
-        tle: Both lines, of 69 characters.
+        tle: Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18
+            revolutions a day: SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and
+            resonances. The run starts at the `epoch`, else at that of the elements (`check` remarks more
+            than 14 days between them), in axes of the true equator and mean equinox, without nutation, up
+            to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
         gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
@@ -4114,7 +4267,12 @@ class TwoLineOrbit(Part):
     """
 
     tle: Sequence[str]
-    """Both lines, of 69 characters."""
+    """Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18 revolutions a
+    day: SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run
+    starts at the `epoch`, else at that of the elements (`check` remarks more than 14 days between them),
+    in axes of the true equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of SDP4
+    of more than 2 km are refused.
+    """
     gravity: float | None = None
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
     planet_radius: float | None = None
@@ -4199,10 +4357,12 @@ class UnscentedKalman(Part):
     """An unscented Kalman filter of the motion and the natural frequencies.
 
     Args:
-        modes: Modes of the filter's model; default: the body's own at the start.
+        modes: Modes of the filter's model; default: the body's own at the start of each run.
         moment_noise: Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default:
             1e-13.
-        angle_noise: Standard deviation of the measured angle (rad); default: that of the sensor.
+        angle_noise: Standard deviation of the measured angle (rad), required where the sensor has none,
+            such as a gyro; default: that of the sensor, with the square of its `resolution` over 12 added
+            to the variance.
         initial: Standard deviations of the estimate at the start.
         prior: Initial state estimate of the filter. Default: "drawn".
         dominant: Criterion for the dominant mode. Default: "excitability".
@@ -4212,14 +4372,16 @@ class UnscentedKalman(Part):
             angle and rate. By default, `modes` for a law that reads the dominant mode, else `hub`.
         watch_only: Whether the filter runs for assessment only: the law does not read it.
         ratios: Which frequencies drift together. Default: "common".
-        ratio: Initial estimate of the frequency ratio. Default: 1.0.
+        ratio: Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn
+            around it. Default: 1.0.
         ratio_sd: Standard deviation of the initial ratio. Default: 0.03.
         ratio_rate_sd: Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s).
             Default: 0.003.
         ratio_noise: Spectral density of the white noise in a ratio (1/s). Default: 1e-08.
         ratio_rate_noise: Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08.
         bounds: Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
-        substeps: Number of prediction steps per period. Default: 2.
+        substeps: Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default:
+            2.
         gate: Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios
             are not updated. Default: 3.0.
     """
@@ -4227,11 +4389,13 @@ class UnscentedKalman(Part):
     _tag: ClassVar[str | None] = "unscented_kalman"
 
     modes: Sequence[Mode] | None = None
-    """Modes of the filter's model; default: the body's own at the start."""
+    """Modes of the filter's model; default: the body's own at the start of each run."""
     moment_noise: float | None = None
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
     angle_noise: float | None = None
-    """Standard deviation of the measured angle (rad); default: that of the sensor."""
+    """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
+    default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
+    """
     initial: Initial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -4250,7 +4414,9 @@ class UnscentedKalman(Part):
     ratios: Literal["common", "each"] | None = None
     """Which frequencies drift together. Default: "common"."""
     ratio: float | None = None
-    """Initial estimate of the frequency ratio. Default: 1.0."""
+    """Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn around it.
+    Default: 1.0.
+    """
     ratio_sd: float | None = None
     """Standard deviation of the initial ratio. Default: 0.03."""
     ratio_rate_sd: float | None = None
@@ -4262,7 +4428,7 @@ class UnscentedKalman(Part):
     bounds: Vector | None = None
     """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
     substeps: int | None = None
-    """Number of prediction steps per period. Default: 2."""
+    """Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default: 2."""
     gate: float | None = None
     """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
     updated. Default: 3.0.
@@ -4278,10 +4444,10 @@ class Wheel(Part):
         back_emf: Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia). Default:
             0.0.
         opposes: The rate that the back-EMF opposes. Default: "body_rate".
-        rotor: The wheel.
+        rotor: The wheel, whose speed and momentum `/wheel` then logs; it must be the only actuator.
         dead_zone: Commands smaller than this are not executed. Default: 0.0.
         quantum: Quantum of the command; 0 for none. Default: 0.0.
-        limit: Largest command; no limit by default.
+        limit: Largest command, in units of the command; no limit by default.
         delay: Time from a sample to the execution of the command computed from it (s). Default: 0.0.
         faults: Intervals in which the motor fails to execute commands; its back-EMF still acts.
     """
@@ -4295,13 +4461,13 @@ class Wheel(Part):
     opposes: Literal["body_rate", "rigid_rate"] | None = None
     """The rate that the back-EMF opposes. Default: "body_rate"."""
     rotor: Rotor | None = None
-    """The wheel."""
+    """The wheel, whose speed and momentum `/wheel` then logs; it must be the only actuator."""
     dead_zone: float | None = None
     """Commands smaller than this are not executed. Default: 0.0."""
     quantum: float | None = None
     """Quantum of the command; 0 for none. Default: 0.0."""
     limit: float | None = None
-    """Largest command; no limit by default."""
+    """Largest command, in units of the command; no limit by default."""
     delay: float | None = None
     """Time from a sample to the execution of the command computed from it (s). Default: 0.0."""
     faults: Sequence[FailureKind] | None = None
@@ -4312,7 +4478,8 @@ class Wheels(Part):
     """Reaction wheels about axes of their own.
 
     Args:
-        inertia: Moment of inertia of each wheel about its axis (kg m²).
+        inertia: Moment of inertia of each wheel about its axis (kg m²). The inertia tensor of a
+            `[body.spatial]` excludes it; that of a `[spacecraft]` includes the locked wheels.
         arrangement: Arrangement of the wheels; default: given by `axes`.
         cant: For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives
             equal torques about all three axes.
@@ -4325,20 +4492,22 @@ class Wheels(Part):
             limit by default.
         speeds: Speed of each wheel at the start, relative to the body (rad/s); default: 0.
         friction: Friction of the bearings; none by default.
-        compensation: Friction compensation by the drives, from the wheel speeds available to them; none by
-            default.
+        compensation: Friction that the drives assume and compensate within `torque`, from the true or
+            measured wheel speeds; none by default.
         imbalance: Imbalance of the wheels; none by default.
         allocation: How the demanded torque is distributed over the wheels. Default: "pseudo_inverse".
         speed_bias: For four wheels: a bias speed, maintained by torques that cancel each other; none by
             default.
         unloading: Unloading by jets or magnetorquers; none by default.
-        faults: Intervals in which their motors fail.
+        faults: Intervals in which the motors fail: all, or the `wheel` of a number from 1.
     """
 
     _tag: ClassVar[str | None] = "wheels"
 
     inertia: float
-    """Moment of inertia of each wheel about its axis (kg m²)."""
+    """Moment of inertia of each wheel about its axis (kg m²). The inertia tensor of a `[body.spatial]`
+    excludes it; that of a `[spacecraft]` includes the locked wheels.
+    """
     arrangement: Literal["orthogonal", "pyramid"] | None = None
     """Arrangement of the wheels; default: given by `axes`."""
     cant: float | None = None
@@ -4364,7 +4533,9 @@ class Wheels(Part):
     friction: Friction | None = None
     """Friction of the bearings; none by default."""
     compensation: Compensation | None = None
-    """Friction compensation by the drives, from the wheel speeds available to them; none by default."""
+    """Friction that the drives assume and compensate within `torque`, from the true or measured wheel
+    speeds; none by default.
+    """
     imbalance: Imbalance | None = None
     """Imbalance of the wheels; none by default."""
     allocation: Literal["pseudo_inverse", "least_largest"] | None = None
@@ -4374,11 +4545,11 @@ class Wheels(Part):
     unloading: Unloading | None = None
     """Unloading by jets or magnetorquers; none by default."""
     faults: Sequence[FailureKind] | None = None
-    """Intervals in which their motors fail."""
+    """Intervals in which the motors fail: all, or the `wheel` of a number from 1."""
 
 
 class Zv(Part):
-    """Zero vibration: two impulses for each mode.
+    """Zero vibration: two impulses for each mode, half a damped period apart.
 
     Args:
         modes: Indices of the modes.
@@ -4495,7 +4666,9 @@ class Keys(TypedDict, total=False):
     """Simulated time (s)."""
 
     epoch: datetime
-    """Date and time of the start; a log counts its time from here."""
+    """Date and time of the start, such as `2026-03-20T14:46:00Z`, from which a log counts its time; a
+    second 60 is a leap second, at the end of June or December. Default: none.
+    """
 
     body: BodyKind
     """The controlled body, unless it is a `spacecraft`."""

@@ -13,7 +13,7 @@ pub struct Mode {
     pub frequency: Frequency,
     /// Modal gain k: modal acceleration per unit of rigid acceleration.
     pub gain: Finite,
-    /// Damping ratio zeta: 0 undamped, 1 critical.
+    /// Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an `[estimator.envelope]`.
     #[serde(default)]
     pub damping: NonNegative,
     /// Displacement at the start (rad).

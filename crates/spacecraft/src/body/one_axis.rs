@@ -31,7 +31,7 @@ pub struct Planar {
     /// Elastic modes.
     #[serde(default)]
     pub modes: Vec<Mode>,
-    /// Coordinates that are observed in addition to the hub's angle.
+    /// Coordinates that are observed in addition to the hub's angle: y = rigid x_r + sum of `modes`\[i\] x_i.
     #[serde(default)]
     pub outputs: Vec<Output>,
 }

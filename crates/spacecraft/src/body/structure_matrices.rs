@@ -17,9 +17,11 @@ use super::{CoordinateWeights, DampingRatios, Drive};
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Matrices")]
 pub struct MatrixBody {
-    /// Mass matrix, symmetric and positive definite (kg m² for angles, kg for displacements).
+    /// Mass matrix, symmetric and positive definite, up to order 2000 (kg m² for angles, kg for displacements):
+    /// rows, or a file.
     pub mass: Matrix,
-    /// Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for displacements).
+    /// Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for
+    /// displacements): rows, or a file.
     pub stiffness: Matrix,
     /// Names of the coordinates; default: `q0`, `q1` and so on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -65,7 +67,7 @@ pub struct WeightedSum {
     /// Unit.
     #[serde(default = "radians")]
     pub unit: String,
-    /// Weight of each coordinate.
+    /// Weight of each coordinate, or a table of weights by the names of coordinates.
     pub weights: CoordinateWeights,
 }
 

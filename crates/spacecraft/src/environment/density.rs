@@ -16,7 +16,8 @@ pub enum DensityModel {
     /// Exponential with one scale height, or uniform.
     #[default]
     Exponential,
-    /// Harris and Priester, for mean solar activity: of the Earth, from 100 to 1000 km, with a bulge by day.
+    /// Harris and Priester, for mean solar activity: of the Earth, from 100 to 1000 km, with a bulge 30 degrees
+    /// behind the Sun.
     HarrisPriester,
     /// Table of heights and densities.
     Table,

@@ -22,7 +22,7 @@ use super::{DensityModel, OrbitKind, OrbitPath, OrbitPosition, density, ground_s
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drag {
-    /// Model of the density.
+    /// Model of the density; default: exponential.
     #[serde(default, skip_serializing_if = "DensityModel::is_exponential")]
     pub model: DensityModel,
     /// Density of the exponential model (kg/m³), at `altitude`.
@@ -31,17 +31,19 @@ pub struct Drag {
     /// Scale height, in which the density falls to 1/e (m); default: the density is uniform.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale_height: Option<Positive>,
-    /// Height above the planet's radius at which `density` holds (m); default: that of the semi-major axis.
+    /// Height above the planet's radius at which `density` holds (m), required with a `tle` or an `ephemeris`;
+    /// default: that of the semi-major axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub altitude: Option<Positive>,
-    /// Heights above the ellipsoid of WGS 84 and densities of the model `table`, or the path of a .csv file.
+    /// Heights above the ellipsoid of WGS 84 and densities (m, kg/m³) of the model `table`, exponential between
+    /// rows, or the path of a .csv file; they must cover the orbit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<DensityTable>,
     /// Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the equator, 6 for polar ones;
     /// default: 4.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bulge_exponent: Option<Positive>,
-    /// Factor of the density, of every model; default: 1.
+    /// Factor of the density, of every model, from 0.001 to 1000, for campaigns and worst cases; default: 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<DensityFactor>,
     /// Drag coefficient.
@@ -50,7 +52,8 @@ pub struct Drag {
     /// Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's.
     #[serde(default = "rotation")]
     pub rotation: Finite,
-    /// The plates.
+    /// The plates: the force is -rho/2 C A (n.v) v where the outward normal n faces the flow; a plate with two
+    /// sides is two entries.
     pub plates: Vec<DragPlate>,
 }
 

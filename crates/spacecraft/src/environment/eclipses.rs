@@ -13,10 +13,11 @@ use super::{OrbitPath, SunPath};
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ShadowShape {
-    /// Umbra, penumbra and antumbra of a Sun at its distance.
+    /// Umbra, penumbra and antumbra of a Sun at its distance: the part of its disc in view scales sunlight and
+    /// thermal bending.
     #[default]
     Cone,
-    /// Cylinder without a penumbra.
+    /// Cylinder without a penumbra, as of a Sun at an infinite distance: its steps of sunlight excite modes more.
     Cylinder,
 }
 

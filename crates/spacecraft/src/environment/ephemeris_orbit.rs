@@ -21,9 +21,11 @@ use super::sampled_orbit::SampledOrbit;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct EphemerisOrbit {
-    /// Positions, or the path of their file.
+    /// Positions, rows \[t, x, y, z\] (s, m) in inertial axes from the planet's centre, or the path of their file.
     pub ephemeris: EphemerisTable,
-    /// Axes of the rows; default: those that the file names, else the run's inertial axes.
+    /// Axes of the rows: `EME2000`, `GCRF` and `ICRF` are rotated by the precession to the start, which needs a
+    /// date, the others are taken as inertial axes; default: those that the file names, else the run's inertial
+    /// axes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frame: Option<CelestialFrame>,
     /// Gravitational parameter of the planet (m³/s²); default: the Earth's.

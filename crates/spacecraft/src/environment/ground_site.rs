@@ -31,9 +31,9 @@ pub(super) fn height(position: &Vector) -> f64 {
 pub struct GroundSite {
     /// Geodetic latitude (rad).
     pub latitude: Latitude,
-    /// Longitude east of Greenwich (rad).
+    /// Longitude east of Greenwich (rad), whose angle at the start is that of the `epoch`, or 0 without one.
     pub longitude: Longitude,
-    /// Height above the ellipsoid (m).
+    /// Height above the ellipsoid of WGS 84 (m).
     #[serde(default)]
     pub height: Finite,
 }

@@ -23,7 +23,8 @@ use super::Oblateness;
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kepler {
-    /// Semi-major axis (m); for a circular orbit, its radius.
+    /// Semi-major axis (m); for a circular orbit, its radius. Inertial axes are then those of the planet's equator,
+    /// z along its axis.
     pub semi_major_axis: Positive,
     /// Eccentricity.
     #[serde(default)]
@@ -46,8 +47,9 @@ pub struct Kepler {
     /// Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
     #[serde(default = "earth_radius")]
     pub planet_radius: Positive,
-    /// Coefficient J2 of the planet's oblateness, which turns the plane and the perigee at their mean rates: `true` for that
-    /// of the Earth, or a number; default: a sphere.
+    /// Coefficient J2 of the planet's oblateness, by which node, perigee and anomaly drift at their mean rates,
+    /// without the short-period terms of some kilometres: `true` for that of the Earth, or a number; default: a
+    /// sphere.
     #[serde(default, skip_serializing_if = "Oblateness::is_zero")]
     pub j2: Oblateness,
 }

@@ -21,7 +21,8 @@ use super::spherical_harmonics::SphericalHarmonics;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MagneticField {
-    /// Model of the field; default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch` unless
+    /// Model of the field, which stays that of the `epoch` during the run and is refused outside its years;
+    /// default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch` unless
     /// `coefficients` or `radius` differ from their defaults.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<FieldModel>,
@@ -39,8 +40,8 @@ pub struct MagneticField {
     pub radius: Positive,
     /// Rotation rate of the planet (rad/s); default: the Earth's.
     pub rotation: Finite,
-    /// Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the scenario's `epoch`, 0
-    /// without one.
+    /// Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the
+    /// scenario's `epoch`, so that field and Sun belong to one hour, 0 without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub meridian: Option<Finite>,
 }

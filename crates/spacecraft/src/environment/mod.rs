@@ -91,10 +91,13 @@ pub struct Environment {
     /// The magnetic field of the orbit's planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub magnetic_field: Option<MagneticField>,
-    /// Direction to the Sun in inertial axes, of any length, or that of the date; the orbit's planet casts a shadow.
+    /// Direction to the Sun in inertial axes, of any length, constant and at 1 au, or `"epoch"`: that from the
+    /// Earth at the date, in equatorial axes with x to the equinox, within 0.01 degrees. The orbit's planet casts a
+    /// shadow.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sun: Option<Sun>,
-    /// Shape of the shadow that the orbit's planet casts; default: a cone.
+    /// Shape of the shadow that the orbit's planet casts, whose edges are events; it needs `orbit` and `sun`.
+    /// Default: a cone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shadow: Option<ShadowShape>,
     /// Gravity gradient of a circular orbit.
@@ -106,7 +109,7 @@ pub struct Environment {
     /// A magnetic moment of the body in the field of its planet.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dipole: Option<Dipole>,
-    /// Drag of the atmosphere on plates.
+    /// Drag of the atmosphere on plates: a torque, by which the orbit does not decay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag: Option<Drag>,
     /// A torque that is constant in inertial axes (N m).

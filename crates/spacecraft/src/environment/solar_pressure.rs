@@ -21,13 +21,15 @@ use super::sun::Sunlight;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolarPressure {
-    /// The force (N), constant in inertial axes.
+    /// The force (N), constant in inertial axes whatever the Sun's distance; required without `plates`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force: Option<[Finite; 3]>,
     /// Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[Finite; 3]>,
-    /// Plates that sunlight presses on.
+    /// Plates in place of one force: where the normal n faces the Sun s with the cosine c, the force is
+    /// -P A c ((1 - specular) s + 2 (specular c + diffuse/3) n). A plate with two sides is two entries; plates do
+    /// not shade each other, and the force bends nothing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub plates: Vec<SolarPlate>,
     /// Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun = "epoch"` it falls with the

@@ -26,7 +26,10 @@ const FRESH: f64 = 14.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TwoLineOrbit {
-    /// Both lines, of 69 characters.
+    /// Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18 revolutions a day: SGP4
+    /// gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run starts at the
+    /// `epoch`, else at that of the elements (`check` remarks more than 14 days between them), in axes of the true
+    /// equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
     pub tle: [String; 2],
     /// Gravitational parameter of the planet (m³/s²); default: the Earth's.
     #[serde(default = "earth_gravity")]

@@ -13,7 +13,7 @@ use super::suppression::{Zero, index_error};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Shaper {
-    /// Zero vibration: two impulses for each mode.
+    /// Zero vibration: two impulses for each mode, half a damped period apart.
     Zv(ShapedModes),
     /// Zero vibration and derivative: three impulses.
     Zvd(ShapedModes),

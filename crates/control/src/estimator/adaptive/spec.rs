@@ -19,20 +19,22 @@ const MERGE: f64 = 0.08;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Adaptive {
-    /// Form of the observers.
+    /// Form of the observers; default: `gradient`.
     pub form: ObserverForm,
-    /// The modes to track; default: the dominant modes of the body.
+    /// The modes to track about each axis, on three axes, such as `roll = [{ frequency = 1.7, influence = [0, 0,
+    /// 3], bounds = [1.0, 2.4] }]`; an axis that is left out tracks none. Default: the dominant modes of the body.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trackers: Option<GivenModes>,
     /// Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<u32>,
-    /// Relative frequency difference below which modes of the body are tracked as one.
+    /// Relative frequency difference below which modes of the body are tracked as one: the influences add up, the
+    /// frequency is their mean weighted by these.
     pub merge: NonNegative,
     /// Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else false.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cross_axis: Option<bool>,
-    /// Relative error of the frequencies at the start.
+    /// Relative error of the frequencies at the start; a frequency stays within its bounds.
     pub frequency_error: Finite,
     /// Relative error of the influences at the start.
     pub influence_error: Finite,
@@ -47,7 +49,7 @@ pub struct Adaptive {
 pub enum ObserverForm {
     /// Recursive gradient with exact pulses.
     Gradient(Gradient),
-    /// The recurrence of \[Timakov14\].
+    /// The recurrence of \[Timakov14\], for one mode about each axis.
     Recurrence(Recurrence),
 }
 

@@ -20,7 +20,7 @@ use crate::estimator::EstimateOutputs;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticStates {
-    /// Indices of the free modes.
+    /// Indices of the free modes, as `flexsc modes` lists them.
     pub modes: Vec<usize>,
     /// Natural frequencies in the filter's model (rad/s); default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -37,7 +37,7 @@ pub struct ElasticStates {
     pub frequency_walk: Option<NonNegative>,
     /// Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5).
     pub noise: Positive,
-    /// Standard deviation of each displacement at the start (m sqrt(kg)).
+    /// Standard deviation of each displacement at the start (m sqrt(kg)), about a mode at rest.
     #[serde(default = "displacement")]
     pub displacement: Positive,
     /// Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times the frequency.

@@ -18,7 +18,7 @@ pub enum GainMethod {
     /// From the covariance, at each measurement.
     #[default]
     Extended,
-    /// Constant: the steady-state gains of the optimal filter for a body at rest.
+    /// Constant: the steady-state gains of the optimal filter for a body at rest, with one attitude sensor.
     Steady,
     /// Constant: from a bandwidth and a damping ratio of the error.
     Complementary(Complementary),

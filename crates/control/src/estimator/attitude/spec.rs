@@ -25,10 +25,12 @@ pub struct AttitudeFilter {
     /// How the gains are computed.
     #[serde(default)]
     pub form: GainMethod,
-    /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the gyro's own.
+    /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the gyro's
+    /// own, which for one that samples the rate is its noise times the root of the period.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_random_walk: Option<Positive>,
-    /// Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own.
+    /// Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own, with a
+    /// `bias_instability` as the walk that it is over a short time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_random_walk: Option<NonNegative>,
     /// Standard deviation of a measured attitude about each axis of its sensor (rad); default: the sensor's own.
@@ -38,7 +40,8 @@ pub struct AttitudeFilter {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_noise: Option<Positive>,
     /// Degree of the magnetic field that the filter takes as the reference of magnetometers, from 1 to that of the
-    /// environment's; default: the environment's field itself, without a model error.
+    /// environment's; default: the environment's field itself, without a model error. The error of a lower degree
+    /// is correlated in time: cover it by `field_noise`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub field_degree: Option<u32>,
     /// Standard deviation of a measured direction to the Sun (rad); default: that of the Sun sensor or cells.

@@ -28,13 +28,14 @@ pub use steady_state::SteadyStateFilter;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Kalman {
-    /// Modes of the filter's model; default: the body's own at the start.
+    /// Modes of the filter's model; default: the body's own at the start of each run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
     #[serde(default = "moment_noise")]
     pub moment_noise: NonNegative,
-    /// Standard deviation of the measured angle (rad); default: that of the sensor.
+    /// Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro; default:
+    /// that of the sensor, with the square of its `resolution` over 12 added to the variance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
@@ -63,13 +64,14 @@ pub struct Kalman {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrequencyTracking {
-    /// Modes of the filter's model; default: the body's own at the start.
+    /// Modes of the filter's model; default: the body's own at the start of each run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
     /// Spectral density of the white noise in the reduced moment ((rad/s²)² s).
     #[serde(default = "moment_noise")]
     pub moment_noise: NonNegative,
-    /// Standard deviation of the measured angle (rad); default: that of the sensor.
+    /// Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro; default:
+    /// that of the sensor, with the square of its `resolution` over 12 added to the variance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
@@ -95,7 +97,7 @@ pub struct FrequencyTracking {
     /// Which frequencies drift together.
     #[serde(default)]
     pub ratios: Ratios,
-    /// Initial estimate of the frequency ratio.
+    /// Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn around it.
     #[serde(default = "one")]
     pub ratio: Positive,
     /// Standard deviation of the initial ratio.
@@ -113,7 +115,7 @@ pub struct FrequencyTracking {
     /// Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock.
     #[serde(default = "bounds")]
     pub bounds: [Positive; 2],
-    /// Number of prediction steps per period.
+    /// Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8.
     #[serde(default = "substeps")]
     pub substeps: Substeps,
     /// Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not updated.

@@ -51,23 +51,25 @@ pub struct Appendage {
     /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plate: Option<PlateAxis>,
-    /// Named points of the appendage, measured from its root in its own axes.
+    /// Named points of the appendage, measured from its root in its own axes; a name is unique in the spacecraft.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
-    /// Clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without modes it is
-    /// rigid.
+    /// Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of Nastran or
+    /// MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt` of 42. Without modes it
+    /// is rigid.
     #[serde(default)]
     pub modes: ModeTable<ClampedMode>,
-    /// Damping ratios of modes read from finite-element results.
+    /// Damping ratio of modes read from finite-element results, or a list with one for each; required where the
+    /// file has none, as all but those of 42.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<DampingRatios>,
-    /// Number of modes to keep from finite-element results, lowest frequencies first; default: all.
+    /// Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
     /// Thermal bending in sunlight; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
-    /// Units of finite-element results; default: metres and kilograms.
+    /// Units of finite-element results, except for 42, whose files are in SI units; default: metres and kilograms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
 }

@@ -19,7 +19,7 @@ const EXPECTED: &str = "a turn `{ about = [x, y, z], by = ANGLE }`, or an array 
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Turn")]
 pub struct AxisRotation {
-    /// Axis, of any nonzero length.
+    /// Axis, of any nonzero length; of several turns, each is about axes turned by those before.
     pub about: [Finite; 3],
     /// The angle (rad).
     pub by: Finite,

@@ -30,7 +30,8 @@ pub struct ClampedMode {
     /// Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<[Finite; 3]>,
-    /// First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows along r, columns along phi.
+    /// First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows along r, columns
+    /// along phi. `rotation` follows from them, and is left out or agrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub moments: Option<[[Finite; 3]; 3]>,
     /// Modal displacement at the start (m sqrt(kg)).

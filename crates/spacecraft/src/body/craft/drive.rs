@@ -26,10 +26,12 @@ pub struct AppendageDrive {
     /// Time at which it begins to stop (s); default: it does not stop.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<NonNegative>,
-    /// Acceleration with which its rate changes (rad/s²); default: the rate jumps.
+    /// Acceleration with which its rate changes (rad/s²), which rounds the corners of a table; default: the rate
+    /// jumps, and excites the modes and the hub.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub acceleration: Option<Positive>,
-    /// Table of angles over time, with constant rates between the points.
+    /// Table of angles over time, with constant rates between the points, at rest before the first and after the
+    /// last.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub table: Vec<DrivePoint>,
     /// Object that the drive tracks.

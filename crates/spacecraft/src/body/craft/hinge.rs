@@ -18,15 +18,16 @@ use crate::body::spatial::NamedPoint;
 pub struct Hinge {
     /// Axis through the root, in the axes of the appendage, of any nonzero length.
     pub about: [Finite; 3],
-    /// Stiffness of its spring (N m/rad).
+    /// Stiffness of its spring, above 0 (N m/rad); the spring is relaxed at angle 0.
     pub stiffness: Positive,
     /// Viscous damping (N m s/rad).
     #[serde(default)]
     pub damping: NonNegative,
-    /// Angle at the start (rad); at 0 the spring is relaxed.
+    /// Angle at the start (rad), -3.2 to 3.2; the hub starts with the attitude of the spacecraft whatever the
+    /// angle.
     #[serde(default)]
     pub angle: Finite,
-    /// Rate at the start (rad/s).
+    /// Rate at the start (rad/s); the hub starts with the rate of the spacecraft.
     #[serde(default)]
     pub rate: Finite,
 }

@@ -26,20 +26,22 @@ pub struct Spacecraft {
     /// `"target"` for that of the target.
     #[serde(default)]
     pub attitude: StartValue<Attitude>,
-    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default: none.
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each component from
+    /// -2π to 2π; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_error: Option<[Finite; 3]>,
     /// Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of the target;
     /// without vibration they are the rates of the hub.
     #[serde(default)]
     pub rate: StartValue<[Finite; 3]>,
-    /// Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_error: Option<[Finite; 3]>,
-    /// Small rotations about a fixed target, in closed form, in place of any rotation.
+    /// Small rotations about a fixed target, in closed form, in place of any rotation; `{}` takes both defaults.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub small_angles: Option<SmallAngles>,
-    /// Whether runs keep the full damping matrix of the free modes; default: if its off-diagonal terms are not negligible.
+    /// Whether runs keep the full damping matrix of the free modes, as linear tools always do; default: if its
+    /// off-diagonal terms are not negligible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whole_damping: Option<bool>,
     /// Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`.

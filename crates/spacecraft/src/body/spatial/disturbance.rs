@@ -13,7 +13,7 @@ pub struct Periodic {
     /// Constant part (N m).
     #[serde(default)]
     pub constant: [Finite; 3],
-    /// Amplitude of the periodic part (N m).
+    /// Amplitude of the periodic part (N m), about each axis: amplitude sin(2 pi t/period + phase).
     #[serde(default)]
     pub amplitude: [Finite; 3],
     /// Period (s); about 5560 s for a station in a low orbit.

@@ -34,13 +34,14 @@ pub struct Spatial {
     /// `"target"` for that of the target.
     #[serde(default)]
     pub attitude: StartValue<Attitude>,
-    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes; default: none.
+    /// Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each component from
+    /// -2π to 2π; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attitude_error: Option<[Finite; 3]>,
     /// Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target.
     #[serde(default)]
     pub rate: StartValue<[Finite; 3]>,
-    /// Rates at the start in addition to `rate` (rad/s), in the body's axes; default: none.
+    /// Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate_error: Option<[Finite; 3]>,
     /// Small rotations about a fixed target, in closed form, in place of any rotation.
@@ -49,7 +50,7 @@ pub struct Spatial {
     /// Named points of the structure, at which jets and sensors are mounted.
     #[serde(default)]
     pub points: Vec<NamedPoint>,
-    /// Elastic modes: a table, or the path of a CSV file.
+    /// Elastic modes: a table, or the path of a CSV file. Each mode has a shape at every point.
     #[serde(default)]
     pub modes: SpatialModes,
     /// Torque of the environment; none by default.
