@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 import shutil
 import subprocess
@@ -11,6 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import flexsc
+import flexsc.parts
+import flexsc.plot
+import flexsc.scenario
+import flexsc.structure
 from scenario_keys import Keys
 
 Schema = dict[str, Any]
@@ -26,7 +31,7 @@ def pages(keys: Keys) -> dict[str, str]:
         "topics": topics(),
         "command": command(),
     }
-    return {f"reference/{name}.md": text for name, text in made.items()} | {"reference/python.md": python()}
+    return {f"reference/{name}.md": text for name, text in made.items()} | python()
 
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
@@ -227,10 +232,84 @@ def command() -> str:
     return text
 
 
-def python() -> str:
-    """A line for each public name, which mkdocstrings fills in."""
-    text = f"{BEHIND}# The Python module\n\n[Python](../python.md) is the way in; here is every name.\n\n"
-    for name in sorted(flexsc.__all__, key=str.lower):
-        if not name.startswith("__"):
-            text += f"::: flexsc.{name}\n\n"
-    return text
+# Groups of the index of Python names; what is in none stands in the last.
+GROUPS = {
+    "Scenarios and runs": "Scenario Result Samples Topic Metrics Simulator Simulators Snapshot "
+    "Quantities Plan Log read_log examples schema metrics topics",
+    "Campaigns and searches": "campaign sweep evaluate estimate read_campaign Table Row optimise "
+    "sensitivities Sensitivities WorstCase PointingBudget IndexBudget "
+    "BudgetLevel",
+    "Linear models, margins and noise": "Linear Signal Margins LoopMargins StabilityMargins NoiseSpectrum "
+    "OutputNoise WheelSpectrum WheelLines OutputBound Witness TunedScenario "
+    "TunedPlant TunedMeasure rigid_cycles gain_region stability_map "
+    "robust_gains",
+    "Your own parts": "Law ThreeAxisLaw CompiledLaw Sensor Estimator Actuator Adaptation "
+    "Reading Hold ThreeAxisHold Effort",
+    "Active damping": "identify observer_margin observer_region persistence relay_damping",
+    "Structures": "Structure StateSpace appendage_from_matrices appendage_from_nastran "
+    "from_csv from_nastran from_state_space read_matrices write_scenario",
+    "Errors": "ScenarioError SimulationError LogError",
+    "Others": "",
+}
+# The fields of a part are the arguments that make it, of which its signature has neither names nor defaults.
+OF_A_PART = (
+    "heading_level: 1, members: false, inherited_members: false, merge_init_into_class: false, "
+    "show_bases: false, docstring_section_style: list"
+)
+# Modules of the package with a page each, and whether that has their members.
+MODULES = {"plot": True, "parts": False, "structure": False, "scenario": False}
+
+
+def python() -> dict[str, str]:
+    """An index of the public names, with pages of classes, of modules and of the functions of a group."""
+    names = [name for name in flexsc.__all__ if not name.startswith("__") and name not in MODULES]
+    grouped = {name for group in GROUPS.values() for name in group.split()}
+    made: dict[str, str] = {}
+    index = (
+        f"{BEHIND}# The Python module\n\n[Python](../python.md) is the way in; here is every name.\n\n"
+        + listed([(f"flexsc.{name}", f"python/module-{name}.md", getattr(flexsc, name)) for name in MODULES])
+        + "\n"
+    )
+    for number, (title, members) in enumerate(GROUPS.items()):
+        own = [name for name in members.split() if name in names] or [
+            name for name in names if name not in grouped
+        ]
+        if not own:
+            continue
+        functions = f"functions-{number}.md"
+        rows = []
+        for name in own:
+            is_class = inspect.isclass(getattr(flexsc, name))
+            page = f"{name}.md" if is_class else functions
+            if is_class:
+                made[page] = f"{BEHIND}::: flexsc.{name}\n    options: {{heading_level: 1}}\n"
+            else:
+                made.setdefault(page, f"{BEHIND}# {title}: functions\n\n")
+                made[page] += f"::: flexsc.{name}\n\n"
+            rows.append(
+                (name, f"python/{page}" + ("" if is_class else f"#flexsc.{name}"), getattr(flexsc, name))
+            )
+        index += f"## {title}\n\n{listed(rows)}\n"
+    for name, whole in MODULES.items():
+        members = "" if whole else "    options: {members: false, inherited_members: false}\n"
+        made[f"module-{name}.md"] = f"{BEHIND}# flexsc.{name}\n\n::: flexsc.{name}\n{members}\n"
+    classes = []
+    for name in flexsc.scenario.__all__:
+        of = getattr(flexsc.scenario, name)
+        if inspect.isclass(of):
+            made[f"scenario/{name}.md"] = (
+                f"{BEHIND}::: flexsc.scenario.{name}\n    options: {{{OF_A_PART}}}\n"
+            )
+            classes.append((name, f"scenario/{name}.md", of))
+    made["module-scenario.md"] += f"## Classes\n\n{listed(classes)}"
+    return {"reference/python.md": index} | {f"reference/python/{page}": text for page, text in made.items()}
+
+
+def listed(rows: list[tuple[str, str, object]]) -> str:
+    """A table of names with their pages and the first sentences of their docstrings."""
+
+    def first(of: object) -> str:
+        paragraph = (inspect.getdoc(of) or "").split("\n\n")[0]
+        return re.split(r"(?<=[.]) ", " ".join(paragraph.split()))[0]
+
+    return table(("name", "meaning"), [(f"[`{name}`]({page})", first(of)) for name, page, of in rows])

@@ -87,7 +87,7 @@ def main() -> None:
             sys.exit(f"a search for {query} finds {search.best(query)['location']}")
     for entry in search.entries:
         # Made pages repeat the names of keys: an attribute `bandwidth` is shorter than the key's path.
-        if re.match(r"reference/(keys|python)\.", entry["location"]) and entry.get("boost", 1) > 0.5:
+        if re.match(r"reference/(keys|python)[./]", entry["location"]) and entry.get("boost", 1) > 0.5:
             sys.exit(f"{entry['location']} ranks as high as the reference of scenarios")
         if re.match(r"scenario/.*#.*\.", entry["location"]):
             place(entry)
