@@ -1,23 +1,21 @@
 """Golden numbers of tests/open_loops.rs and tests/margins.rs, with flexsc and SciPy installed.
 
-Python assembles the opened loops with NumPy, here with the exponentials of SciPy, and solves for their
-responses; it has the body and the settled gains of filters from the engine. Each row of `open_loops.csv` has
+`open_loop_assembly.py` assembles the opened loops with NumPy and the exponentials of SciPy; their responses
+are solved for here. Each row of `open_loops.csv` has
 a scenario, the break, and either `refused`, or the number of states, the period, the spectral radius of the
 closed loop, and the response L v with v = (1, 1/2, 1/3, ...) at a fraction of the Nyquist frequency: real and
 imaginary parts, output by output. `open_loops/` has the scenarios that are not shipped.
 
-`margins.csv` has the margins of each command with the other loops closed: `Linear.margins` bisects the poles
-of loops whose gain or phase is off.
+`margins.csv` has the margins of each command with the other loops closed, by bisection of the poles of loops
+whose gain or phase is off.
 """
 
 from pathlib import Path
 
 import flexsc
 import numpy as np
-from flexsc import _native
-from scipy.linalg import expm
-
-_native.exponential = expm
+from open_loop_assembly import margins as margins_of
+from open_loop_assembly import open_loop
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "tests/golden/open_loops"
@@ -93,7 +91,7 @@ def rows(name: str, scenario: flexsc.Scenario) -> list[str]:
     lines = []
     for loop in BREAKS:
         try:
-            opened = scenario.linearise(loop=loop)
+            opened = open_loop(scenario, loop)
         except ValueError:
             lines.append(f"{name},{loop},refused")
             continue
@@ -109,14 +107,12 @@ def rows(name: str, scenario: flexsc.Scenario) -> list[str]:
 def margin_rows(name: str, scenario: flexsc.Scenario) -> list[str]:
     lines = []
     try:
-        opened = scenario.linearise(loop="command")
+        opened = open_loop(scenario, "command")
     except ValueError:
         return lines
     if opened.closed().spectral_radius() < 1.0:
         for command in dict.fromkeys(signal.name.rstrip("_0123456789") for signal in opened.inputs):
-            found = opened.margins([command])
-            numbers = (found.gain_below, found.gain_above, found.phase)
-            lines.append(",".join([name, command, *map(repr, numbers)]))
+            lines.append(",".join([name, command, *map(repr, margins_of(opened, [command]))]))
     return lines
 
 

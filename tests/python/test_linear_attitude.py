@@ -226,9 +226,9 @@ def test_margins_of_loops_of_several_periods(name: str) -> None:
 
 def test_what_no_loop_has_is_refused() -> None:
     scenario = flexsc.Scenario.parse(ALONE)
-    with pytest.raises(ValueError, match="open its loop at `command` or `torque`"):
+    with pytest.raises(ValueError, match="cut its loop open at the command or the torque"):
         scenario.linearise(loop="measurement")
-    with pytest.raises(ValueError, match="repeat together only after"):
+    with pytest.raises(ValueError, match="repeats with gyro and attitude sensor only after"):
         scenario.with_("sensor[0].gyro.period", 0.501).linearise(loop="command")
     with pytest.raises(flexsc.ScenarioError, match=r"gyro.latency.* is not supported in linear loops"):
         scenario.with_("sensor[0].gyro.latency", 1.0).linearise(loop="command")

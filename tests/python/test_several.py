@@ -102,10 +102,10 @@ def test_linear_loops_have_the_sum_of_the_shares() -> None:
         stronger.closed().a, one.closed().a + 0.6 * (one.closed().a - one.a), rtol=1e-9
     )
     late = flexsc.Scenario.parse(PLANAR).with_("actuator[1].wheel.delay", 0.1)
-    with pytest.raises(ValueError, match="the actuators have different delays"):
+    with pytest.raises(ValueError, match="actuator: has different delays"):
         late.linearise(loop="command")
     held = flexsc.Scenario.parse(PLANAR.replace("ideal = {}", "hold = { period = 0.25 }"))
-    with pytest.raises(ValueError, match="the actuator `hold` is not linear"):
+    with pytest.raises(ValueError, match=r"actuator.*hold: is not linear"):
         held.linearise(loop="command")
 
 

@@ -21,4 +21,5 @@ pub mod sampled_loop;
 pub mod scenario_margins;
 pub mod settling_time;
 pub mod spacecraft_modes;
+pub mod state_space;
 pub mod structured_tuning;

@@ -75,7 +75,7 @@ use std::io::Write;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-pub use budget::budget_json;
+pub use budget::pointing_budget;
 pub use campaign::file::{encode_table, table_ending};
 pub use campaign::logs::simulate_to_log;
 pub use campaign::part_files::write_statistics_of;

@@ -5,13 +5,13 @@
     reason = "Python's arguments come, and errors are mapped, as values"
 )]
 
+mod analysis;
 mod arrow;
 mod aside;
 mod campaign;
 mod columns;
 mod commands;
 mod copies;
-mod damping;
 mod design;
 mod error;
 mod figures;
@@ -23,30 +23,21 @@ mod log;
 mod mcap_log;
 mod parts;
 mod run_logs;
-mod sampled;
 mod stepping;
 mod table;
-mod worst_case;
 
 use std::ffi::OsString;
+use std::fmt;
 use std::path::PathBuf;
 
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
-use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::formats::document::ConfigError;
-use flexsc_core::metrics;
-use flexsc_core::numerics::quantity::{Fraction, Positive};
-use flexsc_core::record::{self, Detail, Trace};
+use flexsc_core::record::{Detail, Trace};
 use flexsc_core::requirement_verdict::validate_metrics;
 use flexsc_core::spacecraft::body::BodyAxes;
-use flexsc_core::spacecraft::manoeuvre::{
-    CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
-};
 use flexsc_core::{Document, ScenarioError};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -59,6 +50,8 @@ use error::{allowed, scenario_error, simulation_error};
 #[pymodule]
 mod _native {
     #[pymodule_export]
+    use super::analysis::{analysis, persistence, plan_torque};
+    #[pymodule_export]
     use super::arrow::{arrow_schema, arrow_stream};
     #[pymodule_export]
     use super::campaign::{Directory, Work, campaign_statistics};
@@ -66,10 +59,6 @@ mod _native {
     use super::commands::Commands;
     #[pymodule_export]
     use super::copies::Simulators;
-    #[pymodule_export]
-    use super::damping::{
-        identify_json, observer_margin_json, observer_region_json, persistence, relay_damping_json,
-    };
     #[pymodule_export]
     use super::design::Design;
     #[pymodule_export]
@@ -85,10 +74,7 @@ mod _native {
     #[pymodule_export]
     use super::instants::MotionSampler;
     #[pymodule_export]
-    use super::linear::{
-        bounds_json, budget_json, exponential, linear_json, loop_json, margins_json, spectrum_json,
-        steady_change, tuned_json,
-    };
+    use super::linear::{common_margins, linearise, sampled};
     #[pymodule_export]
     use super::log::Log;
     #[pymodule_export]
@@ -99,16 +85,9 @@ mod _native {
         ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts, with_parts,
     };
     #[pymodule_export]
-    use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};
-    #[pymodule_export]
     use super::stepping::Simulator;
     #[pymodule_export]
-    use super::worst_case::worst_case_json;
-    #[pymodule_export]
-    use super::{
-        Scenario, estimate_json, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
-        rigid_cycles_json, rivals_json, schema_json, simulate, topics_json,
-    };
+    use super::{Scenario, examples, main, simulate};
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
     const __version__: &str = env!("CARGO_PKG_VERSION");
@@ -140,6 +119,17 @@ impl Scenario {
 
     fn read(document: &Document) -> PyResult<Self> {
         Self::new(document.origin(), flexsc_core::Scenario::from_document(document))
+    }
+
+    /// The error of a key.
+    fn key_error(&self, fault: ConfigError) -> PyErr {
+        let ConfigError { key, why, .. } = fault;
+        scenario_error(ScenarioError::Key { origin: self.inner.name.clone(), key, why })
+    }
+
+    /// The error that a reason is, with the name of the scenario.
+    fn error(&self, why: &impl fmt::Display) -> PyErr {
+        PyValueError::new_err(format!("{}: {why}", self.inner.name))
     }
 
     /// The scenario as it is, as this run.
@@ -287,111 +277,10 @@ fn simulate<'py>(
     Ok((columns::metrics_to_dict(py, &metrics)?, topics, warnings))
 }
 
-/// The estimated work of runs as a campaign has them, or of one run whose log of this detail stays in memory.
-#[pyfunction]
-fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> {
-    let detail = detail(log)?;
-    let cost = if runs > 1 {
-        let campaign = Campaign::new(scenario.inner.clone(), &scenario.origin, []);
-        let campaign = campaign.map_err(scenario_error)?;
-        campaign.cost(runs, detail).map_err(|why| PyValueError::new_err(format!("runs {why}")))?
-    } else {
-        scenario.inner.cost(detail, true)
-    };
-    let (key, steps) = &cost.most;
-    let object = json!({
-        "seconds": cost.seconds, "steps": steps, "key": key.trim_matches('`'), "memory_bytes": cost.memory,
-        "needs_yes": cost.limit_exceeded().is_some(),
-    });
-    Ok(object.to_string())
-}
-
-#[pyfunction]
-fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
-    let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    let Some(law) = scenario.inner.law.relay() else {
-        let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
-        return Err(PyValueError::new_err(why));
-    };
-    if scenario.inner.actuator.flywheel().is_some() {
-        let why = "limit cycles are computed for an ideal torque, not for a wheel";
-        return Err(PyValueError::new_err(format!("{}: {why}", scenario.inner.name)));
-    }
-    let (cycles, resonances) = (cycles(law, body, law.k_t.get()), resonances(law, body));
-    Ok(json!({"cycles": cycles, "resonances": resonances}).to_string())
-}
-
-/// The manoeuvre of a scenario, its plan and its body.
-fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &AxisModel)> {
-    let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    match (&scenario.inner.manoeuvre, &scenario.inner.plan) {
-        (Some(manoeuvre), Some(plan)) => Ok((manoeuvre, plan, body)),
-        _ => Err(PyValueError::new_err(format!("{}: there is no manoeuvre to plan", scenario.inner.name))),
-    }
-}
-
-fn checked_band(band: f64) -> PyResult<f64> {
-    let none = || PyValueError::new_err(format!("band must be between 0 and 1, got {band}"));
-    Fraction::new(band).map(Fraction::get).ok_or_else(none)
-}
-
-#[pyfunction]
-fn plan_json(scenario: &Scenario, band: f64) -> PyResult<String> {
-    let (_, plan, body) = planned(scenario)?;
-    Ok(PlanReport::new(plan, body, checked_band(band)?).to_json(plan, body).to_string())
-}
-
-#[pyfunction]
-fn plan_torque<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    times: PyReadonlyArray1<'py, f64>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let (_, plan, _) = planned(scenario)?;
-    let values: Vec<f64> = times.as_array().iter().map(|t| plan.waveform.at(*t)).collect();
-    Ok(values.into_pyarray(py))
-}
-
-#[pyfunction]
-fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Option<f64>) -> PyResult<String> {
-    let (manoeuvre, plan, body) = planned(scenario)?;
-    let band = checked_band(band)?;
-    let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
-    let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
-    let common = ComparisonBasis::from_manoeuvre(manoeuvre, limit, plan);
-    let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).into_owned());
-    let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
-    Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
-}
-
 /// Names and texts of the shipped scenarios.
 #[pyfunction]
 fn examples() -> Vec<(&'static str, &'static str)> {
     flexsc_cli::EXAMPLES.to_vec()
-}
-
-#[pyfunction]
-fn schema_json() -> String {
-    flexsc_core::Scenario::schema().to_string()
-}
-
-#[pyfunction]
-fn metrics_json() -> String {
-    let meaning = |m: &metrics::MetricDescription| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
-    serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
-}
-
-/// Returns the meanings of the metrics of a scenario: of a body without inertia some have other units.
-#[pyfunction]
-fn meanings_json(scenario: &Scenario) -> String {
-    let meanings = metrics::ALL.iter().filter_map(|m| metrics::meaning(m.name, Some(&scenario.inner)));
-    let reported = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
-    serde_json::Value::Object(reported.collect()).to_string()
-}
-
-#[pyfunction]
-fn topics_json() -> String {
-    record::description::topics().to_string()
 }
 
 #[pyfunction]

@@ -1,186 +1,106 @@
-//! Linear models of bodies, and the exponential that samples them.
+//! Linear models of bodies and loops.
 
-use flexsc_core::ScenarioError;
-use flexsc_core::analysis::bound::{OutputBound, RangeRow};
-use flexsc_core::analysis::linear_loop::LinearLoop;
-use flexsc_core::analysis::linear_model::LinearModel;
-use flexsc_core::analysis::margins::{self, SingularValues};
-use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
-use flexsc_core::analysis::open_loop::LoopBreak;
-use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
-use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault};
-use flexsc_core::formats::document::ConfigError;
-use flexsc_core::numerics::exponential::exponential as of_matrix;
+use flexsc_core::analysis::linear_model::Signal;
+use flexsc_core::analysis::margins::CommonMargins;
+use flexsc_core::analysis::open_loop::TransferMatrices;
+use flexsc_core::analysis::open_loop::sampling::SampledSystem;
+use flexsc_core::analysis::state_space::StateSpace;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use serde_json::json;
 
 use super::Scenario;
-use super::aside::aside;
-use super::error::scenario_error;
+use super::analysis::loop_break;
 
-/// The body of a scenario as a linear system, with natural frequencies as they are at a time (s).
-#[pyfunction]
-pub fn linear_json(scenario: &Scenario, at: f64) -> PyResult<String> {
-    let model = LinearModel::from_scenario(&scenario.inner, at).map_err(|fault| {
-        let origin = scenario.inner.name.clone();
-        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
-    })?;
-    Ok(json!(model).to_string())
+/// Matrix as a NumPy array.
+type Array<'py> = Bound<'py, PyArray2<f64>>;
+/// Matrices a, b, c and d as NumPy arrays.
+type Matrices<'py> = (Array<'py>, Array<'py>, Array<'py>, Array<'py>);
+/// Names and units of signals.
+type Signals = Vec<(String, String)>;
+/// A model: matrices, states, inputs and outputs, and period.
+type Model<'py> = (Matrices<'py>, (Signals, Signals, Signals), Option<f64>);
+
+fn array<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Array<'py>> {
+    let rows: Vec<f64> = matrix.transpose().iter().copied().collect();
+    rows.to_pyarray(py).reshape([matrix.nrows(), matrix.ncols()])
 }
 
-/// The parts of a scenario's loop that its keys do not hold as numbers.
-#[pyfunction]
-pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
-    let parts = LinearLoop::from_scenario(&scenario.inner).map_err(|fault| {
-        let origin = scenario.inner.name.clone();
-        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
-    })?;
-    Ok(json!(parts).to_string())
+fn matrix(values: &PyReadonlyArray2<'_, f64>) -> DMatrix<f64> {
+    let values = values.as_array();
+    DMatrix::from_fn(values.nrows(), values.ncols(), |row, column| values[(row, column)])
 }
 
-/// The point of this name at which a loop is cut open.
-pub fn loop_break(name: &str) -> PyResult<LoopBreak> {
-    LoopBreak::from_name(name).ok_or_else(|| {
-        let accepted = LoopBreak::ALL.map(|point| format!("'{}'", point.name())).join(", ");
-        PyValueError::new_err(format!("loop must be one of {accepted}, got '{name}'"))
-    })
-}
-
-/// The stability margins of a scenario's loop, cut open at a point.
+/// The body of a scenario as a linear model at a time (s), in continuous time or sampled; or its loop, cut open.
 #[pyfunction]
-pub fn margins_json(py: Python<'_>, scenario: &Scenario, opened: &str) -> PyResult<String> {
-    let (inner, opened) = (scenario.inner.clone(), loop_break(opened)?);
-    let margins = aside(py, move |_| ScenarioMargins::from_scenario(&inner, opened))?;
-    let name = &scenario.inner.name;
-    let margins = margins.map_err(|fault| match fault {
-        MarginsFault::Key(ConfigError { key, why, .. }) => {
-            scenario_error(ScenarioError::Key { origin: name.clone(), key, why })
-        }
-        MarginsFault::Unstable(unstable) => PyValueError::new_err(format!("{name}: {unstable}")),
-    })?;
-    let mut object = json!(margins);
-    let column = |of: fn(&SingularValues) -> f64| {
-        margins.stability.singular_values.iter().map(of).collect::<Vec<f64>>()
-    };
-    object["singular_values"] = json!({
-        "frequency": column(|at| at.frequency_rad_s),
-        "sensitivity": column(|at| at.sensitivity),
-        "complementary": column(|at| at.complementary),
-    });
-    Ok(object.to_string())
-}
-
-/// Keys of a scenario tuned for an objective within limits, as JSON, and the text of the tuned scenario.
-#[pyfunction]
-pub fn tuned_json(
-    py: Python<'_>,
-    scenario: &Scenario,
-    keys: Vec<(String, [f64; 2])>,
-    opened: &str,
-    goal: (String, Vec<String>),
-    bandwidth: Option<f64>,
-    is_nominal: bool,
-) -> PyResult<(String, String)> {
-    let (objective, limits) = goal;
-    let objective =
-        objective.parse().map_err(|why: String| PyValueError::new_err(format!("objective: {why}")))?;
-    let limits = limits.iter().map(|limit| limit.parse()).collect::<Result<_, String>>();
-    let limits = limits.map_err(|why| PyValueError::new_err(format!("keep: {why}")))?;
-    let tuning =
-        ScenarioTuning { keys, opened: loop_break(opened)?, objective, limits, bandwidth, is_nominal };
-    let inner = scenario.inner.clone();
-    let tuned = aside(py, move |_| {
-        let tuned = tuning.run(&inner)?;
-        let text = tuned.scenario().map(|scenario| scenario.to_toml());
-        Ok((tuned.to_json().to_string(), text))
-    })?;
-    let name = &scenario.inner.name;
-    let (table, text) = tuned.map_err(|fault: TuningFault| match fault {
-        TuningFault::Key(fault) => {
-            scenario_error(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
-        }
-        fault => PyValueError::new_err(format!("{name}: {fault}")),
-    })?;
-    Ok((table, text.map_err(scenario_error)?))
-}
-
-/// The noise of a scenario's loop: of some outputs, over windows, and at speeds of its wheels.
-#[pyfunction]
-pub fn spectrum_json(
-    py: Python<'_>,
-    scenario: &Scenario,
-    signals: Vec<String>,
-    window: Option<f64>,
-    separation: Option<f64>,
-    speeds: Option<Vec<f64>>,
-) -> PyResult<String> {
-    let window = window.map(|length| Window { length, separation });
-    let request = NoiseRequest { signals, window, speeds };
-    let name = &scenario.inner.name;
-    let inner = scenario.inner.clone();
-    let report = aside(py, move |_| NoiseReport::from_scenario(&inner, &request))?;
-    let report = report.map_err(|fault| match fault {
-        NoiseError::Key(fault) => {
-            scenario_error(ScenarioError::Key { origin: name.clone(), key: fault.key, why: fault.why })
-        }
-        NoiseError::Request(why) => PyValueError::new_err(why),
-        fault => PyValueError::new_err(format!("{name}: {fault}")),
-    })?;
-    Ok(json!(report).to_string())
-}
-
-/// The pointing budget of a scenario's requirements over some runs, on some threads (0: one per core).
-#[pyfunction]
-pub fn budget_json(py: Python<'_>, scenario: &Scenario, runs: u64, jobs: u16) -> PyResult<String> {
-    let inner = scenario.inner.clone();
-    aside(py, move |_| flexsc_cli::budget_json(inner, runs, jobs))?.map_err(PyValueError::new_err)
-}
-
-/// The guaranteed ranges of the outputs that a scenario claims, with their rows as columns and their witnesses as
-/// scenario files.
-#[pyfunction]
-pub fn bounds_json(py: Python<'_>, scenario: &Scenario) -> PyResult<String> {
-    let inner = &scenario.inner;
-    let own = inner.clone();
-    let bounds = aside(py, move |_| OutputBound::from_scenario(&own))?.map_err(|fault| {
-        let origin = inner.name.clone();
-        scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
-    })?;
-    let object = |bound: &OutputBound| {
-        let column = |of: fn(&RangeRow) -> f64| bound.rows.iter().map(of).collect::<Vec<f64>>();
-        let mut object = json!(bound);
-        object["rows"] = json!({
-            "time": column(|row| row.time_s),
-            "low": column(|row| row.low),
-            "high": column(|row| row.high),
-        });
-        object["witness_scenario"] = json!(bound.witness_text(inner));
-        object
-    };
-    Ok(json!(bounds.iter().map(object).collect::<Vec<_>>()).to_string())
-}
-
-/// The exponential of a square matrix.
-#[pyfunction]
-pub fn exponential<'py>(
+pub fn linearise<'py>(
     py: Python<'py>,
-    matrix: PyReadonlyArray2<'py, f64>,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    let matrix = matrix.as_array();
-    let (order, columns) = matrix.dim();
-    if order != columns || !matrix.iter().all(|entry| entry.is_finite()) {
-        return Err(PyValueError::new_err("must be a square matrix of finite numbers"));
-    }
-    let found = of_matrix(&DMatrix::from_fn(order, order, |row, column| matrix[(row, column)]));
-    let flat: Vec<f64> = (0..order * order).map(|index| found[(index / order, index % order)]).collect();
-    flat.to_pyarray(py).reshape([order, order])
+    scenario: &Scenario,
+    at: f64,
+    period: Option<f64>,
+    delay: Option<f64>,
+    opened: Option<&str>,
+) -> PyResult<Model<'py>> {
+    let inner = &scenario.inner;
+    let model = match (opened.map(loop_break).transpose()?, period) {
+        (Some(_), Some(_)) => {
+            let why = "period must be left out where a loop is cut open: it is the law's own";
+            return Err(PyValueError::new_err(why));
+        }
+        (Some(opened), None) => {
+            checked_times(1.0, delay)?;
+            StateSpace::of_loop(inner, opened, delay)
+        }
+        (None, Some(period)) => {
+            checked_times(period, delay)?;
+            StateSpace::of_sampled_body(inner, at, period, delay)
+        }
+        (None, None) if delay.is_some() => return Err(PyValueError::new_err("delay needs a period")),
+        (None, None) => StateSpace::of_body(inner, at),
+    };
+    let StateSpace { matrices: TransferMatrices { a, b, c, d }, states, inputs, outputs, period } =
+        model.map_err(|fault| scenario.key_error(fault))?;
+    let named = |all: Vec<Signal>| all.into_iter().map(|signal| (signal.name, signal.unit)).collect();
+    let matrices = (array(py, &a)?, array(py, &b)?, array(py, &c)?, array(py, &d)?);
+    Ok((matrices, (named(states), named(inputs), named(outputs)), period))
 }
 
-/// The change of a motion, as the logarithm of its size, up to which it neither grows nor decays over a period (s).
+fn checked_times(period: f64, delay: Option<f64>) -> PyResult<()> {
+    let delay = delay.unwrap_or(0.0);
+    if period > 0.0 && period.is_finite() && (0.0..f64::INFINITY).contains(&delay) {
+        return Ok(());
+    }
+    let why = format!("period must be positive and delay 0 or more, got {period:?} and {delay:?}");
+    Err(PyValueError::new_err(why))
+}
+
+/// The matrices a and b of x' = a x + b u at samples `period` (s) apart, whose inputs act `delay` (s) late: the last states
+/// are the inputs of the returned number of earlier samples.
 #[pyfunction]
-pub fn steady_change(period: f64) -> f64 {
-    margins::steady_change(period)
+pub fn sampled<'py>(
+    py: Python<'py>,
+    a: PyReadonlyArray2<'py, f64>,
+    b: PyReadonlyArray2<'py, f64>,
+    period: f64,
+    delay: f64,
+) -> PyResult<(Array<'py>, Array<'py>, usize)> {
+    checked_times(period, Some(delay))?;
+    let sampled = SampledSystem::new(&matrix(&a), &matrix(&b), period, delay);
+    Ok((array(py, &sampled.a)?, array(py, &sampled.b)?, sampled.waiting))
+}
+
+/// The margins of some inputs of a loop that is cut open, which are off together: factor below 1, factor above 1, and phase
+/// (rad).
+#[pyfunction]
+pub fn common_margins(
+    matrices: [PyReadonlyArray2<'_, f64>; 4],
+    period: Option<f64>,
+    signals: Vec<String>,
+    inputs: Vec<usize>,
+) -> PyResult<(f64, f64, f64)> {
+    let [a, b, c, d] = matrices.each_ref().map(matrix);
+    let found = CommonMargins::from_transfer(TransferMatrices { a, b, c, d }, period, signals, &inputs);
+    let found = found.map_err(|fault| PyValueError::new_err(fault.to_string()))?;
+    Ok((found.gain_below, found.gain_above.unwrap_or(f64::INFINITY), found.phase_rad))
 }

@@ -5,6 +5,7 @@
 //! perturbation of the matrix of loop gains \[SeilerPackardGahinet20\].
 
 mod common_delay;
+mod common_factor;
 mod crossings;
 mod frequency_grid;
 pub(crate) mod frequency_response;
@@ -21,6 +22,7 @@ use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
 use serde::{Serialize, Serializer};
 
+pub use common_factor::{CommonMargins, NoMargins};
 pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
 pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
@@ -191,14 +193,13 @@ impl SignalMargins {
     fn new(signal: &str, transfer: &SampledTransfer<'_>, sensitivity: &Sensitivity, own: &[usize]) -> Self {
         let loci = loci(sensitivity.loop_transfers(own));
         let crossings = Crossings::find(transfer, &loci);
-        let factors = || crossings.phase.iter().map(|crossing| crossing.factor);
-        let phases = crossings.gain.iter().map(|crossing| crossing.phase_rad.abs());
+        let CommonMargins { gain_below, gain_above, phase_rad } = CommonMargins::from_crossings(&crossings);
         let delays = crossings.gain.iter().filter_map(|crossing| crossing.delay_s);
         Self {
             signal: signal.to_owned(),
-            gain_below: factors().filter(|factor| *factor < 1.0).fold(0.0, f64::max),
-            gain_above: factors().filter(|factor| *factor >= 1.0).min_by(f64::total_cmp),
-            phase_rad: phases.fold(PI, f64::min),
+            gain_below,
+            gain_above,
+            phase_rad,
             delay_s: delays.min_by(f64::total_cmp),
             modulus: sensitivity.modulus(own),
             disk: sensitivity.disk(own),

@@ -12,7 +12,7 @@ use crate::eigenvalues::eigenvector;
 use crate::open_loop::OpenLoop;
 
 /// Rate (1/s) below which a motion neither grows nor decays: by a factor e in three years.
-const STEADY_RATE: f64 = 1e-8;
+pub(super) const STEADY_RATE: f64 = 1e-8;
 /// Distance of a pole from the unit circle that may be rounding, for periods shorter than 1 ms.
 const ROUNDING: f64 = 1e-11;
 

@@ -4,7 +4,7 @@
 //! estimators keep their periods. Limits, quantisation and noise are left out. The loop transfer has the sign of
 //! negative feedback: the closed loop has the state matrix a - b (1 + d)^-1 c.
 
-mod actuation;
+pub(crate) mod actuation;
 pub(crate) mod attitude_rows;
 pub(crate) mod block_matrices;
 mod measurement;
@@ -119,6 +119,27 @@ impl OpenLoop {
         Self::from_parts(&LoopParts::from_scenario(scenario, opened)?)
     }
 
+    /// Returns the loop of a scenario, cut open, whose actuators have another delay (s).
+    ///
+    /// # Errors
+    /// See [`OpenLoop::from_scenario`].
+    pub fn with_delay(scenario: &Scenario, opened: LoopBreak, delay: f64) -> Result<Self, ConfigError> {
+        Self::from_parts(&LoopParts::with_delay(scenario, opened, Some(delay))?)
+    }
+
+    /// Returns the inputs of the transfer, which are also its outputs: of several samples in a period, each signal has the
+    /// number of its sample.
+    pub fn channels(&self) -> Vec<Signal> {
+        if self.samples == 1 {
+            return self.signals.clone();
+        }
+        let numbered = |signal: &Signal, sample| Signal {
+            name: format!("{}_{sample}", signal.name),
+            unit: signal.unit.clone(),
+        };
+        (0..self.samples).flat_map(|k| self.signals.iter().map(move |signal| numbered(signal, k))).collect()
+    }
+
     /// Returns the loop of these parts.
     ///
     /// # Errors
@@ -135,13 +156,22 @@ impl<'a> LoopParts<'a> {
     /// # Errors
     /// See [`OpenLoop::from_scenario`].
     pub(crate) fn from_scenario(scenario: &'a Scenario, opened: LoopBreak) -> Result<Self, ConfigError> {
+        Self::with_delay(scenario, opened, None)
+    }
+
+    /// Returns the parts of a scenario's loop whose actuators have another delay (s), if one is given.
+    fn with_delay(
+        scenario: &'a Scenario,
+        opened: LoopBreak,
+        delay: Option<f64>,
+    ) -> Result<Self, ConfigError> {
         if let Some(fault) = scenario.mode_choice_fault().or_else(|| scenario.stage_choice_fault()) {
             return Err(fault);
         }
         let model = LinearModel::from_scenario(scenario, 0.0)?;
         let axes = model.inputs.len();
         let body = BodyMatrices::new(model)?;
-        let actuators = actuation::combined_response(scenario, axes)?;
+        let actuators = actuation::combined_response(scenario, axes, delay)?;
         let parts = LinearLoop::from_scenario(scenario)?;
         let law = AxisLaws::new(scenario, &body)?;
         Ok(Self { scenario, body, actuators, parts, law, opened })
@@ -255,7 +285,11 @@ impl LoopParts<'_> {
             LoopBreak::Torque => inputs.clone(),
             LoopBreak::Command => {
                 let gain = self.actuators.gain;
-                let unit = |unit: &str| if gain == 1.0 { unit.to_owned() } else { format!("{unit}/{gain}") };
+                let unit = |unit: &str| match gain {
+                    1.0 => unit.to_owned(),
+                    1e-4..1e5 => format!("{unit}/{gain}"),
+                    _ => format!("{unit}/{gain:e}"),
+                };
                 let command = |input: &Signal| Signal {
                     name: input.name.replace("torque", "command"),
                     unit: unit(&input.unit),

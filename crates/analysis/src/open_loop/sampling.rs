@@ -7,6 +7,8 @@ use flexsc_numerics::exponential::exponential;
 use nalgebra::DMatrix;
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 
+use crate::linear_model::Signal;
+
 /// Delay as whole periods and the rest.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Lateness {
@@ -77,6 +79,15 @@ impl SampledSystem {
             }
         }
         Self { a: big, b: into, waiting }
+    }
+
+    /// Returns the states that are inputs of earlier samples, the latest first.
+    pub fn waiting_inputs(&self, inputs: &[Signal]) -> Vec<Signal> {
+        let earlier = |input: &Signal, age| Signal {
+            name: format!("{}_{age}_ago", input.name),
+            unit: input.unit.clone(),
+        };
+        (1..=self.waiting).flat_map(|age| inputs.iter().map(move |input| earlier(input, age))).collect()
     }
 }
 

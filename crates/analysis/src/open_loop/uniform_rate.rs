@@ -8,7 +8,6 @@ use super::block_matrices::{blocks, stacked};
 use super::measurement::{EstimatorBlock, sensor_block};
 use super::sampling::{Lateness, SampledSystem};
 use super::{LoopBreak, LoopParts, OpenLoop, TransferMatrices, axis_prefix, block_states};
-use crate::linear_model::Signal;
 
 /// Mean of each torque over the coming period, by the states of the sampled body and by its inputs.
 struct ActingTorque {
@@ -93,13 +92,7 @@ pub fn sampled_loop(parts: &LoopParts<'_>) -> Result<OpenLoop, ConfigError> {
             blocks([[&(&block.d * &seen), &block.c]]) * out,
         )
     };
-    let waiting = (1..=plant.waiting).flat_map(|age| {
-        let earlier = move |input: &Signal| Signal {
-            name: format!("{}_{age}_ago", input.name),
-            unit: input.unit.clone(),
-        };
-        body.inputs.iter().map(earlier)
-    });
+    let waiting = plant.waiting_inputs(&body.inputs);
     let states = body.states.iter().cloned().chain(waiting).chain(block_states(&block)).collect();
     let signals = parts.signals();
     let d = DMatrix::zeros(c.nrows(), b.ncols());

@@ -80,11 +80,11 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
 ///
 /// # Errors
 /// A scenario without a requirement on a pointing index, and a run that fails.
-pub fn budget_json(scenario: Scenario, runs: u64, jobs: u16) -> Result<String, String> {
+pub fn pointing_budget(scenario: Scenario, runs: u64, jobs: u16) -> Result<Json, String> {
     let name = scenario.name.clone();
     let setup = CampaignSetup { origin: name, runs, jobs, units: Units::Si, consent: None };
     let budgets = setup.budgets(scenario).map_err(|failure| failure.to_string())?;
-    Ok(budgets.json().remove(0).to_string())
+    Ok(budgets.json().remove(0))
 }
 
 /// Runs the campaign, and computes the budgets.

@@ -21,13 +21,13 @@ scenario, its seed and its number: its numbers are the same on every machine and
 
 from __future__ import annotations
 
-import json
 import os
 from importlib import import_module
 from operator import index as _index
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis as _analysis
 from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._log import Log
@@ -266,7 +266,7 @@ def estimate(scenario: Scenario, runs: int = 1, log: Detail = "none") -> dict[st
     count = _index(runs)
     if count < 1:
         raise ValueError(f"runs must be at least 1, got {runs}")
-    values: dict[str, Any] = json.loads(engine.estimate_json(_checked(scenario)._native, count, log))
+    values: dict[str, Any] = _analysis("estimate", _checked(scenario), runs=count, log=log)
     return values
 
 
@@ -282,7 +282,7 @@ def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
     >>> round(values["cycles"][0]["period_s"], 2)
     44.14
     """
-    values: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(_checked(scenario)._native))
+    values: dict[str, list[dict[str, Any]]] = _analysis("rigid_cycles", _checked(scenario))
     return values
 
 
@@ -321,7 +321,7 @@ def schema() -> dict[str, Any]:
     >>> flexsc.schema()["properties"]["duration"]["description"]
     'Simulated time (s).'
     """
-    values: dict[str, Any] = json.loads(engine.schema_json())
+    values: dict[str, Any] = _analysis("schema")
     return values
 
 
@@ -332,7 +332,7 @@ def metrics() -> dict[str, dict[str, str]]:
     >>> flexsc.metrics()["cycle_period_s"]["unit"]
     's'
     """
-    values: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
+    values: dict[str, dict[str, str]] = _analysis("metrics")
     return values
 
 
@@ -343,5 +343,5 @@ def topics() -> dict[str, dict[str, Any]]:
     >>> flexsc.topics()["rate"]["fields"][0]
     {'name': 'rate_rad_s', 'doc': 'Rate, elastic part included (rad/s).', 'kind': 'number'}
     """
-    values: dict[str, dict[str, Any]] = json.loads(engine.topics_json())
+    values: dict[str, dict[str, Any]] = _analysis("topics")
     return values

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._equality import Compared
 
 if TYPE_CHECKING:
@@ -158,7 +157,7 @@ def pointing_budget(scenario: Scenario, runs: int, jobs: int) -> PointingBudget:
     """Return the pointing budget of a scenario's requirements."""
     if runs < 1:
         raise ValueError(f"runs must be 1 or more, got {runs}")
-    found = json.loads(engine.budget_json(scenario._native, runs, jobs))
+    found = analysis("budget", scenario, runs=runs, jobs=jobs)
     return PointingBudget(
         runs=found["runs"],
         indices=tuple(_index(each) for each in found["budgets"]),

@@ -7,13 +7,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc._linear import Linear
+from flexsc._values import AXES
 
 if TYPE_CHECKING:
-    from flexsc._blocks import Matrix
+    import numpy as np
+    import numpy.typing as npt
+
+    Matrix = npt.NDArray[np.float64]
 
 
-_AXES = ("roll", "pitch", "yaw")
-_ERRORS = (*_AXES, *(f"{axis}_rate" for axis in _AXES))
+_ERRORS = (*AXES, *(f"{axis}_rate" for axis in AXES))
 # What a name of an output may begin with, beside the axis alone.
 _QUANTITIES = ("torque", "acceleration", "command")
 
@@ -51,10 +54,10 @@ def law_of(
     if isinstance(controller, Mapping):
         if inputs is not None or outputs is not None:
             raise ValueError("inputs and outputs are those of one controller about three axes together")
-        if set(controller) != set(_AXES):
+        if set(controller) != set(AXES):
             names = ", ".join(map(str, controller))
-            raise ValueError(f"controllers must be given for {', '.join(_AXES)}, got {names}")
-        return {"per_axis": {axis: law_of(controller[axis], settings, None, None) for axis in _AXES}}
+            raise ValueError(f"controllers must be given for {', '.join(AXES)}, got {names}")
+        return {"per_axis": {axis: law_of(controller[axis], settings, None, None) for axis in AXES}}
     found = _controller(controller)
     if settings.method not in ("held", "tustin"):
         raise ValueError(f"method must be 'held' or 'tustin', got {settings.method!r}")
@@ -112,17 +115,17 @@ def _outputs(controller: _Controller, given: Sequence[str] | None, command: str)
     if names is None:
         if count != 3:
             raise ValueError(
-                f"a controller must have one output, about its axis, or three about {', '.join(_AXES)}, "
+                f"a controller must have one output, about its axis, or three about {', '.join(AXES)}, "
                 f"or as many as `outputs` names, got {count}"
             )
-        return list(_AXES)
+        return list(AXES)
     if len(names) != count:
         raise ValueError(f"outputs must name {count} outputs of the controller, got {len(names)}: {names}")
     axes = []
     for name in names:
         quantity, _, axis = name.rpartition("_")
-        if axis not in _AXES or quantity not in ("", *_QUANTITIES):
-            accepted = ", ".join((*_AXES, *(f"{command}_{each}" for each in _AXES)))
+        if axis not in AXES or quantity not in ("", *_QUANTITIES):
+            accepted = ", ".join((*AXES, *(f"{command}_{each}" for each in AXES)))
             raise ValueError(f"outputs must be among {accepted}, got {name!r}")
         if quantity in ("torque", "acceleration") and quantity != command:
             raise ValueError(f"the output {name!r} needs command={quantity!r}, got {command!r}")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._sampled_loop import _columns, _floats
 
 if TYPE_CHECKING:
@@ -55,9 +55,18 @@ def relay_damping(
     >>> [round(float(factor), 3) for factor in damped["phase_factor"]]
     [0.966, 0.212]
     """
-    relay = (period, delay, period if on_time is None else on_time)
-    mode, amplitudes = (damping, acceleration), (amplitude, threshold)
-    return _columns(json.loads(engine.relay_damping_json(_floats(frequencies), relay, mode, amplitudes)))
+    rows = analysis(
+        "relay_damping",
+        frequencies=_floats(frequencies),
+        acceleration=acceleration,
+        period=period,
+        delay=delay,
+        on_time=period if on_time is None else on_time,
+        damping=damping,
+        amplitude=amplitude,
+        threshold=threshold,
+    )
+    return _columns(rows)
 
 
 def observer_region(
@@ -92,7 +101,7 @@ def observer_region(
     (1.35, (2,))
     """
     observer = ((rigid, 0.0, 0.0), frequency, period, damping)
-    found = json.loads(engine.observer_region_json(observer, kappa, _floats(elastic)))
+    found = analysis("observer_region", observer=observer, kappa=kappa, elastic=_floats(elastic))
     rows = [
         {"elastic": w2, "next_min": (edge or [None])[0], "next_max": (edge or [None])[-1]}
         for w2, edge in ((row["elastic"], row["next"]) for row in found["edges"])
@@ -133,7 +142,7 @@ def observer_margin(
     import numpy as np
 
     observer = (weights, frequency, period, damping)
-    found = json.loads(engine.observer_margin_json(observer, _floats(kappas)))
+    found = analysis("observer_margin", observer=observer, kappas=_floats(kappas))
     names = ("gain_max", "gain_best", "spectral_radius")
     margin = found["margin"] or dict.fromkeys(names, float("nan"))
     return {**margin, "radii": np.array(found["spectral_radius"], dtype=np.float64)}
@@ -182,14 +191,9 @@ def identify(
     import numpy as np
 
     pairs = [(float(w), float(influence)) for w, influence in modes]
-
-    def row(part: float) -> dict[str, Any]:
-        found: dict[str, Any] = json.loads(
-            engine.identify_json(pairs, (part, influence_off), rate, (runs, cycles, seed), yes)
-        )
-        return found
-
-    rows = [row(part) for part in _floats(off)]
+    options = {"modes": pairs, "influence_off": influence_off, "rate": rate, "yes": yes}
+    options |= {"runs": runs, "cycles": cycles, "seed": seed}
+    rows = [analysis("identify", off=part, **options) for part in _floats(off)]
     times = [np.array(row.pop("times_s"), dtype=np.float64) for row in rows]
     return {**_columns(rows), "times_s": times}
 

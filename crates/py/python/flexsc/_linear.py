@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
-from flexsc._sampling import sampled
+from flexsc import _native as engine
 from flexsc._signal import Signal, positions
 from flexsc._values import counted
 
@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from flexsc._margins import Margins
     from flexsc._simulator import Simulator
     from flexsc._simulators import Simulators
+
+
+Break = Literal["command", "torque", "measurement"]
+"""The point at which a loop is opened."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +82,13 @@ class Linear:
     >>> model.period is None, flexsc.Scenario.example("relay-fixed").linearise(period=0.5).period
     (True, 0.5)
     """
+
+    @classmethod
+    def of(cls, model: engine._Model) -> Linear:
+        """Return a model of the engine."""
+        matrices, signals, period = model
+        states, inputs, outputs = (tuple(Signal(*each) for each in kind) for kind in signals)
+        return cls(*matrices, states, inputs, outputs, period)
 
     def eigenfrequencies(self) -> npt.NDArray[np.float64]:
         """Return the natural frequencies |s| of the poles (rad/s), increasing; a pair of poles counts once.
@@ -243,9 +254,7 @@ class Linear:
 
         if self.period is not None:
             raise ValueError("a model that is sampled already cannot be sampled")
-        if not (0.0 < period < np.inf and 0.0 <= delay < np.inf):
-            raise ValueError(f"period must be positive and delay 0 or more, got {period} and {delay}")
-        a, b, waiting = sampled(self.a, self.b, period, delay)
+        a, b, waiting = engine.sampled(self.a, self.b, period, delay)
         c = np.hstack([self.c, np.zeros((len(self.c), len(a) - len(self.a)))])
         under_way = tuple(
             Signal(f"{signal.name}_{back + 1}_ago", signal.unit)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._named import Brief
 
 if TYPE_CHECKING:
@@ -14,7 +13,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from flexsc._open_loop import Break
+    from flexsc._linear import Break
     from flexsc._scenario import Scenario
 
 
@@ -230,7 +229,7 @@ def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
     """Return the margins of the loop of a scenario, opened at a point."""
     import numpy as np
 
-    found = json.loads(engine.margins_json(scenario._native, loop))
+    found = analysis("margins", scenario, opened=loop)
     several = found["samples"] > 1
     return StabilityMargins(
         loop=loop,

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
-from flexsc._blocks import AXES, kind_of
+from flexsc._values import AXES, kind_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -117,16 +114,10 @@ def _of_modes(scenario: Scenario) -> Values:
     path, sensor = _first_sensor(keys["sensor"])
     if path and sensor.get("point", hub[0]) not in hub:
         scenario = scenario.with_(f"{path}.point", hub[0])
-    model = json.loads(engine.linear_json(scenario._native, 0.0))
-    return np.array(list(_columns(model)), dtype=np.float64).reshape(-1, 3)
-
-
-def _columns(model: dict[str, Any]) -> Iterator[list[float]]:
-    """The rotation about each axis by each mode, at the first sensor."""
-    angles = [model["c"][k] for k, output in enumerate(model["outputs"]) if output["name"] in AXES]
-    for column, state in enumerate(model["states"]):
-        if state["name"].startswith("mode") and state["name"].endswith("_displacement"):
-            yield [row[column] for row in angles]
+    model = scenario.linearise().select(outputs=AXES)
+    displacements = [state.name.endswith("_displacement") for state in model.states]
+    # The rotation about each axis by each mode, at the first sensor.
+    return model.c[:, displacements].T
 
 
 def _first_sensor(sensors: Any) -> tuple[str, dict[str, Any]]:

@@ -39,54 +39,33 @@ __all__ = [
     "Truth",
     "Work",
     "__version__",
+    "analysis",
     "arrow_schema",
     "arrow_stream",
     "beside_parts",
-    "bounds_json",
-    "budget_json",
     "campaign_figures",
     "campaign_statistics",
+    "common_margins",
     "directory_figures",
-    "estimate_json",
     "examples",
-    "exponential",
     "export_fmu",
     "export_log",
     "export_run",
-    "gain_regions_json",
-    "identify_json",
-    "linear_json",
+    "linearise",
     "log_figure",
     "log_figures",
     "log_of",
-    "loop_json",
     "main",
-    "margins_json",
-    "meanings_json",
-    "metrics_json",
     "modes_figure",
-    "observer_margin_json",
-    "observer_region_json",
     "parts_of",
     "persistence",
-    "plan_json",
     "plan_torque",
-    "relay_damping_json",
-    "rigid_cycles_json",
-    "rivals_json",
-    "robust_gains_json",
-    "schema_json",
+    "sampled",
     "simulate",
-    "spectrum_json",
-    "stability_map_json",
-    "steady_change",
     "table_ending",
     "text_beside_parts",
     "to_mcap",
-    "topics_json",
-    "tuned_json",
     "with_parts",
-    "worst_case_json",
     "write",
 ]
 
@@ -100,6 +79,14 @@ _Column: TypeAlias = (
     | tuple[npt.NDArray[np.uint8], list[str]]
     | tuple[npt.NDArray[np.uint32], dict[str, _Column]]
 )
+
+_Matrices: TypeAlias = tuple[
+    npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64]
+]
+
+_Signals: TypeAlias = list[tuple[str, str]]
+
+_Model: TypeAlias = tuple[_Matrices, tuple[_Signals, _Signals, _Signals], float | None]
 
 _Summary: TypeAlias = tuple[str, str, int, float, float, list[tuple[float, float]]]
 
@@ -1376,91 +1363,24 @@ def simulate(
 def to_mcap(
     scenario: Scenario, run: int, log: str, path: str | os.PathLike[str], stepped: Commands | None
 ) -> int: ...
-def estimate_json(scenario: Scenario, runs: int, log: str) -> str: ...
-def rigid_cycles_json(scenario: Scenario) -> str: ...
-def plan_json(scenario: Scenario, band: float) -> str: ...
 def plan_torque(scenario: Scenario, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
-def rivals_json(scenario: Scenario, band: float, peak_torque: float | None) -> str: ...
-def gain_regions_json(
-    scenario: Scenario,
-    frequencies: Sequence[float],
-    gains: tuple[float, float, float],
-    limit: float,
-    settled: tuple[float | None, float, bool, bool],
-) -> str: ...
-def robust_gains_json(
-    scenario: Scenario,
-    frequencies: Sequence[float],
-    gains: tuple[float, float, float],
-    off: tuple[float, float],
-    goal: tuple[bool, float, float],
-    settled: tuple[float | None, float, bool, bool],
-) -> str: ...
-def stability_map_json(
-    scenario: Scenario,
-    frequencies: Sequence[float],
-    periods: Sequence[float],
-    gain: float | None,
-    settled: tuple[float | None, float, bool, bool],
-) -> str: ...
-def relay_damping_json(
-    frequencies: Sequence[float],
-    relay: tuple[float, float, float],
-    mode: tuple[float, float],
-    amplitudes: tuple[float, float],
-) -> str: ...
-def observer_region_json(
-    observer: tuple[tuple[float, float, float], float, float, float], kappa: float, elastic: Sequence[float]
-) -> str: ...
-def observer_margin_json(
-    observer: tuple[tuple[float, float, float], float, float, float], kappas: Sequence[float]
-) -> str: ...
-def identify_json(
-    modes: Sequence[tuple[float, float]],
-    off: tuple[float, float],
-    rate: float,
-    extent: tuple[int, int, int],
-    yes: bool,
-) -> str: ...
 def persistence(sensitivities: npt.NDArray[np.float64]) -> float: ...
 def write(path: str | os.PathLike[str], data: bytes) -> None: ...
 def with_parts(scenario: Scenario, parts: Sequence[tuple[str, object]]) -> Scenario: ...
 def beside_parts(text: str, name: str, parts: Sequence[tuple[str, object]]) -> Scenario: ...
 def parts_of(scenario: Scenario) -> list[tuple[str, Any]]: ...
 def text_beside_parts(scenario: Scenario) -> str: ...
-def loop_json(scenario: Scenario) -> str: ...
-def linear_json(scenario: Scenario, at: float) -> str: ...
-def margins_json(scenario: Scenario, opened: str) -> str: ...
-def tuned_json(
-    scenario: Scenario,
-    keys: list[tuple[str, tuple[float, float]]],
-    opened: str,
-    goal: tuple[str, list[str]],
-    bandwidth: float | None,
-    is_nominal: bool,
-) -> tuple[str, str]: ...
-def spectrum_json(
-    scenario: Scenario,
-    signals: list[str],
-    window: float | None,
-    separation: float | None,
-    speeds: list[float] | None,
-) -> str: ...
-def worst_case_json(
-    scenario: Scenario,
-    quantity: tuple[str, str],
-    opened: str,
-    is_least: bool,
-    points: int,
-    jobs: int,
-) -> tuple[str, Scenario]: ...
-def bounds_json(scenario: Scenario) -> str: ...
-def budget_json(scenario: Scenario, runs: int, jobs: int) -> str: ...
-def exponential(matrix: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
-def steady_change(period: float) -> float: ...
+def analysis(
+    name: str, scenario: Scenario | None, options: dict[str, object]
+) -> tuple[str, Scenario | None]: ...
+def linearise(
+    scenario: Scenario, at: float, period: float | None, delay: float | None, opened: str | None
+) -> _Model: ...
+def sampled(
+    a: npt.NDArray[np.float64], b: npt.NDArray[np.float64], period: float, delay: float
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], int]: ...
+def common_margins(
+    matrices: _Matrices, period: float | None, signals: list[str], inputs: list[int]
+) -> tuple[float, float, float]: ...
 def examples() -> list[tuple[str, str]]: ...
-def schema_json() -> str: ...
-def meanings_json(scenario: Scenario) -> str: ...
-def metrics_json() -> str: ...
-def topics_json() -> str: ...
 def main(args: Sequence[str]) -> int: ...

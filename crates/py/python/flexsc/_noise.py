@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._named import Brief
 
 if TYPE_CHECKING:
@@ -283,8 +282,8 @@ def noise_spectrum(
     if isinstance(signals, str):
         signals = [signals]
     given = None if speeds is None else np.asarray(speeds, dtype=np.float64).ravel().tolist()
-    text = engine.spectrum_json(scenario._native, list(signals or ()), window, separation, given)
-    found = json.loads(text)
+    options = {"signals": list(signals or ()), "window": window, "separation": separation, "speeds": given}
+    found = analysis("spectrum", scenario, **options)
     sources = tuple(found["sources"])
     names = [each["output"] for each in found["outputs"]]
     wheels = found.get("wheels")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._named import Brief
 
 if TYPE_CHECKING:
@@ -200,7 +199,7 @@ OutputBound.__module__ = Witness.__module__ = "flexsc"
 
 def output_bounds(scenario: Scenario) -> list[OutputBound]:
     """Return the ranges of all claims of a scenario."""
-    return [_bound(each) for each in json.loads(engine.bounds_json(scenario._native))]
+    return [_bound(each) for each in analysis("bounds", scenario)]
 
 
 def _bound(found: dict[str, Any]) -> OutputBound:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -30,7 +30,7 @@ class Plan(Mapping[str, Any]):
     def __init__(self, scenario: Scenario, band: float) -> None:
         self._scenario = scenario
         self._band = band
-        self._values: dict[str, Any] = json.loads(engine.plan_json(scenario._native, band))
+        self._values: dict[str, Any] = analysis("plan", scenario, band=band)
 
     def torque(self, time: npt.ArrayLike) -> npt.NDArray[Any]:
         """Return the command at times (s), in their shape (N m, or rad/s² if the hub's motion is
@@ -55,8 +55,8 @@ class Plan(Mapping[str, Any]):
         >>> rivals[0]["command"], round(rivals[0]["peak_torque_nm"], 1)       # N m
         ('sine p=0', 316.4)
         """
-        rows: list[dict[str, Any]] = json.loads(
-            engine.rivals_json(self._scenario._native, self._band, peak_torque)
+        rows: list[dict[str, Any]] = analysis(
+            "rivals", self._scenario, band=self._band, peak_torque=peak_torque
         )
         return rows
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._scenario import Scenario
 
 if TYPE_CHECKING:
@@ -55,7 +54,8 @@ def gain_region(
     True
     """
     settled = (band, horizon, dominant_alone, yes)
-    rows = json.loads(engine.gain_regions_json(scenario._native, _floats(frequencies), gains, limit, settled))
+    options = {"frequencies": _floats(frequencies), "gains": gains, "limit": limit, "settled": settled}
+    rows = analysis("gain_region", scenario, **options)
     for row in rows:
         row["gain_min"], row["gain_max"] = row.pop("gain") or (None, None)
     return _columns(rows)
@@ -102,15 +102,17 @@ def robust_gains(
     >>> best["gain"].shape, bool(best["spectral_radius"][0] < 1.0)
     ((1,), True)
     """
-    rows = json.loads(
-        engine.robust_gains_json(
-            scenario._native,
-            _floats(frequencies),
-            gains,
-            (off, delay),
-            (itae, quantile, margin),
-            (band, horizon, dominant_alone, yes),
-        )
+    rows = analysis(
+        "robust_gains",
+        scenario,
+        frequencies=_floats(frequencies),
+        gains=gains,
+        off=off,
+        delay=delay,
+        itae=itae,
+        quantile=quantile,
+        margin=margin,
+        settled=(band, horizon, dominant_alone, yes),
     )
     return _columns(rows)
 
@@ -151,7 +153,8 @@ def stability_map(
     """
     settled = (band, horizon, dominant_alone, yes)
     rows, columns = _floats(frequencies), _floats(periods)
-    cells = json.loads(engine.stability_map_json(scenario._native, rows, columns, gain, settled))
+    options = {"frequencies": rows, "periods": columns, "gain": gain, "settled": settled}
+    cells = analysis("stability_map", scenario, **options)
     return {name: values.reshape(len(rows), len(columns)) for name, values in _columns(cells).items()}
 
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal, cast
 
+from flexsc import _native as engine
 from flexsc._scenario_file import ScenarioFile
 
 if TYPE_CHECKING:
@@ -14,10 +15,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from flexsc._budget import PointingBudget
-    from flexsc._linear import Linear
+    from flexsc._linear import Break, Linear
     from flexsc._loop_margins import StabilityMargins
     from flexsc._noise import NoiseSpectrum
-    from flexsc._open_loop import Break
     from flexsc._output_bounds import OutputBound
     from flexsc._scenario import Scenario
     from flexsc._structured_tuning import TunedScenario
@@ -62,12 +62,13 @@ class ScenarioAnalysis(ScenarioFile):
         (6, 6)
 
         Raises:
-            ScenarioError: The body is not a linear system, because it has driven appendages.
-            ValueError: The loop is not linear, or a time is not accepted.
+            ScenarioError: The body is not a linear system, because it has driven appendages, or the loop is
+                not linear: the key, and the reason.
+            ValueError: A time is not accepted, or there is no such point.
         """
-        from flexsc._open_loop import linearise
+        from flexsc._linear import Linear
 
-        return linearise(self._scenario, at, period, delay, loop)
+        return Linear.of(engine.linearise(self._native, at, period, delay, loop))
 
     def margins(self, loop: Break = "command") -> StabilityMargins:
         """Return the stability margins of the scenario's loop, opened at a point: `flexsc margins`.

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._equality import Compared
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flexsc._open_loop import Break
+    from flexsc._linear import Break
     from flexsc._scenario import Scenario
 
 
@@ -205,11 +204,10 @@ def tune(
     objective, keep = goal
     if isinstance(keep, str):
         raise TypeError(f"keep: must be a sequence of texts, such as [{keep!r}], got a text")
-    kept = (objective, list(keep))
-    table, text = engine.tuned_json(scenario._native, keys, loop, kept, bandwidth, not corners)
-    found = json.loads(table)
+    options = {"keys": keys, "opened": loop, "objective": objective, "keep": list(keep)}
+    found = analysis("tune", scenario, **options, bandwidth=bandwidth, is_nominal=not corners)
     return TunedScenario(
-        scenario=type(scenario).parse(text, scenario.name),
+        scenario=found["scenario"],
         keys={each["key"]: each["after"] for each in found["keys"]},
         keys_before={each["key"]: each["before"] for each in found["keys"]},
         least_margin_before=found["least_margin_before"],

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._equality import equal
 from flexsc._named import no_such
 
@@ -43,8 +42,7 @@ _IN_TEXT = re.compile(r"\(((?:rad|deg|m|s|N|kg|J|T|A|1/s|Hz|sqrt)\b(?:[^(),;]|\(
 
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
     """Return `unit` and `doc` of the metrics by name, for runs of a scenario if it is given."""
-    text = engine.metrics_json() if scenario is None else engine.meanings_json(scenario._native)
-    values: dict[str, dict[str, str]] = json.loads(text)
+    values: dict[str, dict[str, str]] = analysis("metrics", scenario)
     return values
 
 
@@ -88,7 +86,7 @@ def _described() -> dict[tuple[str, str], str]:
             elif field["kind"] == "number" and (own or unit):
                 yield name, own or unit
 
-    topics = json.loads(engine.topics_json()).items()
+    topics = analysis("topics").items()
     return {(topic, name): unit for topic, of in topics for name, unit in units("", "", of["fields"])}
 
 
@@ -101,7 +99,7 @@ def in_text(text: str) -> str:
 @lru_cache(maxsize=256)
 def of_key(path: str) -> str:
     """The unit of a key of a scenario, such as `body.planar.angle`; empty without one."""
-    schema = json.loads(engine.schema_json())
+    schema = analysis("schema")
     places: list[tuple[dict[str, Any], str]] = [(schema, "")]
     for step in re.sub(r"\[\d+\]", "[]", path).replace("[]", ".[]").split("."):
         places = [inner for place, _ in places for inner in _within(schema, place, step)]

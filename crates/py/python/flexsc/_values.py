@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from flexsc._native import _Column
     from flexsc._scenario import Scenario
 
+AXES = ("roll", "pitch", "yaw")
 # No scenario is nested deeper; a dictionary may hold itself.
 _DEEPEST = 16
 _DATE = "$__toml_private_datetime"
@@ -28,6 +29,11 @@ _DATE = "$__toml_private_datetime"
 def counted(count: int, thing: str) -> str:
     """Return a count and what is counted: `1 mode`, `2 modes`."""
     return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def kind_of(part: str | Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return the kind of a part and its keys: a part without keys is a word."""
+    return (part, {}) if isinstance(part, str) else next(iter(part.items()))
 
 
 def toml(origin: str, key: str, value: object, depth: int = 0) -> str:

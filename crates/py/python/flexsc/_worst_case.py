@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._equality import Compared
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from flexsc._open_loop import Break
+    from flexsc._linear import Break
     from flexsc._scenario import Scenario
 
 Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
@@ -154,8 +153,9 @@ def worst_case(
         raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}")
     if least and metric is None:
         raise ValueError("least is for a metric: it is known of a requirement and of a margin")
-    text, witness = engine.worst_case_json(scenario._native, chosen[0], loop, least, points, jobs)
-    found = json.loads(text)
+    kind, name = chosen[0]
+    options = {"kind": kind, "name": name, "opened": loop, "is_least": least}
+    found = analysis("worst", scenario, **options, points=points, jobs=jobs)
     # JSON has no NaN and no infinity.
     values = np.array([np.nan if value is None else value for value in found["values"]])
     worst, nominal = (np.nan if found[name] is None else found[name] for name in ("worst", "nominal"))
@@ -171,5 +171,5 @@ def worst_case(
         values=values,
         without_value=found["without_value"],
         unstable=found["unstable"],
-        scenario=type(scenario)._of(witness),
+        scenario=found["scenario"],
     )

@@ -1,0 +1,78 @@
+//! Worst case of a scenario over its uncertain keys.
+
+use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::metrics::Selection;
+use flexsc_core::record::StopFlag;
+use flexsc_core::uncertain::UncertainKey;
+use flexsc_core::worst_case::{
+    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase, WorstCaseFault,
+};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+use serde_json::{Value as Json, json};
+
+use super::{Analysis, Answer, Scenario, Subject, loop_break};
+use crate::aside::aside;
+use crate::error::scenario_error;
+
+/// Worst case of a quantity, with its witness. `kind` is `metric`, `requirement` or `margin`.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Worst {
+    kind: String,
+    name: String,
+    opened: String,
+    is_least: bool,
+    points: usize,
+    jobs: usize,
+}
+
+impl Analysis for Worst {
+    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+        let scenario = on.scenario()?;
+        let Self { kind, name, opened, is_least, points, jobs } = self;
+        if points == 0 {
+            return Err(PyValueError::new_err("points must be 1 or more, got 0"));
+        }
+        let inner = scenario.inner.clone();
+        let found = if kind == "margin" {
+            let Some(kind) = MarginKind::ALL.into_iter().find(|kind| kind.word() == name) else {
+                let accepted = MarginKind::ALL.map(|kind| format!("'{}'", kind.word())).join(", ");
+                return Err(PyValueError::new_err(format!("margin must be one of {accepted}, got '{name}'")));
+            };
+            let search = MarginSearch { kind, opened: loop_break(&opened)?, most_loops: points };
+            aside(on.py, move |stop| search.run(&inner, || stop.is_requested()))?
+        } else {
+            let quantity =
+                if kind == "metric" { RunQuantity::Metric(name) } else { RunQuantity::Requirement(name) };
+            let search = MetricSearch { quantity, is_least, most_runs: points, threads: jobs };
+            aside(on.py, move |stop: StopFlag| {
+                let record = stop.clone();
+                let work = move |run: &CampaignRun, selection: &Selection| {
+                    Ok(Campaign::simulate_metrics(run, selection, record.clone())?)
+                };
+                search.run(&inner, &inner.name, work, || stop.is_requested())
+            })?
+        };
+        let found = found.map_err(|fault| match fault {
+            WorstCaseFault::Key(fault) => scenario.key_error(fault),
+            WorstCaseFault::Scenario(error) => scenario_error(error),
+            WorstCaseFault::Request(why) => scenario.error(&why),
+            WorstCaseFault::Interrupted => PyKeyboardInterrupt::new_err(()),
+        })?;
+        let result = table(&found);
+        let witness = Scenario { origin: scenario.inner.name.clone(), inner: found.witness };
+        Ok(Answer { result, scenario: Some(witness) })
+    }
+}
+
+/// The JSON of a worst case, with all points.
+fn table(found: &WorstCase) -> Json {
+    let mut object = found.to_json();
+    let all: Vec<_> = (0..found.points.len()).map(|point| found.key_values(point)).collect();
+    let values: Vec<f64> = found.points.iter().map(|point| point.assessed.value).collect();
+    object["ranges"] = json!(found.ranges.keys.iter().map(UncertainKey::limits).collect::<Vec<_>>());
+    object["rows"] = json!(all);
+    object["values"] = json!(values);
+    object
+}
