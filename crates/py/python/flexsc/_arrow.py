@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from flexsc import _native as engine
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
 _Given = tuple[str, str, int, list[int | list[int]], Any]
 
@@ -48,8 +46,6 @@ def _given(name: str, unit: str, array: npt.NDArray[Any]) -> _Given:
 
 def _joined(parts: list[npt.NDArray[Any]]) -> npt.NDArray[Any]:
     """The rows of all parts, one behind another; rows of unlike shapes as an array of arrays."""
-    import numpy as np
-
     from flexsc._values import objects
 
     if not parts:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from flexsc import _native as engine
 from flexsc._design import Noise, Points, Sample, design
 from flexsc._missing import reading
+from flexsc._numpy import npt
 from flexsc._progress import Progress, callback
 from flexsc._result import Detail
 from flexsc._scenario import Scenario
@@ -19,8 +20,6 @@ from flexsc._values import checked, run_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
-
-    import numpy.typing as npt
 
 
 def campaign(

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from flexsc import _arrow
 from flexsc._equality import equal
 from flexsc._named import library
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
 _Value = TypeVar("_Value")
 
@@ -155,8 +153,6 @@ def _dimensions(name: str, count: int) -> list[str]:
 
 def rectangular(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Return rows within rows as an array of shape (rows, parts, ...), if all rows have the same shape."""
-    import numpy as np
-
     if values.dtype != object or not len(values):
         return values
     rows = [rectangular(row) for row in values]

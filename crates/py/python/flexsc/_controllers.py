@@ -7,12 +7,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc._linear import Linear
+from flexsc._numpy import np, npt
 from flexsc._values import AXES
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Matrix = npt.NDArray[np.float64]
 
 
@@ -135,8 +133,6 @@ def _outputs(controller: _Controller, given: Sequence[str] | None, command: str)
 
 def _controller(controller: object) -> _Controller:
     """Return a controller by its matrices."""
-    import numpy as np
-
     if isinstance(controller, Linear):
         names = [[signal.name for signal in signals] for signals in (controller.inputs, controller.outputs)]
         parts = controller.a, controller.b, controller.c, controller.d
@@ -183,8 +179,6 @@ def _labels(controller: object, kind: str) -> list[str] | None:
 
 def _shaped(parts: Sequence[object]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
     """Return matrices of fitting shapes, also of a controller without states."""
-    import numpy as np
-
     a, b, c, d = (np.array(part, dtype=np.float64, ndmin=2) for part in parts)
     order = 0 if a.size == 0 else len(a)
     rows, inputs = d.shape

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from flexsc import _native as engine
+from flexsc._numpy import np, npt
 from flexsc._quantities import Fields, Quantities
 from flexsc._run_lock import RunLock
 from flexsc._scenario import Scenario
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._one_copy import OneCopy
 
 
@@ -83,8 +81,6 @@ class Copies:
         >>> sims.failed.any().item()
         False
         """
-        import numpy as np
-
         failed = np.zeros(len(self), dtype=np.bool_)
         with self._lock:
             failed[[index for index, _, _ in self._native.failed]] = True
@@ -117,8 +113,6 @@ class Copies:
         >>> sims.command_limit.shape
         (3,)
         """
-        import numpy as np
-
         with self._lock:
             return np.array(self._native.command_limit, dtype=np.float64)
 

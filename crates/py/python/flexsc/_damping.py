@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._analysis import analysis
+from flexsc._numpy import np, npt
 from flexsc._sampled_loop import _columns, _floats
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    import numpy as np
-    import numpy.typing as npt
 
     from flexsc._sampled_loop import Numbers
 
@@ -139,8 +137,6 @@ def observer_margin(
     >>> margin["gain_best"] < margin["gain_max"], margin["radii"].shape
     (True, (2,))
     """
-    import numpy as np
-
     observer = (weights, frequency, period, damping)
     found = analysis("observer_margin", observer=observer, kappas=_floats(kappas))
     names = ("gain_max", "gain_best", "spectral_radius")
@@ -188,8 +184,6 @@ def identify(
     >>> found["runs"].tolist(), found["converged"].shape
     ([10.0], (1,))
     """
-    import numpy as np
-
     pairs = [(float(w), float(influence)) for w, influence in modes]
     options = {"modes": pairs, "influence_off": influence_off, "rate": rate, "yes": yes}
     options |= {"runs": runs, "cycles": cycles, "seed": seed}
@@ -213,6 +207,4 @@ def persistence(sensitivities: npt.ArrayLike) -> float:
     >>> flexsc.persistence([[1.0, 0.0], [0.0, 1.0]])
     1.0
     """
-    import numpy as np
-
     return engine.persistence(np.ascontiguousarray(np.atleast_2d(sensitivities), dtype=np.float64))

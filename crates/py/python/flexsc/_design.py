@@ -10,6 +10,7 @@ from operator import index
 from typing import Any, Literal
 
 from flexsc import _native as engine
+from flexsc._numpy import np
 from flexsc._values import toml
 
 Method = Literal["random", "latin-hypercube", "sobol"]
@@ -54,8 +55,6 @@ class _Blocks:
         self.points *= count
 
     def _add(self, columns: Mapping[str, list[Any]], is_table: bool) -> None:
-        import numpy as np
-
         keys, count = list(columns), len(next(iter(columns.values())))
         if all(_is_number(value) for values in columns.values() for value in values):
             if not is_table:
@@ -125,8 +124,6 @@ def _range(values: object) -> tuple[float, float] | None:
 
 def _is_number(value: object) -> bool:
     """True for a number that a float holds exactly, as a seed above 2**53 is not."""
-    import numpy as np
-
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         return abs(int(value)) <= 2**53
     return isinstance(value, (float, np.floating))

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from gymnasium.spaces import Box
 
+from flexsc._numpy import np, npt
 from flexsc._one_copy import OneCopy
 from flexsc._quantities import Quantities
 from flexsc._result import Detail, Result

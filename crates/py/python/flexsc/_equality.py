@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
 
 class Compared:
@@ -25,8 +24,6 @@ def equal(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 
 
 def _same(one: Any, other: Any) -> bool:
-    import numpy as np
-
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return _same_arrays(np.asarray(one), np.asarray(other))
     if isinstance(one, Mapping) and isinstance(other, Mapping):
@@ -37,8 +34,6 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _same_arrays(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
-    import numpy as np
-
     if one.shape != other.shape or (one.dtype == object) != (other.dtype == object):
         return False
     if one.dtype == object:

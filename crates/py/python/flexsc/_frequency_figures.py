@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._axes_look import FRAME, INCH, POINT, WIDTH, frame, need_matplotlib
 from flexsc._frequency_response import around_zeros
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._linear import Linear
@@ -102,8 +101,6 @@ def nichols(model: Linear, ax: Axes | None = None, frequencies: npt.ArrayLike | 
     >>> flexsc.plot.nichols(opened).get_xlabel()
     'phase (degrees)'
     """
-    import numpy as np
-
     need_matplotlib()
     _, lines = _lines(model, frequencies)
     ax = _axes("Nichols chart") if ax is None else ax
@@ -142,8 +139,6 @@ def poles(model: Linear, ax: Axes | None = None) -> Axes:
     >>> flexsc.plot.poles(flexsc.Scenario.example("relay-fixed").linearise()).get_ylabel()
     'imaginary part (1/s)'
     """
-    import numpy as np
-
     need_matplotlib()
     found: Any = model.poles()["pole"]
     ax = _axes("Poles") if ax is None else ax
@@ -166,8 +161,6 @@ def _lines(
     model: Linear, frequencies: npt.ArrayLike | None
 ) -> tuple[Values, list[tuple[str, Values, Values]]]:
     """The frequencies, and the name, magnitude (dB) and phase (degrees) of each line."""
-    import numpy as np
-
     pairs = list(_pairs(model))
     if len(pairs) > _MOST:
         raise ValueError(
@@ -190,8 +183,6 @@ def _lines(
 
 def _with_zeros(model: Linear, pairs: list[tuple[int, int]]) -> Values:
     """The grid of a model, and frequencies around the zeros of the lines."""
-    import numpy as np
-
     grid = model.frequency_grid()
     more = [around_zeros(model, *pair) for pair in pairs]
     whole: Values = np.unique(np.concatenate([grid, *more]))
@@ -209,8 +200,6 @@ def _pairs(model: Linear) -> Iterator[tuple[int, int]]:
 
 def _phase(values: npt.NDArray[np.complex128]) -> Values:
     """The continuous phase (degrees), from between -360 and 0 on; none where there is no value."""
-    import numpy as np
-
     phase = np.full(len(values), np.nan)
     there = np.isfinite(values)
     phase[there] = np.degrees(np.unwrap(np.angle(values[there])))
@@ -222,8 +211,6 @@ def _phase(values: npt.NDArray[np.complex128]) -> Values:
 
 def _contour(level: float) -> tuple[Values, Values]:
     """Phase (degrees from the critical point) and magnitude (dB) of loops with a closed-loop magnitude."""
-    import numpy as np
-
     turn = np.linspace(1e-3, 2.0 * np.pi - 1e-3, 721)
     closed = 10.0 ** (level / 20.0) * np.exp(1j * turn)
     opened = closed / (1.0 - closed)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
+if TYPE_CHECKING:
     from flexsc._linear import Linear
 
     Values = npt.NDArray[np.float64]
@@ -29,8 +28,6 @@ _BATCH = 2_000_000
 
 def _eigenvalues(model: Linear) -> tuple[npt.NDArray[np.complex128], npt.NDArray[np.complex128]]:
     """The poles of a model, and the same as s (1/s): log(z)/period for a sampled one."""
-    import numpy as np
-
     found: Any = np.linalg.eigvals(model.a).astype(np.complex128)
     if model.period is None:
         return found, found
@@ -43,8 +40,6 @@ def _eigenvalues(model: Linear) -> tuple[npt.NDArray[np.complex128], npt.NDArray
 
 def poles(model: Linear) -> dict[str, npt.NDArray[Any]]:
     """Return the columns of `Linear.poles`."""
-    import numpy as np
-
     found, s = _eigenvalues(model)
     finite = np.isfinite(s)
     frequency = np.abs(s)
@@ -58,8 +53,6 @@ def poles(model: Linear) -> dict[str, npt.NDArray[Any]]:
 
 def frequency_grid(model: Linear) -> Values:
     """Return the frequencies of `Linear.frequency_grid`."""
-    import numpy as np
-
     _, s = _eigenvalues(model)
     size = np.abs(s)
     seen = s[np.isfinite(size) & (size > 1e-7 * max(1.0, size[np.isfinite(size)].max(initial=0.0)))]
@@ -76,8 +69,6 @@ def frequency_grid(model: Linear) -> Values:
 
 def around_zeros(model: Linear, output: int, into: int) -> Values:
     """Return frequencies around the zeros from an input to an output, at which the phase turns."""
-    import numpy as np
-
     order = len(model.a)
     whole = np.zeros((order + 1, order + 1))
     whole[:order, :order], whole[:order, order] = model.a, model.b[:, into]
@@ -102,8 +93,6 @@ def around_zeros(model: Linear, output: int, into: int) -> Values:
 
 def _around(root: complex, count: int = _COUNT, apart: float = _APART) -> Values:
     """Frequencies around a pole or a zero, by its half width."""
-    import numpy as np
-
     size, centre = abs(root), root.imag
     half = abs(root.real)
     near = np.linspace(-_NEAR, _NEAR, count)
@@ -121,8 +110,6 @@ def _around(root: complex, count: int = _COUNT, apart: float = _APART) -> Values
 
 def response(model: Linear, frequencies: npt.ArrayLike | None) -> npt.NDArray[np.complex128]:
     """Return the values of `Linear.response`."""
-    import numpy as np
-
     w = frequency_grid(model) if frequencies is None else np.asarray(frequencies, dtype=np.float64)
     if w.ndim != 1 or not np.isfinite(w).all():
         raise ValueError(f"frequencies must be finite numbers of shape (frequencies,), got {w!r}")
@@ -138,8 +125,6 @@ def response(model: Linear, frequencies: npt.ArrayLike | None) -> npt.NDArray[np
 
 def _values(model: Linear, at: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
     """c (z - a)^-1 b + d, without a value where z is a pole."""
-    import numpy as np
-
     whole = at[:, None, None] * np.eye(len(model.a)) - model.a
     try:
         inner: Any = np.linalg.solve(whole, model.b.astype(np.complex128)[None])

@@ -8,12 +8,10 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from flexsc._numpy import np, npt
 from flexsc._own_part import OwnPart
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._native import Authority, Event, Hold, ThreeAxisEvent, ThreeAxisHold
 
 

@@ -8,12 +8,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._numpy import np, npt
 from flexsc._signal import Signal, positions
 from flexsc._values import counted
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._margins import Margins
@@ -84,7 +83,7 @@ class Linear:
     """
 
     @classmethod
-    def of(cls, model: engine._Model) -> Linear:
+    def _of(cls, model: engine._Model) -> Linear:
         """Return a model of the engine."""
         matrices, signals, period = model
         states, inputs, outputs = (tuple(Signal(*each) for each in kind) for kind in signals)
@@ -98,8 +97,6 @@ class Linear:
         >>> flexsc.Scenario.example("relay-fixed").linearise().eigenfrequencies()
         array([0.   , 0.   , 0.44 , 0.755])
         """
-        import numpy as np
-
         poles: Any = np.linalg.eigvals(self.a).astype(np.complex128)
         if self.period is not None:
             # What was a state for one period alone has no frequency.
@@ -203,8 +200,6 @@ class Linear:
         >>> scenario.linearise(loop="command").closed().spectral_radius() < 1.0
         True
         """
-        import numpy as np
-
         if self.period is None:
             raise ValueError(
                 "only a sampled model has a spectral radius: give `linearise` a period or a loop"
@@ -213,8 +208,6 @@ class Linear:
 
     def _rigid(self) -> int:
         """The number of poles at rest."""
-        import numpy as np
-
         at_rest = self.a if self.period is None else self.a - np.eye(len(self.a))
         return 2 * (len(self.a) - int(np.linalg.matrix_rank(at_rest)))
 
@@ -250,8 +243,6 @@ class Linear:
         Raises:
             ValueError: The model is sampled already, or a time is not accepted.
         """
-        import numpy as np
-
         if self.period is not None:
             raise ValueError("a model that is sampled already cannot be sampled")
         a, b, waiting = engine.sampled(self.a, self.b, period, delay)
@@ -271,8 +262,6 @@ class Linear:
         >>> scenario.linearise(loop="command").closed().spectral_radius() < 1.0
         True
         """
-        import numpy as np
-
         if self.b.shape[1] != self.c.shape[0]:
             raise ValueError("only a model with as many outputs as inputs can be closed as a loop")
         # What the outputs of one sample pass on to later ones of the same model: 1 + d has an inverse.
@@ -313,8 +302,6 @@ class Linear:
             KeyError: There is no output of this name.
             ValueError: A matrix has another shape.
         """
-        import numpy as np
-
         model = self.select(outputs=outputs)
         order, inputs = model.b.shape
         k, into = (np.array(matrix, dtype=np.float64, ndmin=2) for matrix in (gain, observer))

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
 from flexsc._named import Brief
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._linear import Break
@@ -227,8 +226,6 @@ StabilityMargins.__module__ = LoopMargins.__module__ = "flexsc"
 
 def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
     """Return the margins of the loop of a scenario, opened at a point."""
-    import numpy as np
-
     found = analysis("margins", scenario, opened=loop)
     several = found["samples"] > 1
     return StabilityMargins(
@@ -282,6 +279,4 @@ def _peaks(found: dict[str, Any]) -> dict[str, float]:
 
 
 def _columns(rows: list[dict[str, Any]], keys: dict[str, str]) -> dict[str, npt.NDArray[np.float64]]:
-    import numpy as np
-
     return {name: np.array([row[key] for row in rows], dtype=np.float64) for name, key in keys.items()}

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from flexsc._numpy import np, npt
 from flexsc._values import AXES, kind_of
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._linear import Linear
     from flexsc._scenario import Scenario
     from flexsc._simulator import Simulator
@@ -20,8 +18,6 @@ if TYPE_CHECKING:
 
 def state_of(model: Linear, simulator: Simulator | Simulators) -> Values:
     """Return the state of a model where a run, or each copy of many, is."""
-    import numpy as np
-
     known = _one_axis(simulator) if simulator.axes == 1 else _three_axes(simulator)
     known |= _acting(model, simulator)
     missing = [signal.name for signal in model.states if signal.name not in known]
@@ -41,8 +37,6 @@ def _one_axis(simulator: Simulator | Simulators) -> dict[str, Values]:
 
 
 def _three_axes(simulator: Simulator | Simulators) -> dict[str, Values]:
-    import numpy as np
-
     state = simulator.state
     # The attitude is that of the hub, which modes of a spacecraft turn; rigid angles are without the modes.
     turned = np.einsum("...ma,...m->...a", _hub_rotations(simulator), state["modes"])
@@ -90,21 +84,16 @@ def _without_back_emf(simulator: Simulator | Simulators) -> Values:
 
 def _hub_rotations(simulator: Simulator | Simulators) -> Values:
     """Rotation of the hub by each mode (rad/(m sqrt(kg))), of shape (modes, 3), or (copies, modes, 3)."""
-    import numpy as np
-
-    from flexsc._simulators import Simulators
-
     scenario = simulator.scenario
     uncertain: Any = scenario.to_dict().get("uncertain", {})
     of_body = ("spacecraft", "appendage", "actuator", "wheel")
-    if isinstance(simulator, Simulators) and any(key.startswith(of_body) for key in uncertain):
-        return np.stack([_of_modes(scenario.draw(int(run))) for run in simulator.runs])
+    runs = getattr(simulator, "runs", None)
+    if runs is not None and any(key.startswith(of_body) for key in uncertain):
+        return np.stack([_of_modes(scenario.draw(int(run))) for run in runs])
     return _of_modes(scenario)
 
 
 def _of_modes(scenario: Scenario) -> Values:
-    import numpy as np
-
     keys = scenario.to_dict()
     if "spacecraft" not in keys:
         # Modes of a `[body.spatial]` do not turn it.

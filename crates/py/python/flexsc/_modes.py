@@ -3,14 +3,9 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from flexsc import _native as engine
-
-if TYPE_CHECKING:
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
 
 def modes(native: engine.Scenario) -> dict[str, npt.NDArray[np.float64]]:

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
 from flexsc._named import Brief
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._scenario import Scenario
@@ -229,38 +228,9 @@ class NoiseSpectrum(Brief):
         >>> density.get_ylabel(), rms.get_xlabel()
         ('density ((rad)²/Hz)', 'frequency (Hz)')
         """
-        from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib
+        from flexsc._review_figures import noise_density
 
-        need_matplotlib()
-        name = next(iter(self.outputs)) if output is None else output
-        noise = self.outputs[name]
-        if axes is None:
-            from matplotlib import pyplot
-
-            figure, (above, below) = pyplot.subplots(
-                2, 1, sharex=True, figsize=(WIDTH * INCH, 560 * INCH), layout="constrained"
-            )
-            figure.suptitle(f"Noise of {name}", fontsize=14 * POINT)
-        else:
-            above, below = axes
-        if len(self.sources) > 1:
-            for source, density in noise.density_by_source.items():
-                if density.any():
-                    above.plot(self.frequency, density, linewidth=POINT, label=source)
-        label = "all" if len(self.sources) > 1 else "".join(self.sources)
-        above.plot(self.frequency, noise.density, color="black", linewidth=1.4 * POINT, label=label)
-        below.plot(self.frequency, noise.cumulative_rms, color="black", linewidth=1.4 * POINT)
-        for ax, title in ((above, f"density (({noise.unit})²/Hz)"), (below, f"rms up to it ({noise.unit})")):
-            frame(ax)
-            ax.set_xscale("log")
-            ax.set_ylabel(title, fontsize=12 * POINT)
-        top = float(noise.density.max(initial=0.0))
-        if top > 0.0:
-            above.set_yscale("log")
-            above.set_ylim(max(float(noise.density[noise.density > 0.0].min()), 1e-8 * top), 2.0 * top)
-        below.set_xlabel("frequency (Hz)", fontsize=12 * POINT)
-        above.legend(frameon=False, fontsize=10 * POINT)
-        return above, below
+        return noise_density(self, output, axes)
 
 
 for _class in (NoiseSpectrum, OutputNoise, WheelSpectrum, WheelLines):
@@ -275,8 +245,6 @@ def noise_spectrum(
     speeds: npt.ArrayLike | None,
 ) -> NoiseSpectrum:
     """Return the noise of the loop of a scenario."""
-    import numpy as np
-
     if separation is not None and window is None:
         raise ValueError("separation needs a window")
     if isinstance(signals, str):
@@ -299,8 +267,6 @@ def noise_spectrum(
 
 
 def _array(values: Sequence[float]) -> Values:
-    import numpy as np
-
     return np.array(values, dtype=np.float64)
 
 

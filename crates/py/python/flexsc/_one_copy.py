@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from flexsc import _native as engine
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
 
 

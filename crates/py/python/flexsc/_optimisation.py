@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._named import library
+from flexsc._numpy import np, npt
 from flexsc._values import checked, number_to_vary
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
     from flexsc._units import Metrics
 
@@ -62,8 +60,6 @@ def optimise(
         ScenarioError: There is no such key.
         SimulationError: The run of the start fails.
     """
-    import numpy as np
-
     minimize = library("scipy.optimize", "flexsc.optimise", "scipy").minimize
     checked(scenario)
     if isinstance(keys, str) or not keys:
@@ -111,8 +107,6 @@ def _limits(
     keys: list[str], bounds: Mapping[str, tuple[float, float]] | Sequence[tuple[float, float]] | None
 ) -> npt.NDArray[np.float64] | None:
     """The bounds of each key, of shape (keys, 2)."""
-    import numpy as np
-
     if bounds is None:
         return None
     if isinstance(bounds, Mapping):

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc._analysis import analysis
 from flexsc._named import Brief
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._scenario import Scenario
@@ -199,12 +198,10 @@ OutputBound.__module__ = Witness.__module__ = "flexsc"
 
 def output_bounds(scenario: Scenario) -> list[OutputBound]:
     """Return the ranges of all claims of a scenario."""
-    return [_bound(each) for each in analysis("bounds", scenario)]
+    return [_bound(each, type(scenario)) for each in analysis("bounds", scenario)]
 
 
-def _bound(found: dict[str, Any]) -> OutputBound:
-    import numpy as np
-
+def _bound(found: dict[str, Any], of: type[Scenario]) -> OutputBound:
     rows = {name: np.array(values, dtype=np.float64) for name, values in found["rows"].items()}
     return OutputBound(
         output=found["output"]["name"],
@@ -219,16 +216,14 @@ def _bound(found: dict[str, Any]) -> OutputBound:
         safe_until=_number(found["safe_until_s"]),
         violated_at=_number(found["violated_at_s"]),
         gap=_number(found["gap"]),
-        witness=None if found["witness"] is None else _witness(found["witness"], found["witness_scenario"]),
+        witness=None
+        if found["witness"] is None
+        else _witness(found["witness"], found["witness_scenario"], of),
         rows=rows,
     )
 
 
-def _witness(found: dict[str, Any], text: str | None) -> Witness:
-    import numpy as np
-
-    from flexsc._scenario import Scenario
-
+def _witness(found: dict[str, Any], text: str | None, of: type[Scenario]) -> Witness:
     def column(values: list[float]) -> npt.NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
@@ -240,7 +235,7 @@ def _witness(found: dict[str, Any], text: str | None) -> Witness:
         damping_factor=found["damping_factor"],
         start=column(found["start"]),
         inputs={each["name"]: (column(each["times_s"]), column(each["values"])) for each in found["inputs"]},
-        scenario=None if text is None else Scenario.parse(text),
+        scenario=None if text is None else of.parse(text),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from flexsc import _native as engine
 from flexsc._executor import Span, distribute
+from flexsc._numpy import np
 from flexsc._scenario import Scenario
 from flexsc._table import Table
 from flexsc.parts import CompiledLaw
@@ -97,8 +98,6 @@ def _rows(
 
 def _joined(pieces: list[Any]) -> Any:
     """The pieces of a column in sequence."""
-    import numpy as np
-
     if isinstance(pieces[0], list):
         return [cell for piece in pieces for cell in piece]
     return np.concatenate(pieces)

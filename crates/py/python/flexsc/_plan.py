@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._analysis import analysis
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
 
 
@@ -39,8 +38,6 @@ class Plan(Mapping[str, Any]):
         >>> plan.torque([0.0, 3.0]).round(3).tolist()                        # N m
         [0.0, 390.102]
         """
-        import numpy as np
-
         times = np.asarray(time, dtype=np.float64)
         return engine.plan_torque(self._scenario._native, times.ravel()).reshape(times.shape)
 

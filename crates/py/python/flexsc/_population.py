@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import nan
-from typing import TYPE_CHECKING
 
 from flexsc import _native as engine
 from flexsc._keys import is_known
+from flexsc._numpy import np, npt
 from flexsc._scenario import Scenario
 from flexsc._threads import threads
 from flexsc._values import checked, run_number
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
 
 
 def evaluate(
@@ -63,8 +59,6 @@ def evaluate(
     >>> flexsc.evaluate(scenario, keys, population, ["switchings", "duty"], missing=numpy.inf).shape
     (3, 2)
     """
-    import numpy as np
-
     checked(scenario)
     names = [metrics] if isinstance(metrics, str) else list(metrics)
     if isinstance(keys, str) or not keys:

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from flexsc._columns import Lookup
 from flexsc._named import no_such
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
 
 class Quantities(Lookup["npt.NDArray[np.float64]"]):
@@ -82,8 +78,6 @@ class Fields:
 
 
 def parse_commands(given: npt.ArrayLike, shape: tuple[int, ...], unit: str) -> npt.NDArray[np.float64]:
-    import numpy as np
-
     try:
         values = np.ascontiguousarray(given, dtype=np.float64)
     except (TypeError, ValueError) as error:

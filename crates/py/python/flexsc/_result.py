@@ -8,16 +8,16 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._columns import Lookup, read_only
 from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
+from flexsc._numpy import np, npt
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc._values import arrays
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.figure import Figure, SubFigure
 
     from flexsc._scenario import Scenario
@@ -234,9 +234,7 @@ class Result(Topics, Exportable):
         return self._topics[name]
 
     def _no_topic(self, topic: str) -> KeyError:
-        from flexsc import topics
-
-        if self._log not in ("full", "scene") and str(topic).removeprefix("/") in topics():
+        if self._log not in ("full", "scene") and str(topic).removeprefix("/") in analysis("topics"):
             there = ", ".join(self.topics) or "none"
             return KeyError(
                 f"no topic {topic!r}; there are {there}: a run with log='full' has those of the motion"
@@ -266,8 +264,6 @@ class Result(Topics, Exportable):
         Raises:
             ValueError: A time is not within the run.
         """
-        import numpy as np
-
         asked = np.asarray(times, dtype=np.float64)
         if asked.ndim != 1:
             raise ValueError(f"times must be of shape (times,), got {asked.shape}")

@@ -1,4 +1,4 @@
-"""Figures of margins, budgets, bounds, worst cases and tunings with Matplotlib."""
+"""Figures of margins, noise, budgets, bounds, worst cases and tunings with Matplotlib."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from flexsc._axes_look import FRAME, INCH, POINT, WIDTH, frame, need_matplotlib
+from flexsc._numpy import np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
 
     from flexsc._budget import IndexBudget
     from flexsc._loop_margins import StabilityMargins
+    from flexsc._noise import NoiseSpectrum
     from flexsc._output_bounds import OutputBound
     from flexsc._structured_tuning import TunedScenario
     from flexsc._worst_case import WorstCase
@@ -23,8 +25,6 @@ _GREY, _BLUE, _RED = "0.55", "tab:blue", "tab:red"
 
 def singular_values(margins: StabilityMargins, ax: Axes | None) -> Axes:
     """Draw the largest singular values of S and T over frequency."""
-    import numpy as np
-
     ax = _axes(ax, "Largest singular values")
     for values, name, colour in (
         (margins.sensitivity, "sensitivity S", _BLUE),
@@ -37,6 +37,41 @@ def singular_values(margins: StabilityMargins, ax: Axes | None) -> Axes:
     ax.axvline(pi / margins.period, color=FRAME, linewidth=POINT, linestyle=(0, (5, 4)))
     ax.set_xscale("log")
     return _labelled(ax, "frequency (rad/s)", "largest singular value (dB)")
+
+
+def noise_density(
+    spectrum: NoiseSpectrum, output: str | None, axes: tuple[Axes, Axes] | None
+) -> tuple[Axes, Axes]:
+    """Draw the density of an output by source, and its cumulative rms."""
+    need_matplotlib()
+    name = next(iter(spectrum.outputs)) if output is None else output
+    noise = spectrum.outputs[name]
+    if axes is None:
+        from matplotlib import pyplot
+
+        size = (WIDTH * INCH, 560 * INCH)
+        figure, (above, below) = pyplot.subplots(2, 1, sharex=True, figsize=size, layout="constrained")
+        figure.suptitle(f"Noise of {name}", fontsize=14 * POINT)
+    else:
+        above, below = axes
+    if len(spectrum.sources) > 1:
+        for source, density in noise.density_by_source.items():
+            if density.any():
+                above.plot(spectrum.frequency, density, linewidth=POINT, label=source)
+    label = "all" if len(spectrum.sources) > 1 else "".join(spectrum.sources)
+    above.plot(spectrum.frequency, noise.density, color="black", linewidth=1.4 * POINT, label=label)
+    below.plot(spectrum.frequency, noise.cumulative_rms, color="black", linewidth=1.4 * POINT)
+    for ax, title in ((above, f"density (({noise.unit})²/Hz)"), (below, f"rms up to it ({noise.unit})")):
+        frame(ax)
+        ax.set_xscale("log")
+        ax.set_ylabel(title, fontsize=12 * POINT)
+    top = float(noise.density.max(initial=0.0))
+    if top > 0.0:
+        above.set_yscale("log")
+        above.set_ylim(max(float(noise.density[noise.density > 0.0].min()), 1e-8 * top), 2.0 * top)
+    below.set_xlabel("frequency (Hz)", fontsize=12 * POINT)
+    above.legend(frameon=False, fontsize=10 * POINT)
+    return above, below
 
 
 def index_budget(budget: IndexBudget, ax: Axes | None) -> Axes:

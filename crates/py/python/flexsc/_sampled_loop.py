@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
-from flexsc._scenario import Scenario
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+    from flexsc._scenario import Scenario
 
     Numbers = Sequence[float] | npt.NDArray[np.float64]
 
@@ -163,7 +162,5 @@ def _floats(values: Numbers) -> list[float]:
 
 
 def _columns(rows: list[dict[str, Any]]) -> dict[str, npt.NDArray[np.float64]]:
-    import numpy as np
-
     names = rows[0] if rows else {}
     return {name: np.array([row[name] for row in rows], dtype=np.float64) for name in names}

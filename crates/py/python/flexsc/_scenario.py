@@ -12,6 +12,7 @@ from flexsc import _keys
 from flexsc import _native as engine
 from flexsc._missing import reading
 from flexsc._named import no_such
+from flexsc._numpy import np, npt
 from flexsc._plan import Plan
 from flexsc._result import Detail, Result
 from flexsc._signature import LateSignature, of_scenario
@@ -20,8 +21,6 @@ from flexsc._values import arrays, counted, document, plain, run_number, toml
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import numpy as np
-    import numpy.typing as npt
     from typing_extensions import Self, Unpack
 
     from flexsc._budget import PointingBudget
@@ -521,7 +520,7 @@ class Scenario:
         """
         from flexsc._linear import Linear
 
-        return Linear.of(engine.linearise(self._native, at, period, delay, loop))
+        return Linear._of(engine.linearise(self._native, at, period, delay, loop))
 
     def margins(self, loop: Break = "command") -> StabilityMargins:
         """Return the stability margins of the scenario's loop, opened at a point: `flexsc margins`.

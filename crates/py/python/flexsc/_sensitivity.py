@@ -11,13 +11,11 @@ from flexsc import _units
 from flexsc._columns import Lookup
 from flexsc._equality import Compared
 from flexsc._named import Named, library, no_such
+from flexsc._numpy import np, npt
 from flexsc._population import evaluate
 from flexsc._values import checked, number_to_vary
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
 
     Values = npt.NDArray[np.float64]
@@ -204,8 +202,6 @@ def sensitivities(
         ScenarioError: There is no such key, or it does not accept a value of a step.
         SimulationError: A run fails.
     """
-    import numpy as np
-
     checked(scenario)
     keys, metrics = _names("keys", keys), _names("metrics", metrics)
     steps = {key: _step(scenario, key, step) for key in keys}
@@ -236,8 +232,6 @@ def sensitivities(
 
 def _agree(one: Values, other: Values) -> npt.NDArray[np.bool_]:
     """True where two estimates of a value agree."""
-    import numpy as np
-
     agree: npt.NDArray[np.bool_] = abs(one - other) <= _TOLERANCE * np.maximum(abs(one), abs(other))
     return agree
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import os
 from _thread import RLock
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+from typing import Any, Literal, NoReturn
 
 from flexsc import _native as engine
+from flexsc._numpy import np, npt
 from flexsc._quantities import Fields, Quantities, parse_commands
 from flexsc._result import Detail, Logged, Result
 from flexsc._scenario import Scenario
 from flexsc._units import Metrics
 from flexsc._values import run_number
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
 
 Event = Literal["sample", "decision", "switching", "window"]
 """The events that a run can be advanced to: see `Simulator.run_until`."""
@@ -166,8 +163,6 @@ class Simulator:
         >>> sim.command_limit.shape
         (3,)
         """
-        import numpy as np
-
         with self._lock:
             return np.array(self._native.command_limit, dtype=np.float64)
 

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from flexsc import _native as engine
 from flexsc._copies import Copies
+from flexsc._numpy import np, npt
 from flexsc._quantities import Quantities, parse_commands
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot, unpicklable
 from flexsc._sources import Source, check_scenarios, held, parse_sources
 from flexsc._threads import threads
 from flexsc._values import run_number
-
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
 
 # More copies than this are a mistake: each takes some kilobytes.
 _MOST = 10_000_000
@@ -213,8 +210,6 @@ class Simulators(Copies):
             ValueError: The mask or the run numbers have another shape.
             SimulationError: The keys drawn for a run do not make a valid scenario.
         """
-        import numpy as np
-
         numbers = None
         if runs is not None:
             numbers = np.asarray(runs)
@@ -281,8 +276,6 @@ class Simulators(Copies):
                 shape.
             SimulationError: What is restored cannot continue.
         """
-        import numpy as np
-
         count, mask, sources = len(self), _mask(mask, len(self)), parse_sources(snapshots)
         if len(sources) not in (1, count):
             raise ValueError(f"snapshots must be 1 or {count}, one for each copy, got {len(sources)}")
@@ -314,8 +307,6 @@ class Simulators(Copies):
 
 
 def _mask(mask: npt.NDArray[np.bool_] | None, count: int) -> npt.NDArray[np.bool_] | None:
-    import numpy as np
-
     if mask is None:
         return None
     mask = np.asarray(mask)

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from flexsc._named import library
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
     from flexsc.gym import SpacecraftVectorEnv

@@ -12,12 +12,12 @@ from flexsc import _native as engine
 from flexsc import _units
 from flexsc._columns import Columns, read_only
 from flexsc._named import Named, library, no_such
+from flexsc._numpy import np, npt
 from flexsc._row import Row
 from flexsc._scenario import Scenario
 from flexsc._values import counted, objects
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
     from matplotlib.figure import Figure, SubFigure
 
 
@@ -161,8 +161,6 @@ class Table(Columns):
             KeyError: There is no such column.
             ValueError: The column has no numbers, or no run has a value.
         """
-        import numpy as np
-
         values = self[metric]
         if values.dtype.kind not in "iuf":
             raise ValueError(f"{metric!r} is not a column of numbers, of which one is the worst")
@@ -260,8 +258,6 @@ class Table(Columns):
 
     def _grid(self) -> dict[str, Any]:
         """The values of each swept key, if the rows are all of their combinations in order."""
-        import numpy as np
-
         drawn = self.scenario.to_dict().get("uncertain", {})
         keys = [key for key in self.varied if key not in drawn]
         if not keys or not self.rows or any(self[key].dtype == object for key in keys):
@@ -363,8 +359,6 @@ class Table(Columns):
 
 def _elements(lists: npt.NDArray[Any], index: int) -> npt.NDArray[Any]:
     """The elements of lists of numbers at an index."""
-    import numpy as np
-
     values = np.array([row[index] if index < len(row) else np.nan for row in lists], dtype=float)
     read_only([values])
     return values
@@ -388,8 +382,6 @@ def of_directory(path: str | os.PathLike[str], kept: object = None) -> Table:
 def _array(is_given: bool, column: Any) -> npt.NDArray[Any]:
     """Return a column in its final form: counts among the metrics become float64, as some runs may have
     none."""
-    import numpy as np
-
     if isinstance(column, list):
         if column and not isinstance(column[0], str):
             return objects(column)

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 from flexsc import _units
 from flexsc._columns import Columns, read_only
 from flexsc._named import library, no_such
+from flexsc._numpy import npt
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
 
 

@@ -12,11 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._native import ScenarioError
+from flexsc._numpy import np, npt
 from flexsc._part import Part
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     from flexsc._native import _Column
     from flexsc._scenario import Scenario
 
@@ -136,8 +135,6 @@ def _date(text: str) -> datetime | str:
 
 def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
     """Give columns their final form: labels and texts as str, rows within rows by their path."""
-    import numpy as np
-
     final: dict[str, npt.NDArray[Any]] = {}
     for name, column in columns.items():
         if isinstance(column, np.ndarray):
@@ -158,8 +155,6 @@ def arrays(columns: Mapping[str, _Column]) -> dict[str, npt.NDArray[Any]]:
 
 def _by_row(values: npt.NDArray[Any], counts: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """Values of lists, one behind another, by the rows that have so many of them each."""
-    import numpy as np
-
     if not len(counts):
         return values
     if values.dtype != object and (counts == counts[0]).all():
@@ -169,8 +164,6 @@ def _by_row(values: npt.NDArray[Any], counts: npt.NDArray[Any]) -> npt.NDArray[A
 
 def objects(items: list[Any]) -> npt.NDArray[Any]:
     """Put arrays into an array, as they are."""
-    import numpy as np
-
     array = np.empty(len(items), dtype=object)
     for place, item in enumerate(items):
         array[place] = item

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
-import numpy as np
-import numpy.typing as npt
 from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from flexsc._episodes import Mask, Observation, Observe, Reward, Task, Terminate, drawn_run
+from flexsc._numpy import np, npt
 from flexsc._result import Detail, Result
 from flexsc._scenario import Scenario
 from flexsc._simulators import Simulators

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING, Literal
 
 from flexsc._analysis import analysis
 from flexsc._equality import Compared
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-    import numpy.typing as npt
     from matplotlib.axes import Axes
 
     from flexsc._linear import Break
@@ -145,8 +144,6 @@ def worst_case(
     jobs: int,
 ) -> WorstCase:
     """Return the worst case of one quantity."""
-    import numpy as np
-
     given = {"metric": metric, "requirement": requirement, "margin": margin}
     chosen = [(kind, name) for kind, name in given.items() if name is not None]
     if len(chosen) != 1:

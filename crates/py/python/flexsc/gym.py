@@ -19,8 +19,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import gymnasium
-import numpy as np
-import numpy.typing as npt
 from gymnasium.vector import AutoresetMode
 
 from flexsc._episodes import (
@@ -35,6 +33,7 @@ from flexsc._episodes import (
     drawn_run,
     with_success,
 )
+from flexsc._numpy import np, npt
 from flexsc._result import Detail, Result
 from flexsc._scenario import Scenario
 from flexsc._simulators import Simulators

@@ -33,6 +33,7 @@ from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib, show_o
 from flexsc._frequency_figures import bode, nichols, poles
 from flexsc._log import Log
 from flexsc._missing import reading
+from flexsc._numpy import np
 from flexsc._result import Result
 from flexsc._table import Table
 
@@ -270,8 +271,6 @@ def _in_units_of(factor: float, most: int) -> Any:
 
     class Locator(MaxNLocator):
         def tick_values(self, vmin: float, vmax: float) -> Any:
-            import numpy as np
-
             return np.asarray(super().tick_values(vmin / factor, vmax / factor)) * factor
 
     return Locator(nbins=most, steps=[1, 2, 5, 10])
@@ -313,7 +312,6 @@ def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:
 
 def _area(ax: Axes, layer: dict[str, Any], order: int) -> Any:
     """Draw the polygons between gaps, which other axes cut off at their limits."""
-    import numpy as np
     from matplotlib.collections import PolyCollection
     from matplotlib.patches import Patch
 

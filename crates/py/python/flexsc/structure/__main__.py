@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from flexsc._numpy import np
 from flexsc.structure._files import write_scenario
 from flexsc.structure._modal_model import StateSpace
 from flexsc.structure._state_space import from_state_space
@@ -88,8 +89,6 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _summary(model: StateSpace, found: dict[str, Any]) -> str:
     """How far the response is from the file's magnitudes: a row a frequency, the outputs for each input."""
-    import numpy as np
-
     frequencies, magnitudes = found["w"].ravel(), np.asarray(found["mag"])
     own = np.abs(model.response(frequencies)).transpose(0, 2, 1).reshape(len(frequencies), -1)
     if own.shape != magnitudes.shape:

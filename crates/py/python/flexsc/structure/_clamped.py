@@ -8,13 +8,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexsc._numpy import np, npt
 from flexsc.structure._nastran import _read_bulk, _read_op2
 from flexsc.structure._punch import Solution, read_punch
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc.structure._lumped import Integrals
 
     Numbers = npt.NDArray[np.float64]
@@ -69,8 +67,6 @@ def appendage_from_nastran(
         OSError: A file cannot be read.
         ValueError: The files lack something that is needed, or contradict each other; the text names it.
     """
-    import numpy as np
-
     from flexsc.structure._lumped import axes_of, integrals_of, lumps_of
 
     path, deck = Path(results), Path(model)
@@ -143,8 +139,6 @@ def appendage_from_nastran(
 
 def _lowest(solution: Solution, keep: int | None, path: Path) -> Solution:
     """The modes in the order of their frequencies, the lowest of them if fewer are wanted."""
-    import numpy as np
-
     order = np.argsort(solution.frequencies, kind="stable")
     frequencies = solution.frequencies[order]
     for slow, fast in pairwise(frequencies.tolist()):
@@ -161,8 +155,6 @@ def _lowest(solution: Solution, keep: int | None, path: Path) -> Solution:
 
 
 def _dampings(damping: float | Sequence[float], modes: int) -> list[float]:
-    import numpy as np
-
     given = np.asarray(damping, dtype=np.float64)
     if given.shape not in ((), (modes,)):
         raise ValueError(f"damping: must be one number, or one for each of {modes} modes, got {given.shape}")
@@ -171,8 +163,6 @@ def _dampings(damping: float | Sequence[float], modes: int) -> list[float]:
 
 
 def _place(root: int | Sequence[float], bulk: Any, deck: Path) -> Numbers:
-    import numpy as np
-
     if isinstance(root, int):
         if root not in bulk.nodes:
             raise ValueError(f"root: must be a grid point of {deck}, or its place, got {root}")
@@ -185,8 +175,6 @@ def _place(root: int | Sequence[float], bulk: Any, deck: Path) -> Numbers:
 
 def _check(sums: Integrals, path: Path, deck: Path) -> None:
     """Shapes of another deck, in other units or of coupled masses are not normalised by these masses."""
-    import numpy as np
-
     off = np.abs(sums.generalised - np.eye(len(sums.generalised)))
     i, j = (int(at) for at in np.unravel_index(int(np.argmax(off)), off.shape))
     if off[i, j] <= AGREES:
@@ -203,8 +191,6 @@ def _check(sums: Integrals, path: Path, deck: Path) -> None:
 
 def _check_carried(sums: Integrals, participations: Numbers, path: Path) -> None:
     """What the modes carry is part of the rigid mass: the rest has no negative value."""
-    import numpy as np
-
     rigid = sums.rigid
     least = float(np.linalg.eigvalsh(rigid - participations.T @ participations)[0])
     if least < -CARRIED * float(np.abs(rigid).max()):

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from flexsc import _native as engine
+from flexsc._numpy import np
 from flexsc._scenario import Scenario
 from flexsc._values import checked, document, toml
 from flexsc.structure._structure import COMPONENTS, Structure, write_modes
@@ -37,8 +38,6 @@ def from_csv(
     >>> structure.shapes["tip"].tolist()
     [[0.0, 0.1, 0.0, 0.0, 0.0, 0.0]]
     """
-    import numpy as np
-
     positions = positions or {}
     with open(path, newline="", encoding="utf-8") as file:
         lines = [(number, line) for number, line in enumerate(file, 1) if not line.startswith("#")]

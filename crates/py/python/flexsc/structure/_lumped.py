@@ -7,11 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+from flexsc._numpy import np, npt
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
-
     Numbers = npt.NDArray[np.float64]
 
 # Elements whose mass goes to their ends, and to their corners, in equal parts.

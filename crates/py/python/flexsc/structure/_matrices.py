@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from flexsc._numpy import np, npt
 from flexsc.structure._clamped import MECHANISM, _dampings
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Numbers = npt.NDArray[np.float64]
     Rows = npt.NDArray[np.intp]
 
@@ -81,8 +79,6 @@ def appendage_from_matrices(
     >>> boom["mass"], [round(mode["frequency"], 12) for mode in boom["modes"]]
     (2.0, [3.0, 4.0, 5.0])
     """
-    import numpy as np
-
     where = np.asarray(positions, dtype=np.float64)
     if where.ndim != 2 or where.shape[1:] != (3,) or not np.isfinite(where).all():
         raise ValueError(f"positions: must be finite, of shape (nodes, 3), got shape {where.shape}")
@@ -151,8 +147,6 @@ def appendage_from_matrices(
 
 def _matrix(name: str, given: Any) -> Any:
     """A symmetric matrix of finite numbers: dense, or in SciPy's compressed rows."""
-    import numpy as np
-
     sparse = hasattr(given, "tocsr")
     matrix = given.tocsr().astype(np.float64) if sparse else np.asarray(given, dtype=np.float64)
     if matrix.ndim != 2 or matrix.shape[0] != matrix.shape[1] or matrix.shape[0] == 0:
@@ -175,8 +169,6 @@ def _matrix(name: str, given: Any) -> Any:
 
 def _directions(dofs: npt.ArrayLike | None, rows: int, nodes: int) -> tuple[Rows, Rows]:
     """The node of each row, and its direction from 0 to 5."""
-    import numpy as np
-
     if dofs is None:
         if rows not in (3 * nodes, 6 * nodes):
             raise ValueError(
@@ -196,8 +188,6 @@ def _directions(dofs: npt.ArrayLike | None, rows: int, nodes: int) -> tuple[Rows
 
 
 def _place(root: int | Sequence[float], where: Numbers) -> Numbers:
-    import numpy as np
-
     if isinstance(root, int):
         if not 0 <= root < len(where):
             raise ValueError(f"root: must be a node from 0 to {len(where) - 1}, or a position, got {root}")
@@ -210,8 +200,6 @@ def _place(root: int | Sequence[float], where: Numbers) -> Numbers:
 
 def _linear_motions(where: Numbers, node: Rows, direction: Rows) -> Numbers:
     """What each row moves by: three translations, then u_j = r_k for each k and j, with half their curls."""
-    import numpy as np
-
     motions = np.zeros((len(node), 12))
     for j in range(3):
         along = direction == j
@@ -228,8 +216,6 @@ def _linear_motions(where: Numbers, node: Rows, direction: Rows) -> Numbers:
 
 def _curls() -> Numbers:
     """Rotations about x, y and z as sums of the nine linear displacements u_j = r_k."""
-    import numpy as np
-
     sums = np.zeros((9, 3))
     for axis, (k, j) in enumerate(((1, 2), (2, 0), (0, 1))):
         sums[3 * k + j, axis], sums[3 * j + k, axis] = 1.0, -1.0
@@ -238,8 +224,6 @@ def _curls() -> Numbers:
 
 def _check_free(stiffness: Any, rigid: Numbers) -> None:
     """A rigid motion strains nothing: other units, an order of rows or a fixed node show here."""
-    import numpy as np
-
     scale = abs(stiffness).max() * np.abs(rigid).max(axis=0)
     left = np.abs(np.asarray(stiffness @ rigid)).max(axis=0)
     names = ("along x", "along y", "along z", "about x", "about y", "about z")
@@ -260,8 +244,6 @@ def _kept(keep: int, rows: int) -> int:
 
 def _modes(mass: Any, stiffness: Any, keep: int) -> tuple[Numbers, Numbers]:
     """Frequencies (rad per unit of time) and shapes of unit generalised mass, shape (rows, keep)."""
-    import numpy as np
-
     held = "clamped: must hold the structure: the stiffness that is left is not positive definite"
     if hasattr(mass, "tocsr"):
         from scipy.sparse.linalg import eigsh
@@ -305,8 +287,6 @@ def _modes(mass: Any, stiffness: Any, keep: int) -> tuple[Numbers, Numbers]:
 
 def _signed(shapes: Numbers, direction: Rows) -> Numbers:
     """The shapes with their largest displacement positive, or of those without any their largest rotation."""
-    import numpy as np
-
     moved = np.abs(shapes) * (direction < 3)[:, None]
     still = moved.max(axis=0) == 0.0
     largest = np.where(still, np.abs(shapes).argmax(axis=0), moved.argmax(axis=0))
@@ -315,8 +295,6 @@ def _signed(shapes: Numbers, direction: Rows) -> Numbers:
 
 def _body(total: Numbers) -> tuple[float, Numbers, Numbers]:
     """Mass, centre and inertia about the centre by the mass matrix of the six rigid motions."""
-    import numpy as np
-
     masses = np.diagonal(total)[:3]
     mass = float(masses.mean())
     if not mass > 0.0 or float(np.abs(total[:3, :3] - mass * np.eye(3)).max()) > RIGID * mass:

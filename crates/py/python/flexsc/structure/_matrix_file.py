@@ -6,6 +6,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+from flexsc._numpy import np
+
 
 def read_matrices(path: str | os.PathLike[str]) -> dict[str, Any]:
     """The matrices of a file by their names, for `flexsc.appendage_from_matrices`.
@@ -56,8 +58,6 @@ def _is_matrix(value: Any) -> bool:
 
 
 def _npz(path: Path) -> dict[str, Any]:
-    import numpy as np
-
     with np.load(path, allow_pickle=False) as archive:
         if {"format", "shape", "data"} <= set(archive.files):
             from scipy.sparse import load_npz

@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
+from flexsc._numpy import np, npt
 from flexsc.structure._structure import AXES, Structure
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     from flexsc._scenario import Scenario
 
     Numbers = npt.NDArray[np.float64]
@@ -75,8 +73,6 @@ class StateSpace:
         >>> abs(model.response([0.0]))[0].round(6).tolist()
         [[0.0]]
         """
-        import numpy as np
-
         s = 1j * np.atleast_1d(np.asarray(frequencies, dtype=np.float64))[:, None]
         w, zeta = self.frequencies, self.dampings
         modal = 1.0 / (s * s + 2.0 * zeta * w * s + w * w)
@@ -113,8 +109,6 @@ class StateSpace:
         Raises:
             ValueError: Names that are no axes, or outputs that are of the other kind.
         """
-        import numpy as np
-
         pushes = _by_axis("inputs", inputs, self.inputs.shape[1])
         seen = _by_axis("outputs", outputs, self.rates.shape[0])
         w = self.frequencies

@@ -8,13 +8,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flexsc._numpy import np, npt
 from flexsc.structure._punch import Solution, read_punch
 from flexsc.structure._structure import Structure
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Numbers = npt.NDArray[np.float64]
 
 
@@ -51,8 +49,6 @@ def from_nastran(
         OSError: A file cannot be read.
         ValueError: The files lack something that is needed; the text names it.
     """
-    import numpy as np
-
     path = Path(results)
     solution = read_punch(path, subcase) if path.suffix.lower() == ".pch" else _read_op2(path, subcase)
     bulk = _read_bulk(Path(model))
@@ -90,8 +86,6 @@ def _pynastran(module: str) -> Any:
 
 def _read_op2(path: Path, subcase: int | None) -> Solution:
     """Frequencies and mass-normalised shapes of an OP2 file."""
-    import numpy as np
-
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")
     op2 = _pynastran("op2.op2").read_op2(str(path), debug=None, build_dataframe=False)
@@ -135,8 +129,6 @@ def _read_bulk(path: Path) -> Any:
 
 def _mass_properties(bulk: Any, centre: Sequence[float] | None) -> tuple[Numbers, Numbers | None]:
     """Centre of mass and inertia tensor about it, in the model's units."""
-    import numpy as np
-
     if centre is not None:
         # Who knows it better than the model knows the inertia tensor better, too.
         return np.asarray(centre, dtype=np.float64), None
@@ -149,8 +141,6 @@ def _mass_properties(bulk: Any, centre: Sequence[float] | None) -> tuple[Numbers
 
 def _output_system(grid: Any) -> Numbers:
     """The axes of a grid point's shapes, as rows in the basic coordinate system."""
-    import numpy as np
-
     system = grid.cd_ref
     if system is None or grid.Cd() == 0:
         return np.eye(3)

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
+from flexsc._numpy import np, npt
 
+if TYPE_CHECKING:
     Numbers = npt.NDArray[np.float64]
 
 _EIGENVALUE = re.compile(r"\$EIGENVALUE\s*=\s*(\S+)\s+MODE\s*=\s*(\d+)")
@@ -35,8 +34,6 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
         OSError: The file cannot be read.
         ValueError: It has no valid eigenvectors; the text names the line.
     """
-    import numpy as np
-
     squares: dict[int, float] = {}
     rows: dict[int, dict[int, list[float]]] = {}
     current, mode, wanted = 1, None, subcase

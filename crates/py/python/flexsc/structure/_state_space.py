@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from flexsc._numpy import np, npt
 from flexsc.structure._modal_model import StateSpace
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Numbers = npt.NDArray[np.float64]
     Complex = npt.NDArray[np.complex128]
 
@@ -49,8 +47,6 @@ def from_state_space(
     >>> [round(float(frequency), 6) for frequency in model.frequencies]
     [2.0]
     """
-    import numpy as np
-
     a, b, c = (_matrix(name, matrix) for name, matrix in (("A", A), ("B", B), ("C", C)))
     order = len(a)
     if a.shape != (order, order) or len(b) != order or c.shape[1] != order:
@@ -75,8 +71,6 @@ def from_state_space(
 
 
 def _matrix(name: str, matrix: Any) -> Numbers:
-    import numpy as np
-
     dense = matrix.toarray() if hasattr(matrix, "toarray") else matrix
     found = np.atleast_2d(np.asarray(dense, dtype=np.float64))
     if found.ndim != 2 or not np.isfinite(found).all():
@@ -86,8 +80,6 @@ def _matrix(name: str, matrix: Any) -> Numbers:
 
 def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float, Numbers, Numbers, Numbers]]:
     """Frequency, damping ratio, influence of the inputs, states of a unit displacement and of a unit rate."""
-    import numpy as np
-
     poles, right = np.linalg.eig(a)
     upper = _oscillating(poles)
     condition = np.linalg.cond(right)
@@ -129,8 +121,6 @@ def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float,
 
 def _oscillating(poles: Complex) -> npt.NDArray[np.intp]:
     """The poles of positive imaginary part, if all poles are of damped oscillations."""
-    import numpy as np
-
     size = np.abs(poles)
     rounding = 1e-12 * size.max(initial=0.0)
     if (at_rest := size <= rounding).any():
@@ -168,8 +158,6 @@ def _alike(poles: Complex, upper: npt.NDArray[np.intp]) -> list[list[int]]:
 
 def _deviation(model: StateSpace, a: Numbers, b: Numbers, c: Numbers) -> tuple[float, float]:
     """The largest relative deviation of the transfer function from that of the matrices, and where it is."""
-    import numpy as np
-
     w = model.frequencies
     places = np.concatenate([[0.5 * w[0]], w, np.sqrt(w[1:] * w[:-1]), [2.0 * w[-1]]])
     # So many tell; each costs a solution.

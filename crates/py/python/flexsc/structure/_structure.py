@@ -10,12 +10,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._numpy import np, npt
 from flexsc._scenario import Scenario
 
 if TYPE_CHECKING:
-    import numpy as np
-    import numpy.typing as npt
-
     Numbers = npt.NDArray[np.float64]
 
 AXES = ("roll", "pitch", "yaw")
@@ -95,8 +93,6 @@ class Structure:
         >>> structure.keep([0]).frequencies.size
         1
         """
-        import numpy as np
-
         chosen = np.asarray(modes)
         shapes = {point: shape[chosen] for point, shape in self.shapes.items()}
         return Structure(
@@ -116,8 +112,6 @@ class Structure:
         Raises:
             ValueError: No inertia tensor is known.
         """
-        import numpy as np
-
         tensor = self.inertia if inertia is None else inertia
         if tensor is None:
             raise ValueError("inertia: must be given: the structure does not have it")
