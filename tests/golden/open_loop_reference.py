@@ -125,8 +125,9 @@ def main() -> None:
         margins += margin_rows(path.stem, flexsc.Scenario.load(path))
     for name, scenario in variants().items():
         (OWN / f"{name}.toml").write_text(scenario.to_toml())
-        lines += rows(name, flexsc.Scenario.load(OWN / f"{name}.toml"))
-        margins += margin_rows(name, flexsc.Scenario.load(OWN / f"{name}.toml"))
+    for path in sorted(OWN.glob("*.toml")):
+        lines += rows(path.stem, flexsc.Scenario.load(path))
+        margins += margin_rows(path.stem, flexsc.Scenario.load(path))
     (ROOT / "tests/golden/open_loops.csv").write_text("\n".join(lines) + "\n")
     (ROOT / "tests/golden/margins.csv").write_text("\n".join(margins) + "\n")
 

@@ -20,7 +20,7 @@ use serde::Serialize;
 use flexsc_scenario::Scenario;
 
 /// Linear state-space model of a body.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct LinearModel {
     /// Matrix A, row by row.
     pub a: Vec<Vec<f64>>,

@@ -24,13 +24,9 @@ pub struct StateSpace {
     pub period: Option<f64>,
 }
 
-impl StateSpace {
-    /// Returns the body of a scenario in continuous time, with its natural frequencies at a time (s).
-    ///
-    /// # Errors
-    /// A body that is no linear system: its key, and the reason.
-    pub fn of_body(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
-        let LinearModel { a, b, c, states, inputs, outputs } = LinearModel::from_scenario(scenario, time)?;
+impl From<LinearModel> for StateSpace {
+    fn from(model: LinearModel) -> Self {
+        let LinearModel { a, b, c, states, inputs, outputs } = model;
         let matrix = |rows: &[Vec<f64>], columns: usize| {
             DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column])
         };
@@ -40,7 +36,17 @@ impl StateSpace {
             c: matrix(&c, states.len()),
             d: DMatrix::zeros(outputs.len(), inputs.len()),
         };
-        Ok(Self { matrices, states, inputs, outputs, period: None })
+        Self { matrices, states, inputs, outputs, period: None }
+    }
+}
+
+impl StateSpace {
+    /// Returns the body of a scenario in continuous time, with its natural frequencies at a time (s).
+    ///
+    /// # Errors
+    /// A body that is no linear system: its key, and the reason.
+    pub fn of_body(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
+        Ok(LinearModel::from_scenario(scenario, time)?.into())
     }
 
     /// Returns the body of a scenario at samples `period` (s) apart, whose inputs are held and act late: by a delay (s), or by

@@ -25,6 +25,7 @@ pub use transfer::TransferMatrices;
 
 use super::linear_loop::LinearLoop;
 use super::linear_model::{LinearModel, Signal};
+use super::state_space::StateSpace;
 use flexsc_scenario::Scenario;
 
 /// Point at which a loop is cut open.
@@ -194,17 +195,14 @@ impl BodyMatrices {
         let Some(places) = names.iter().map(place).collect::<Option<Vec<_>>>() else {
             return Err(ConfigError::new("body", "has no measured angles and rates"));
         };
-        let order = model.states.len();
-        let matrix = |rows: &[Vec<f64>], columns: usize| {
-            DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column])
-        };
+        let StateSpace { matrices, states, inputs, outputs, .. } = model.clone().into();
         Ok(Self {
-            a: matrix(&model.a, order),
-            b: matrix(&model.b, model.inputs.len()),
-            c: DMatrix::from_fn(places.len(), order, |row, column| model.c[places[row]][column]),
-            outputs: places.iter().map(|place| model.outputs[*place].clone()).collect(),
-            states: model.states.clone(),
-            inputs: model.inputs.clone(),
+            a: matrices.a,
+            b: matrices.b,
+            c: matrices.c.select_rows(&places),
+            outputs: places.iter().map(|place| outputs[*place].clone()).collect(),
+            states,
+            inputs,
             model,
         })
     }

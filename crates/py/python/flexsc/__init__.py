@@ -175,36 +175,23 @@ _MODULES = ("parts", "plot", "scenario", "structure")
 # Modules that import a package which NumPy does not bring.
 _EXTRAS = ("dask", "gym")
 _LATER = {
-    "BudgetLevel": "_budget",
-    "IndexBudget": "_budget",
-    "Linear": "_linear",
-    "LoopMargins": "_loop_margins",
-    "Margins": "_margins",
-    "NoiseSpectrum": "_noise",
-    "OutputBound": "_output_bounds",
-    "OutputNoise": "_noise",
-    "PointingBudget": "_budget",
-    "Sensitivities": "_sensitivity",
-    "Signal": "_signal",
-    "StabilityMargins": "_loop_margins",
-    "StateSpace": "structure",
-    "Structure": "structure",
-    "TunedMeasure": "_structured_tuning",
-    "TunedPlant": "_structured_tuning",
-    "TunedScenario": "_structured_tuning",
-    "WheelLines": "_noise",
-    "WheelSpectrum": "_noise",
-    "Witness": "_output_bounds",
-    "WorstCase": "_worst_case",
-    "appendage_from_matrices": "structure",
-    "appendage_from_nastran": "structure",
-    "from_csv": "structure",
-    "from_nastran": "structure",
-    "from_state_space": "structure",
-    "optimise": "_optimisation",
-    "read_matrices": "structure",
-    "sensitivities": "_sensitivity",
-    "write_scenario": "structure",
+    name: module
+    for module, names in {
+        "_budget": "BudgetLevel IndexBudget PointingBudget",
+        "_linear": "Linear",
+        "_loop_margins": "LoopMargins StabilityMargins",
+        "_margins": "Margins",
+        "_noise": "NoiseSpectrum OutputNoise WheelLines WheelSpectrum",
+        "_optimisation": "optimise",
+        "_output_bounds": "OutputBound Witness",
+        "_sensitivity": "Sensitivities sensitivities",
+        "_signal": "Signal",
+        "_structured_tuning": "TunedMeasure TunedPlant TunedScenario",
+        "_worst_case": "WorstCase",
+        "structure": "StateSpace Structure appendage_from_matrices appendage_from_nastran "
+        "from_csv from_nastran from_state_space read_matrices write_scenario",
+    }.items()
+    for name in names.split()
 }
 
 

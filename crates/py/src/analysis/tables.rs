@@ -1,5 +1,7 @@
 //! Tables: estimated work, limit cycles in closed form, and descriptions of keys, metrics and topics.
 
+#![expect(clippy::unnecessary_wraps, reason = "an analysis may fail")]
+
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::metrics;

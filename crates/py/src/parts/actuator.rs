@@ -52,26 +52,19 @@ pub struct Demanded {
     field: Option<Vector>,
 }
 
-#[pymethods]
-impl Demanded {
+attributes! { Demanded {
     /// The instant: `demanded.now - earlier` is the time between (s), without rounding before the
     /// difference.
-    #[getter]
-    fn now(&self) -> Instant {
-        Instant(self.now)
-    }
-
+    now: Instant = |this| Instant(this.now);
     /// The instant (s).
-    #[getter]
-    fn time(&self) -> f64 {
-        self.now.seconds()
-    }
-
+    time: f64 = |this| this.now.seconds();
     /// The demand about each axis.
-    #[getter]
-    fn values(&self) -> Vec<f64> {
-        self.demands.iter().map(value).collect()
-    }
+    values: Vec<f64> = |this| this.demands.iter().map(value).collect();
+    /// The rigid rates of the body (rad/s).
+    rigid: Three = |this| this.rigid.into();
+    /// The measured magnetic field in the body frame (T).
+    field: Option<Three> = |this| this.field.map(|field| <[f64; 3]>::from(field).into());
+}
 
     /// The kind of each demand: a torque (N m), a change of the rigid rate (rad/s), or a magnetic moment
     /// (A m²).
@@ -83,18 +76,6 @@ impl Demanded {
             Demand::Moment(_) => "moment",
         };
         self.demands.iter().map(kind).collect()
-    }
-
-    /// The rigid rates of the body (rad/s).
-    #[getter]
-    fn rigid(&self) -> Three {
-        self.rigid.into()
-    }
-
-    /// The measured magnetic field in the body frame (T).
-    #[getter]
-    fn field(&self) -> Option<Three> {
-        self.field.map(|field| <[f64; 3]>::from(field).into())
     }
 }
 

@@ -8,23 +8,16 @@ use pyo3::prelude::*;
 #[derive(Copy, Clone, Debug)]
 pub struct Draws(pub Seed);
 
-#[pymethods]
-impl Draws {
+attributes! { Draws {
+    /// The scenario's seed.
+    seed: u64 = |this| this.0.scenario;
+    /// The number of the run.
+    run: u64 = |this| this.0.run;
+}
+
     /// The stream with this name. It is independent of streams with other names.
     fn stream(&self, name: &str) -> Stream {
         Stream(self.0.stream(name))
-    }
-
-    /// The scenario's seed.
-    #[getter]
-    fn seed(&self) -> u64 {
-        self.0.scenario
-    }
-
-    /// The number of the run.
-    #[getter]
-    fn run(&self) -> u64 {
-        self.0.run
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {

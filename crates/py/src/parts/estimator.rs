@@ -33,55 +33,24 @@ pub struct Known {
     seed: Seed,
 }
 
-#[pymethods]
-impl Known {
+attributes! { Known {
     /// The number of axes: 1 or 3.
-    #[getter]
-    fn axes(&self) -> usize {
-        self.inertias.len()
-    }
-
+    axes: usize = |this| this.inertias.len();
     /// Moment of inertia about each axis (kg m²).
-    #[getter]
-    fn inertias(&self) -> Vec<f64> {
-        self.inertias.clone()
-    }
-
+    inertias: Vec<f64> = |this| this.inertias.clone();
     /// Frequency (rad/s), damping ratio and gain of each mode, about each axis.
-    #[getter]
-    fn modes(&self) -> Vec<Vec<(f64, f64, f64)>> {
-        self.modes.clone()
-    }
-
+    modes: Vec<Vec<(f64, f64, f64)>> = |this| this.modes.clone();
     /// Sampling period (s).
-    #[getter]
-    fn period(&self) -> Option<f64> {
-        self.period.map(Span::seconds)
-    }
-
+    period: Option<f64> = |this| this.period.map(Span::seconds);
     /// Standard deviation of the measured angle (rad).
-    #[getter]
-    fn angle_noise(&self) -> f64 {
-        self.angle_noise
-    }
-
+    angle_noise: f64 = |this| this.angle_noise;
     /// Standard deviation of the measured rate (rad/s) about each axis, if it is measured.
-    #[getter]
-    fn rate_noise(&self) -> Vec<Option<f64>> {
-        self.rate_noise.clone()
-    }
-
+    rate_noise: Vec<Option<f64>> = |this| this.rate_noise.clone();
     /// The quantities that the law about each axis reads.
-    #[getter]
-    fn reads(&self) -> Vec<&'static str> {
-        self.reads.clone()
-    }
-
+    reads: Vec<&'static str> = |this| this.reads.clone();
     /// Random numbers of the run.
-    #[getter]
-    fn draws(&self) -> Draws {
-        Draws(self.seed)
-    }
+    draws: Draws = |this| Draws(this.seed);
+}
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
         self.clone()
@@ -100,59 +69,28 @@ pub struct Taken {
     torque: Vec<f64>,
 }
 
-#[pymethods]
-impl Taken {
+attributes! { Taken {
     /// The instant: `taken.now - earlier` is the time between (s), without rounding before the
     /// difference.
-    #[getter]
-    fn now(&self) -> Instant {
-        Instant(self.now)
-    }
-
+    now: Instant = |this| Instant(this.now);
     /// The instant (s).
-    #[getter]
-    fn time(&self) -> f64 {
-        self.now.seconds()
-    }
-
+    time: f64 = |this| this.now.seconds();
     /// Angle relative to the target (rad) and rate (rad/s) about each axis; None if the sensor is
     /// silent.
-    #[getter]
-    fn measured(&self) -> Option<Vec<(f64, f64)>> {
-        self.measured.clone()
-    }
-
+    measured: Option<Vec<(f64, f64)>> = |this| this.measured.clone();
     /// The measurement of each sensor now, in the order of the scenario; None if it was not due, or
     /// silent.
-    #[getter]
-    fn readings(&self) -> Vec<Option<Reading>> {
-        self.readings.clone()
-    }
-
+    readings: Vec<Option<Reading>> = |this| this.readings.clone();
     /// The origin of the angles (rad), for a single-axis body.
-    #[getter]
-    fn origin_angle(&self) -> Option<f64> {
-        angle(&self.origin)
-    }
-
+    origin_angle: Option<f64> = |this| angle(&this.origin);
     /// The target (w, x, y, z), for a three-axis body.
-    #[getter]
-    fn origin_attitude(&self) -> Option<Four> {
-        attitude(&self.origin)
-    }
-
+    origin_attitude: Option<Four> = |this| attitude(&this.origin);
     /// The true rigid angle relative to the target (rad) and rate (rad/s) about each axis, for
     /// observers.
-    #[getter]
-    fn truth(&self) -> Vec<(f64, f64)> {
-        self.truth.clone()
-    }
-
+    truth: Vec<(f64, f64)> = |this| this.truth.clone();
     /// The torque that the actuator holds about each axis (N m).
-    #[getter]
-    fn torque(&self) -> Vec<f64> {
-        self.torque.clone()
-    }
+    torque: Vec<f64> = |this| this.torque.clone();
+}
 }
 
 /// An estimator as a scenario has it.

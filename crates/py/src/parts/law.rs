@@ -26,26 +26,15 @@ use super::signals::Signals;
 #[derive(Copy, Clone, Debug)]
 pub struct Authority(pub EngineAuthority);
 
-#[pymethods]
-impl Authority {
+attributes! { Authority {
     /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
-    #[getter]
-    fn axis(&self) -> usize {
-        self.0.axis
-    }
-
+    axis: usize = |this| this.0.axis;
     /// The largest accelerations in the positive and negative direction (rad/s²); infinite without a
     /// limit.
-    #[getter]
-    fn accelerations(&self) -> (f64, f64) {
-        self.0.accelerations.into()
-    }
-
+    accelerations: (f64, f64) = |this| this.0.accelerations.into();
     /// Time from a command to its execution (s).
-    #[getter]
-    fn delay(&self) -> f64 {
-        self.0.delay
-    }
+    delay: f64 = |this| this.0.delay;
+}
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
         *self
@@ -62,98 +51,45 @@ pub struct Event {
     estimate: StateEstimate,
 }
 
-#[pymethods]
-impl Event {
+attributes! { Event {
     /// The instant: `event.now - earlier` is the time between (s), without rounding before the
     /// difference.
-    #[getter]
-    fn now(&self) -> Instant {
-        Instant(self.now)
-    }
-
+    now: Instant = |this| Instant(this.now);
     /// The instant in seconds.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.now.seconds()
-    }
-
+    time: f64 = |this| this.now.seconds();
     /// The start of the run, the time given by the last hold, or the level that the angle has passed.
-    #[getter]
-    fn cause(&self) -> &'static str {
-        self.cause
-    }
-
+    cause: &'static str = |this| this.cause;
     /// Angle (rad).
-    #[getter]
-    fn angle(&self) -> f64 {
-        self.estimate.angle
-    }
-
+    angle: f64 = |this| this.estimate.angle;
     /// Rate (rad/s).
-    #[getter]
-    fn rate(&self) -> f64 {
-        self.estimate.rate
-    }
-
+    rate: f64 = |this| this.estimate.rate;
     /// The goal of the angle at this time (rad).
-    #[getter]
-    fn goal_angle(&self) -> f64 {
-        self.goal.at(self.now).0
-    }
-
+    goal_angle: f64 = |this| this.goal.at(this.now).0;
     /// The goal of the rate (rad/s).
-    #[getter]
-    fn goal_rate(&self) -> f64 {
-        self.goal.rate
-    }
-
+    goal_rate: f64 = |this| this.goal.rate;
     /// The goal of the acceleration (rad/s²), for a target with a reference motion.
-    #[getter]
-    fn goal_acceleration(&self) -> f64 {
-        self.goal.acceleration
-    }
-
+    goal_acceleration: f64 = |this| this.goal.acceleration;
     /// The instant from which the goal applies: the start, or the end of a manoeuvre.
-    #[getter]
-    fn goal_from(&self) -> Instant {
-        Instant(self.goal.from)
-    }
-
+    goal_from: Instant = |this| Instant(this.goal.from);
     /// Magnitude of the vector of the angles about all axes (rad); 0 for a single-axis body.
-    #[getter]
-    fn whole(&self) -> f64 {
-        self.estimate.total_angle
-    }
-
+    whole: f64 = |this| this.estimate.total_angle;
     /// Rate of change of the magnetic field along the axis (T/s).
-    #[getter]
-    fn field_rate(&self) -> f64 {
-        self.estimate.field_rate
-    }
-
+    field_rate: f64 = |this| this.estimate.field_rate;
     /// Change of the rate that is commanded but not yet executed (rad/s).
-    #[getter]
-    fn queued(&self) -> f64 {
-        self.estimate.queued_rate
-    }
+    queued: f64 = |this| this.estimate.queued_rate;
+    /// The elastic modes: rate (rad/s), frequency (rad/s) and its jump per jump of the rigid rate.
+    elastic: Vec<(f64, f64, f64)> = |this| {
+        this.estimate.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
+    };
+    /// Whether the law may act on the elastic modes.
+    trusted: bool = |this| this.estimate.elastic_is_trusted;
+}
 
     /// The dominant mode: displacement (rad), rate (rad/s) and frequency (rad/s).
     #[getter]
     fn dominant(&self) -> (f64, f64, f64) {
         let dominant = self.estimate.dominant;
         (dominant.displacement, dominant.rate, dominant.frequency)
-    }
-
-    /// The elastic modes: rate (rad/s), frequency (rad/s) and its jump per jump of the rigid rate.
-    #[getter]
-    fn elastic(&self) -> Vec<(f64, f64, f64)> {
-        self.estimate.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
-    }
-
-    /// Whether the law may act on the elastic modes.
-    #[getter]
-    fn trusted(&self) -> bool {
-        self.estimate.elastic_is_trusted
     }
 
     fn __repr__(&self) -> String {

@@ -1,5 +1,8 @@
 //! Parts written in Python: objects with a role's methods, called at events and samples alone.
 
+#[macro_use]
+mod attributes;
+
 mod actuator;
 mod adaptation;
 mod attitude;

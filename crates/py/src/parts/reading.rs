@@ -169,69 +169,30 @@ pub struct Truth {
     pub truth: EngineTruth,
 }
 
-#[pymethods]
-impl Truth {
+attributes! { Truth {
     /// The instant: `truth.now - earlier` is the time between (s), without rounding before the
     /// difference.
-    #[getter]
-    fn now(&self) -> Instant {
-        Instant(self.now)
-    }
-
+    now: Instant = |this| Instant(this.now);
     /// The instant (s).
-    #[getter]
-    fn time(&self) -> f64 {
-        self.now.seconds()
-    }
-
+    time: f64 = |this| this.now.seconds();
     /// The angle with its elastic part (rad), for a single-axis body.
-    #[getter]
-    fn angle(&self) -> Option<f64> {
-        angle(&self.truth.orientation)
-    }
-
+    angle: Option<f64> = |this| angle(&this.truth.orientation);
     /// The attitude (w, x, y, z) of a three-axis body, which rotates vectors from the body frame to the
     /// inertial frame.
-    #[getter]
-    fn attitude(&self) -> Option<Four> {
-        attitude(&self.truth.orientation)
-    }
-
+    attitude: Option<Four> = |this| attitude(&this.truth.orientation);
     /// The elastic rotations at the sensor, in addition to the attitude (rad).
-    #[getter]
-    fn elastic(&self) -> Three {
-        self.truth.elastic.into()
-    }
-
+    elastic: Three = |this| this.truth.elastic.into();
     /// The rates at the sensor, including the elastic part (rad/s).
-    #[getter]
-    fn rate(&self) -> Three {
-        self.truth.rate.into()
-    }
-
+    rate: Three = |this| this.truth.rate.into();
     /// The rigid rates of the body (rad/s).
-    #[getter]
-    fn rigid(&self) -> Three {
-        self.truth.rigid_rate.into()
-    }
-
+    rigid: Three = |this| this.truth.rigid_rate.into();
     /// The integral of `rate` (rad) up to a constant, as a gyro counts it.
-    #[getter]
-    fn turned(&self) -> Three {
-        self.truth.rate_integral.into()
-    }
-
+    turned: Three = |this| this.truth.rate_integral.into();
     /// The magnetic field in the inertial frame (T), if there is one.
-    #[getter]
-    fn field(&self) -> Option<Three> {
-        self.truth.environment.field.map(|field| <[f64; 3]>::from(field).into())
-    }
-
+    field: Option<Three> = |this| this.truth.environment.field.map(|field| <[f64; 3]>::from(field).into());
     /// The direction to the Sun in the inertial frame, when in sunlight.
-    #[getter]
-    fn sun(&self) -> Option<Three> {
-        self.truth.environment.sun.map(|sun| <[f64; 3]>::from(sun).into())
-    }
+    sun: Option<Three> = |this| this.truth.environment.sun.map(|sun| <[f64; 3]>::from(sun).into());
+}
 
     /// The attitude rotated by three small angles about the body axes (rad).
     fn attitude_at(&self, angles: &Bound<'_, PyAny>) -> PyResult<Option<Four>> {

@@ -41,38 +41,29 @@ impl ThreeAxisEvent {
     }
 }
 
-#[pymethods]
-impl ThreeAxisEvent {
+attributes! { ThreeAxisEvent {
     /// The instant: `event.now - earlier` is the time between (s), without rounding before the
     /// difference.
-    #[getter]
-    fn now(&self) -> Instant {
-        Instant(self.now)
-    }
-
+    now: Instant = |this| Instant(this.now);
     /// The instant in seconds.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.now.seconds()
-    }
-
+    time: f64 = |this| this.now.seconds();
     /// The start of the run, or the time given by the last hold.
-    #[getter]
-    fn cause(&self) -> &'static str {
-        self.cause
-    }
-
+    cause: &'static str = |this| this.cause;
     /// Rotation vector from the target to the estimated attitude (rad), in body axes.
-    #[getter]
-    fn angles(&self) -> Three {
-        self.each(|estimate| estimate.angle)
-    }
-
+    angles: Three = |this| this.each(|estimate| estimate.angle);
     /// Estimated rates (rad/s), in body axes.
-    #[getter]
-    fn rates(&self) -> Three {
-        self.each(|estimate| estimate.rate)
-    }
+    rates: Three = |this| this.each(|estimate| estimate.rate);
+    /// The goal of the angles (rad): 0, unless a target drifts.
+    goal_angles: Three = |this| this.setpoints.map(|setpoint| setpoint.at(this.now).0).into();
+    /// The goal of the rates (rad/s).
+    goal_rates: Three = |this| this.setpoints.map(|setpoint| setpoint.rate).into();
+    /// The goal of the accelerations (rad/s²), for a target with a reference motion.
+    goal_accelerations: Three = |this| this.setpoints.map(|setpoint| setpoint.acceleration).into();
+    /// Rates of change of the magnetic field along the body axes (T/s).
+    field_rates: Three = |this| this.each(|estimate| estimate.field_rate);
+    /// Speeds of the reaction wheels (rad/s), as available to their drives.
+    wheel_speeds: Vec<f64> = |this| this.wheel_speeds.clone();
+}
 
     /// Quaternion (w, x, y, z) of the same rotation.
     #[getter]
@@ -80,36 +71,6 @@ impl ThreeAxisEvent {
         let (x, y, z) = self.angles();
         let q = rotation(&Vector::new(x, y, z));
         (q.w, q.i, q.j, q.k)
-    }
-
-    /// The goal of the angles (rad): 0, unless a target drifts.
-    #[getter]
-    fn goal_angles(&self) -> Three {
-        self.setpoints.map(|setpoint| setpoint.at(self.now).0).into()
-    }
-
-    /// The goal of the rates (rad/s).
-    #[getter]
-    fn goal_rates(&self) -> Three {
-        self.setpoints.map(|setpoint| setpoint.rate).into()
-    }
-
-    /// The goal of the accelerations (rad/s²), for a target with a reference motion.
-    #[getter]
-    fn goal_accelerations(&self) -> Three {
-        self.setpoints.map(|setpoint| setpoint.acceleration).into()
-    }
-
-    /// Rates of change of the magnetic field along the body axes (T/s).
-    #[getter]
-    fn field_rates(&self) -> Three {
-        self.each(|estimate| estimate.field_rate)
-    }
-
-    /// Speeds of the reaction wheels (rad/s), as available to their drives.
-    #[getter]
-    fn wheel_speeds(&self) -> Vec<f64> {
-        self.wheel_speeds.clone()
     }
 
     fn __repr__(&self) -> String {
