@@ -18,7 +18,7 @@ LAYERS = {
     """,
     "results": """
         _budget _controllers _damping _design _flight_code _frequency_response _linear _loop_margins _margins
-        _model_state _noise _optimisation _output_bounds _plan _report _result _sampled_loop
+        _model_state _noise _optimisation _output_bounds _plan _read _report _result _sampled_loop
         _structured_tuning _worst_case
     """,
     "scenario": """

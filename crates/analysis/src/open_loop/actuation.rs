@@ -50,7 +50,7 @@ pub fn common_delay(scenario: &Scenario) -> Result<f64, ConfigError> {
     }
     delays.sort_by(f64::total_cmp);
     if delays.len() > 1 {
-        let why = format!("has different delays, {delays:?} s: a linear loop has one");
+        let why = format!("has different delays, {delays:?} s: a linear loop has one, in Python `delay`");
         return Err(ConfigError::new("actuator", why));
     }
     Ok(delays.first().copied().unwrap_or(0.0))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
 from flexsc._equality import Compared
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -158,15 +159,10 @@ def pointing_budget(scenario: Scenario, runs: int, jobs: int) -> PointingBudget:
     if runs < 1:
         raise ValueError(f"runs must be 1 or more, got {runs}")
     found = analysis("budget", scenario, runs=runs, jobs=jobs)
-    return PointingBudget(
-        runs=found["runs"],
-        indices=tuple(_index(each) for each in found["budgets"]),
-        requirements=tuple(found["requirements"]),
-    )
+    return read(PointingBudget, found, indices=tuple(_index(each) for each in found["budgets"]))
 
 
 def _index(found: dict[str, Any]) -> IndexBudget:
     words = ("temporal", "ensemble", "mixed")
     levels = {row["level"]: {word: BudgetLevel(**row[word]) for word in words} for row in found["levels"]}
-    keys = ("name", "description", "unit", "limit", "linear_noise", "sources")
-    return IndexBudget(levels=levels, **{key: found[key] for key in keys})
+    return read(IndexBudget, found, levels=levels)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf, nan
 from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
 from flexsc._named import Brief
 from flexsc._numpy import np, npt
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -228,18 +230,15 @@ def stability_margins(scenario: Scenario, loop: Break) -> StabilityMargins:
     """Return the margins of the loop of a scenario, opened at a point."""
     found = analysis("margins", scenario, opened=loop)
     several = found["samples"] > 1
-    return StabilityMargins(
-        loop=loop,
-        period=found["period_s"],
-        samples=found["samples"],
-        spectral_radius=found["spectral_radius"],
+    singular = {name: np.array(values) for name, values in found["singular_values"].items()}
+    return read(
+        StabilityMargins,
+        found,
         loops={each["signal"]: _loop(each, several) for each in found["loops"]},
-        frequency=np.array(found["singular_values"]["frequency"]),
-        sensitivity=np.array(found["singular_values"]["sensitivity"]),
-        complementary=np.array(found["singular_values"]["complementary"]),
-        delay=float("inf") if found["common_delay_s"] is None else found["common_delay_s"],
+        delay=inf if found["common_delay_s"] is None else found["common_delay_s"],
         settling=_settling(found["settling"]),
-        independent_disk=(found["independent_disk"] or {"alpha": float("nan")})["alpha"],
+        independent_disk=(found["independent_disk"] or {"alpha": nan})["alpha"],
+        **singular,
         **_peaks(found),
     )
 
@@ -248,20 +247,20 @@ def _settling(rows: list[dict[str, Any]]) -> dict[str, float]:
     """The longest settling time of all angles after a step about each axis."""
     longest: dict[str, float] = {}
     for row in rows:
-        time = float("inf") if row["time_s"] is None else row["time_s"]
+        time = inf if row["time_s"] is None else row["time_s"]
         longest[row["step"]] = max(time, longest.get(row["step"], 0.0))
     return longest
 
 
 def _loop(found: dict[str, Any], several: bool) -> LoopMargins:
     """The margins of one signal; infinite or NaN where a number does not exist."""
-    nan, inf = float("nan"), float("inf")
     gain = {"frequency": "frequency_rad_s", "phase": "phase_rad", "delay": "delay_s"}
     phase = {"frequency": "frequency_rad_s", "factor": "factor"}
-    return LoopMargins(
+    return read(
+        LoopMargins,
+        found,
         gain_crossings=_columns(found["gain"], gain),
         phase_crossings=_columns(found["phase"], phase),
-        gain_below=found["gain_below"],
         gain_above=inf if found["gain_above"] is None else found["gain_above"],
         phase=found["phase_rad"],
         delay=(nan if several else inf) if found["delay_s"] is None else found["delay_s"],

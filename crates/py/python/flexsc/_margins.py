@@ -51,7 +51,7 @@ Margins.__module__ = "flexsc"
 
 def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
     """Return the margins of an opened loop."""
-    if opened.b.shape[1] != opened.c.shape[0]:
+    if not opened.inputs or opened.b.shape[1] != opened.c.shape[0]:
         raise ValueError("only an opened loop, with as many outputs as inputs, has margins")
     names = [signal.name for signal in opened.inputs]
     # Without the numbers of their samples in a period.

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from flexsc._analysis import analysis
 from flexsc._named import Brief
 from flexsc._numpy import np, npt
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -252,17 +253,13 @@ def noise_spectrum(
     given = None if speeds is None else np.asarray(speeds, dtype=np.float64).ravel().tolist()
     options = {"signals": list(signals or ()), "window": window, "separation": separation, "speeds": given}
     found = analysis("spectrum", scenario, **options)
-    sources = tuple(found["sources"])
     names = [each["output"] for each in found["outputs"]]
     wheels = found.get("wheels")
-    return NoiseSpectrum(
-        frequency=_array(found["frequency_hz"]),
-        sources=sources,
-        outputs={each["output"]: _output(each, sources) for each in found["outputs"]},
+    return read(
+        NoiseSpectrum,
+        found,
+        outputs={each["output"]: _output(each, found["sources"]) for each in found["outputs"]},
         wheels=None if wheels is None else _wheels(wheels, names),
-        period=found["period_s"],
-        samples=found["samples"],
-        spectral_radius=found["spectral_radius"],
     )
 
 
@@ -270,20 +267,17 @@ def _array(values: Sequence[float]) -> Values:
     return np.array(values, dtype=np.float64)
 
 
-def _output(found: dict[str, Any], sources: tuple[str, ...]) -> OutputNoise:
+def _output(found: dict[str, Any], sources: list[str]) -> OutputNoise:
     window = found.get("window")
     if window is not None:
         times = ("window_s", "separation_s")
         window = {name: value for name, value in window.items() if name not in times and value is not None}
-    densities = (_array(density) for density in found["density_by_source"])
-    return OutputNoise(
-        unit=found["unit"],
-        rms=found["rms"],
-        sample_rms=found["sample_rms"],
+    densities = map(_array, found["density_by_source"])
+    return read(
+        OutputNoise,
+        found,
         rms_by_source=dict(zip(sources, found["rms_by_source"], strict=True)),
-        density=_array(found["density"]),
         density_by_source=dict(zip(sources, densities, strict=True)),
-        cumulative_rms=_array(found["cumulative_rms"]),
         window=window,
     )
 

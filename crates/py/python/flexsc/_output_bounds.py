@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from flexsc._analysis import analysis
 from flexsc._named import Brief
 from flexsc._numpy import np, npt
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -203,41 +204,14 @@ def output_bounds(scenario: Scenario) -> list[OutputBound]:
 
 def _bound(found: dict[str, Any], of: type[Scenario]) -> OutputBound:
     rows = {name: np.array(values, dtype=np.float64) for name, values in found["rows"].items()}
-    return OutputBound(
-        output=found["output"]["name"],
-        unit=found["output"]["unit"],
-        elastic=found["elastic"],
-        limits=None if found["limits"] is None else tuple(found["limits"]),
-        until=found["until_s"],
-        verdict=found["verdict"],
-        range=tuple(found["range"]),
-        attained=tuple(found["attained"]),
-        attained_at=tuple(found["attained_at_s"]),
-        safe_until=_number(found["safe_until_s"]),
-        violated_at=_number(found["violated_at_s"]),
-        gap=_number(found["gap"]),
-        witness=None
-        if found["witness"] is None
-        else _witness(found["witness"], found["witness_scenario"], of),
-        rows=rows,
-    )
+    witness = found["witness"] and _witness(found["witness"], found["witness_scenario"], of)
+    signal = found["output"]
+    return read(OutputBound, found, output=signal["name"], unit=signal["unit"], rows=rows, witness=witness)
 
 
 def _witness(found: dict[str, Any], text: str | None, of: type[Scenario]) -> Witness:
     def column(values: list[float]) -> npt.NDArray[np.float64]:
         return np.array(values, dtype=np.float64)
 
-    return Witness(
-        time=found["time_s"],
-        value=found["value"],
-        simulated=_number(found["simulated"]),
-        frequency_factor=found["frequency_factor"],
-        damping_factor=found["damping_factor"],
-        start=column(found["start"]),
-        inputs={each["name"]: (column(each["times_s"]), column(each["values"])) for each in found["inputs"]},
-        scenario=None if text is None else of.parse(text),
-    )
-
-
-def _number(found: float | None) -> float:
-    return float("nan") if found is None else found
+    inputs = {each["name"]: (column(each["times_s"]), column(each["values"])) for each in found["inputs"]}
+    return read(Witness, found, inputs=inputs, scenario=None if text is None else of.parse(text))

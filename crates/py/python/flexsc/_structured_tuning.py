@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._analysis import analysis
 from flexsc._equality import Compared
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -206,15 +207,13 @@ def tune(
         raise TypeError(f"keep: must be a sequence of texts, such as [{keep!r}], got a text")
     options = {"keys": keys, "opened": loop, "objective": objective, "keep": list(keep)}
     found = analysis("tune", scenario, **options, bandwidth=bandwidth, is_nominal=not corners)
-    return TunedScenario(
-        scenario=found["scenario"],
+    return read(
+        TunedScenario,
+        found,
         keys={each["key"]: each["after"] for each in found["keys"]},
         keys_before={each["key"]: each["before"] for each in found["keys"]},
-        least_margin_before=found["least_margin_before"],
-        least_margin=found["least_margin"],
         measures={each["name"]: _measure(each) for each in found["measures"]},
         plants=tuple(_plant(each) for each in found["plants"]),
-        steps=found["steps"],
     )
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 from typing import TYPE_CHECKING, Literal
 
 from flexsc._analysis import analysis
 from flexsc._equality import Compared
 from flexsc._numpy import np, npt
+from flexsc._read import read
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -153,20 +155,10 @@ def worst_case(
     kind, name = chosen[0]
     options = {"kind": kind, "name": name, "opened": loop, "is_least": least}
     found = analysis("worst", scenario, **options, points=points, jobs=jobs)
-    # JSON has no NaN and no infinity.
-    values = np.array([np.nan if value is None else value for value in found["values"]])
-    worst, nominal = (np.nan if found[name] is None else found[name] for name in ("worst", "nominal"))
-    return WorstCase(
-        quantity=found["quantity"],
-        unit=found["unit"],
-        least=found["least"],
-        value=worst,
-        nominal=nominal,
-        keys=found["keys"],
+    return read(
+        WorstCase,
+        found,
+        value=nan if found["worst"] is None else found["worst"],
         ranges=dict(zip(found["keys"], map(tuple, found["ranges"]), strict=True)),
         points=np.array(found["rows"]),
-        values=values,
-        without_value=found["without_value"],
-        unstable=found["unstable"],
-        scenario=found["scenario"],
     )
