@@ -1,5 +1,8 @@
 """The engine, as `flexsc` calls it. Not for users: what is here may change at any time."""
 
+# By hand, and compared with the module by mypy.stubtest: PyO3 0.30 can write stubs (`experimental-inspect`),
+# but leaves arrays of NumPy without a type.
+
 import os
 from collections.abc import Sequence
 from pathlib import Path
