@@ -108,7 +108,7 @@ fn signals_of_a_wheel_have_the_unit_of_its_command() {
         let signals = opened(at).signals;
         signals.iter().map(|signal| format!("{} {}", signal.name, signal.unit)).collect::<Vec<_>>()
     };
-    assert_eq!(signals(LoopBreak::Command), ["command rad/s²/0.000033"]);
+    assert_eq!(signals(LoopBreak::Command), ["command rad/s²/3.3e-5"]);
     assert_eq!(signals(LoopBreak::Torque), ["torque rad/s²"]);
     assert_eq!(signals(LoopBreak::Measurement), ["angle rad", "rate rad/s"]);
 }

@@ -11,7 +11,7 @@ use flexsc_scenario::Scenario;
 
 /// State-space model with the names and units of its states, inputs and outputs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StateSpace {
+pub struct StateSpaceModel {
     /// Matrices.
     pub matrices: TransferMatrices,
     /// States.
@@ -24,7 +24,7 @@ pub struct StateSpace {
     pub period: Option<f64>,
 }
 
-impl From<LinearModel> for StateSpace {
+impl From<LinearModel> for StateSpaceModel {
     fn from(model: LinearModel) -> Self {
         let LinearModel { a, b, c, states, inputs, outputs } = model;
         let matrix = |rows: &[Vec<f64>], columns: usize| {
@@ -40,7 +40,7 @@ impl From<LinearModel> for StateSpace {
     }
 }
 
-impl StateSpace {
+impl StateSpaceModel {
     /// Returns the body of a scenario in continuous time, with its natural frequencies at a time (s).
     ///
     /// # Errors

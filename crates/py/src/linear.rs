@@ -4,7 +4,7 @@ use flexsc_core::analysis::linear_model::Signal;
 use flexsc_core::analysis::margins::CommonMargins;
 use flexsc_core::analysis::open_loop::TransferMatrices;
 use flexsc_core::analysis::open_loop::sampling::SampledSystem;
-use flexsc_core::analysis::state_space::StateSpace;
+use flexsc_core::analysis::state_space::StateSpaceModel;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -50,16 +50,16 @@ pub fn linearise<'py>(
         }
         (Some(opened), None) => {
             checked_times(1.0, delay)?;
-            StateSpace::of_loop(inner, opened, delay)
+            StateSpaceModel::of_loop(inner, opened, delay)
         }
         (None, Some(period)) => {
             checked_times(period, delay)?;
-            StateSpace::of_sampled_body(inner, at, period, delay)
+            StateSpaceModel::of_sampled_body(inner, at, period, delay)
         }
         (None, None) if delay.is_some() => return Err(PyValueError::new_err("delay needs a period")),
-        (None, None) => StateSpace::of_body(inner, at),
+        (None, None) => StateSpaceModel::of_body(inner, at),
     };
-    let StateSpace { matrices: TransferMatrices { a, b, c, d }, states, inputs, outputs, period } =
+    let StateSpaceModel { matrices: TransferMatrices { a, b, c, d }, states, inputs, outputs, period } =
         model.map_err(|fault| scenario.key_error(fault))?;
     let named = |all: Vec<Signal>| all.into_iter().map(|signal| (signal.name, signal.unit)).collect();
     let matrices = (array(py, &a)?, array(py, &b)?, array(py, &c)?, array(py, &d)?);

@@ -25,7 +25,7 @@ pub use transfer::TransferMatrices;
 
 use super::linear_loop::LinearLoop;
 use super::linear_model::{LinearModel, Signal};
-use super::state_space::StateSpace;
+use super::state_space::StateSpaceModel;
 use flexsc_scenario::Scenario;
 
 /// Point at which a loop is cut open.
@@ -195,7 +195,7 @@ impl BodyMatrices {
         let Some(places) = names.iter().map(place).collect::<Option<Vec<_>>>() else {
             return Err(ConfigError::new("body", "has no measured angles and rates"));
         };
-        let StateSpace { matrices, states, inputs, outputs, .. } = model.clone().into();
+        let StateSpaceModel { matrices, states, inputs, outputs, .. } = model.clone().into();
         Ok(Self {
             a: matrices.a,
             b: matrices.b,
