@@ -1,4 +1,5 @@
-//! Opened loops against Python's assembly with NumPy: `tests/golden/open_loop_reference.py`.
+//! Opened loops against Python's assembly with NumPy: `tests/golden/open_loop_reference.py`, and for the wheel study
+//! `tests/golden/wheel_loop_reference.py`.
 
 use std::fs;
 use std::path::PathBuf;

@@ -3,7 +3,8 @@
 Each row of `disk_margins.csv` has a scenario, a command or `all`, the modulus margin 1/|S| and the disk
 margin 1/|S - 1/2|, by the norms of SLICOT (AB13DD) of the loops that Python opens at the command, with
 SciPy's exponentials. AB13DD stops at a lower peak for the modulus about roll of `attitude-hold`: the larger
-of its value and of a search by SciPy from the largest values on a grid is taken.
+of its value and of a search by SciPy from the largest values on a grid is taken. The loops of the wheel study
+come from wheel_loop_reference.py.
 """
 
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 from flexsc import _native
 from scipy.linalg import expm
 from scipy.optimize import minimize_scalar
+from wheel_loop_reference import disk_rows
 
 ROOT = Path(__file__).parents[2]
 NAMES = (
@@ -22,7 +24,6 @@ NAMES = (
     "four-clamped-modes",
     "slew-wheel-lqg",
     "station-keeping",
-    "fitted-slow-mode",
     "kalman-late",
     "observer-late",
 )
@@ -61,6 +62,7 @@ def main() -> None:
             systems = [control.ss(closed.a, b, c, part * one - d, closed.period) for part in (1.0, 0.5)]
             norms = [largest(system, closed.frequency_grid(), closed.period) for system in systems]
             lines.append(",".join([name, own, *(repr(1.0 / norm) for norm in norms)]))
+    lines += disk_rows()
     (ROOT / "tests/golden/disk_margins.csv").write_text("\n".join(lines) + "\n")
 
 

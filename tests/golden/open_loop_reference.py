@@ -4,7 +4,8 @@
 are solved for here. Each row of `open_loops.csv` has
 a scenario, the break, and either `refused`, or the number of states, the period, the spectral radius of the
 closed loop, and the response L v with v = (1, 1/2, 1/3, ...) at a fraction of the Nyquist frequency: real and
-imaginary parts, output by output. `open_loops/` has the scenarios that are not shipped.
+imaginary parts, output by output. `open_loops/` has the scenarios that are not shipped. The loops of the
+wheel study are assembled without flexsc, by wheel_loop_reference.py.
 
 `margins.csv` has the margins of each command with the other loops closed, by bisection of the poles of loops
 whose gain or phase is off.
@@ -16,6 +17,9 @@ import flexsc
 import numpy as np
 from open_loop_assembly import margins as margins_of
 from open_loop_assembly import open_loop
+from wheel_loop_reference import LOOPS
+from wheel_loop_reference import margin_rows as wheel_margins
+from wheel_loop_reference import open_loop_rows as wheel_loops
 
 ROOT = Path(__file__).parents[2]
 OWN = ROOT / "tests/golden/open_loops"
@@ -121,13 +125,19 @@ def main() -> None:
     lines = ["scenario,loop,states,period_s,spectral_radius,fraction,response"]
     margins = ["scenario,command,gain_below,gain_above,phase_rad"]
     for path in sorted((ROOT / "scenarios").glob("*.toml")):
+        if path.stem in LOOPS:
+            continue
         lines += rows(path.stem, flexsc.Scenario.load(path))
         margins += margin_rows(path.stem, flexsc.Scenario.load(path))
     for name, scenario in variants().items():
         (OWN / f"{name}.toml").write_text(scenario.to_toml())
     for path in sorted(OWN.glob("*.toml")):
+        if path.stem in LOOPS:
+            continue
         lines += rows(path.stem, flexsc.Scenario.load(path))
         margins += margin_rows(path.stem, flexsc.Scenario.load(path))
+    lines += wheel_loops()
+    margins += wheel_margins()
     (ROOT / "tests/golden/open_loops.csv").write_text("\n".join(lines) + "\n")
     (ROOT / "tests/golden/margins.csv").write_text("\n".join(margins) + "\n")
 
