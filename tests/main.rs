@@ -66,6 +66,7 @@ mod goals;
 mod isolators;
 mod jets;
 mod linear_budgets;
+mod loads;
 mod loops;
 mod lqg;
 mod magnetic;

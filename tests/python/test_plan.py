@@ -28,6 +28,19 @@ def test_a_plan_tells_what_the_command_tells() -> None:
     assert repr(plan) == "<flexsc.Plan: 1.5708 rad in 12 s>"
 
 
+def test_a_load_elsewhere_than_on_the_hub() -> None:
+    shipped = Scenario.example("rotation-panel-torque")
+    # By tests/golden/load_oracle.py, every 5 ms.
+    assert shipped.plan()["peak_deflection_rad"] == pytest.approx(0.08971696456, rel=1e-5)
+    at_hub = shipped.with_("manoeuvre.load", {"hub": 3.0})
+    assert at_hub.plan()["peak_deflection_rad"] == pytest.approx(0.3048027468, rel=1e-9)
+    assert turn(load={"rigid": 1.0, "modes": [0.0]}).plan()["peak_deflections_rad"]["angle"] == 0.0
+    with pytest.raises(
+        ScenarioError, match=r"`manoeuvre\.load\.sections` must have one number for each of 4"
+    ):
+        shipped.with_("manoeuvre.load", {"sections": [1.0]})
+
+
 def test_the_command_over_time() -> None:
     plan = turn().plan()
     time = np.linspace(0.0, 12.0, 12_001)

@@ -21,7 +21,7 @@ pub struct OneAxisModes {
     pub gains: Vec<f64>,
     /// Excitabilities k/w² (s²).
     pub excitabilities_s2: Vec<f64>,
-    /// Effective moments of inertia J k (kg m²): J² X_n\[theta\]² of a free body, m_n² of a clamped one.
+    /// Effective moments of inertia J k at the hub (kg m²): J² X_n\[theta\]² of a free body, m_n² of a clamped one.
     pub effective_inertias_kg_m2: Vec<f64>,
     /// Natural frequencies with the hub free (rad/s); none if this body does not exist.
     pub free_frequencies_rad_s: Option<Vec<f64>>,
@@ -64,7 +64,7 @@ impl OneAxisModes {
             dampings: column(&|mode| mode.damping.get()),
             gains: column(&|mode| mode.gain.get()),
             excitabilities_s2: column(&AxisMode::excitability),
-            effective_inertias_kg_m2: column(&|mode| inertia * mode.gain.get()),
+            effective_inertias_kg_m2: column(&|mode| inertia * mode.hub_gain.get()),
             free_frequencies_rad_s: free_frequencies(body),
             clamped_frequencies_rad_s: clamped_frequencies(body),
             outputs: body.outputs.iter().map(weighted).collect(),

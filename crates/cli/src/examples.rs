@@ -59,6 +59,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "rotation-cosine",
     "rotation-kinematic",
     "rotation-nonlinear",
+    "rotation-panel-torque",
     "rotation-robust",
     "rotation-sine",
     "rotation-spin-up",

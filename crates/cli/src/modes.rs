@@ -158,6 +158,10 @@ impl Results for OneAxisTable {
             Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
         };
         let (factor, unit) = style.units.frequency();
+        // The gains may be those of a load; the effective inertias are those of a torque on the hub.
+        let mut gains = modal.gains.iter().zip(&modal.effective_inertias_kg_m2);
+        let is_elsewhere = gains.any(|(gain, effective)| modal.inertia_kg_m2 * gain != *effective);
+        let effective = if is_elsewhere { "at hub, kg m²" } else { "J k, kg m²" };
         let mut rows = vec![
             texts(&[
                 "mode",
@@ -170,7 +174,7 @@ impl Results for OneAxisTable {
                 "inertia",
                 other.0,
             ]),
-            texts(&["", unit, "s", "", "", "k/w², s²", "", "J k, kg m²", unit]),
+            texts(&["", unit, "s", "", "", "k/w², s²", "", effective, unit]),
         ];
         for index in 0..modal.gains.len() {
             let mut row = vec![index.to_string()];

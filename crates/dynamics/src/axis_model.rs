@@ -43,8 +43,11 @@ pub enum CommandedQuantity {
 pub struct AxisMode {
     /// Natural frequency w (rad/s).
     pub frequency: Frequency,
-    /// Modal gain k: modal acceleration per unit of rigid acceleration.
+    /// Modal gain k: modal acceleration per unit of the rigid acceleration by the commanded torque.
     pub gain: Finite,
+    /// Modal gain of a torque on the hub, which differs from `gain` if the commanded torque acts elsewhere. The modal mass is
+    /// the inertia divided by it.
+    pub hub_gain: Finite,
     /// Damping ratio zeta: 0 undamped, 1 critical.
     pub damping: NonNegative,
     /// Displacement at the start (rad).
@@ -127,9 +130,10 @@ impl AxisModel {
 }
 
 impl AxisMode {
-    /// Creates a mode that starts at rest.
+    /// Creates a mode that starts at rest, under a torque on the hub.
     pub fn at_rest(frequency: Frequency, gain: Finite, damping: NonNegative) -> Self {
-        Self { frequency, gain, damping, displacement: Finite::default(), rate: Finite::default() }
+        let rest = Finite::default();
+        Self { frequency, gain, hub_gain: gain, damping, displacement: rest, rate: rest }
     }
 
     /// Returns the excitability k/w²: the static displacement for each unit of reduced moment (s²).
@@ -147,9 +151,9 @@ impl AxisMode {
     }
 
     /// Returns the kinetic and strain energy (J) of the mode on a body of this inertia (kg m²). 0 for a mode without
-    /// gain, which no torque on the hub moves and whose energy is therefore unknown.
+    /// gain at the hub, which no torque there moves and whose energy is therefore unknown.
     pub fn energy(&self, phase: ModeState, inertia: f64) -> f64 {
-        let (w, gain) = (self.frequency.get(), self.gain.get().abs());
+        let (w, gain) = (self.frequency.get(), self.hub_gain.get().abs());
         let ModeState { displacement: x, quadrature: y } = phase;
         if gain > 0.0 { 0.5 * inertia / gain * w * w * (x * x + y * y) } else { 0.0 }
     }

@@ -6,7 +6,7 @@
 //! sum_j A_ij cos(psi_i - psi_j) psi_j'' + A_ij sin(psi_i - psi_j) psi_j'² + K_ij psi_j + C_ij psi_j' = Q_i
 //! ```
 //!
-//! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
+//! with the torques Q, of which a torque at the hub is Q_0 alone. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
 //! events of the run alone, not on the instants at which the state is read.
 
 use nalgebra::{DMatrix, DVector};
@@ -24,6 +24,8 @@ pub struct Chain {
     pub(crate) modal: DMatrix<f64>,
     pub(crate) frequencies: Vec<f64>,
     pub(crate) tolerance: f64,
+    /// Torque on each angle per unit of the commanded one: 1 on the hub if it acts there.
+    pub(crate) load: Vec<f64>,
 }
 
 impl Chain {
@@ -50,8 +52,8 @@ impl Chain {
         for (mode, row) in model.modes.iter().zip(modal.row_iter().skip(1)) {
             // A mode's damping force J/k 2 zeta w x' acts on each coordinate in proportion to its row.
             let strength = 2.0 * mode.damping.get() * mode.frequency.get() * model.inertia.get();
-            if mode.gain.get() > 0.0 {
-                damping += row.transpose() * row * (strength / mode.gain.get());
+            if mode.hub_gain.get() > 0.0 {
+                damping += row.transpose() * row * (strength / mode.hub_gain.get());
             }
         }
         Self {
@@ -61,7 +63,14 @@ impl Chain {
             modal,
             frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
             tolerance,
+            load: (0..n).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect(),
         }
+    }
+
+    /// Distributes the commanded torque: `load` is the torque on the hub and on each section per unit of it.
+    #[must_use]
+    pub fn with_load(self, load: Vec<f64>) -> Self {
+        Self { load, ..self }
     }
 
     /// Returns the angles, then the rates, of a straight chain.
@@ -86,8 +95,9 @@ fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &AxisModel) -> DMatrix<f64
         })
     };
     let rigid = mass.row(0) / inertia;
-    let effective_shape =
-        |(index, mode): (usize, &AxisMode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
+    let effective_shape = |(index, mode): (usize, &AxisMode)| {
+        (shape(index).transpose() * mass) * (mode.hub_gain.get() / inertia)
+    };
     let rows: Vec<_> = std::iter::once(rigid.into_owned())
         .chain(model.modes.iter().enumerate().map(effective_shape))
         .collect();

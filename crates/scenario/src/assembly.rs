@@ -7,7 +7,7 @@ use flexsc_control::law::AttitudeProfile;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::craft::{AssembledSpacecraft, Spacecraft};
-use flexsc_spacecraft::body::{Body, BodyModel};
+use flexsc_spacecraft::body::{Body, BodyModel, Load};
 
 use super::{Scenario, ScenarioSpec};
 
@@ -22,6 +22,7 @@ impl ScenarioSpec {
     ) -> Result<BodyModel, ScenarioError> {
         let refused = |fault: ConfigError| document.at_key(&fault);
         let key = self.body_key();
+        let load = self.load();
         let mut model = match (&mut self.body, self.spacecraft.clone()) {
             (_, None) if !self.appendage.is_empty() => {
                 let why = "is clamped to the hub of a `[spacecraft]`, and there is none";
@@ -31,13 +32,19 @@ impl ScenarioSpec {
             (Some(_), Some(_)) => {
                 Err(refused(ConfigError::new("spacecraft", "is itself a body: leave out `body`")))
             }
-            (Some(body), None) => {
-                single_body(body, parent, directory).map_err(|fault| refused(fault.within(&key)))
-            }
+            (Some(body), None) => single_body(body, load.as_ref(), parent, directory).map_err(|fault| {
+                let of_load = fault.key == "load" || fault.key.starts_with("load.");
+                refused(fault.within(if of_load { "manoeuvre" } else { &key }))
+            }),
             (None, Some(spacecraft)) => self.craft(&spacecraft, parent, directory).map_err(refused),
         }?;
         self.place_at_start(&mut model);
         Ok(model)
+    }
+
+    /// Returns the load of the manoeuvre of a one-axis body.
+    fn load(&self) -> Option<Load> {
+        self.manoeuvre.as_ref().filter(|_| self.axis_count() == 1)?.load.clone()
     }
 
     /// Sets the attitude and the rates of a three-axis model at the start, which can be those of the target.
@@ -87,17 +94,19 @@ impl ScenarioSpec {
     }
 }
 
-/// Assembles the model of a body that is described in one table.
+/// Assembles the model of a body that is described in one table, under a torque on the hub or under a load.
 fn single_body(
     body: &mut Body,
+    load: Option<&Load>,
     parent: Option<&Scenario>,
     directory: &Path,
 ) -> Result<BodyModel, ConfigError> {
     let other = parent.and_then(|parent| parent.body.as_ref());
     body.locate(directory);
     body.read(other)?;
-    match parent.filter(|_| other == Some(&*body)) {
+    let is_same = |parent: &&Scenario| other == Some(&*body) && parent.load().as_ref() == load;
+    match parent.filter(is_same) {
         Some(parent) => Ok(parent.model.clone()),
-        None => body.assemble(),
+        None => body.assemble(load),
     }
 }

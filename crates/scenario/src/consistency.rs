@@ -160,6 +160,7 @@ impl Scenario {
             .or_else(|| self.timing_inconsistency(unmet))
             .or_else(|| unmet.first_of(Rule::EnvelopeTorques..=Rule::EnvelopeBackEmf))
             .or_else(|| self.motion_inconsistency(offers))
+            .or_else(|| self.load_inconsistency(body))
             .or_else(|| unmet.first_of(Rule::EnvelopeModes..=Rule::Filter))
             .or_else(|| self.validate_adaptation(offers))
     }

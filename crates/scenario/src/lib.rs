@@ -20,6 +20,7 @@ mod failures;
 mod fast_path;
 mod file_name;
 mod line_of_sight;
+mod load_checks;
 mod log;
 mod logged_scenario;
 mod magnitudes;
@@ -263,7 +264,12 @@ impl Scenario {
         written.inline_files();
         if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.one_axis()) {
             written.body = Some(Body::Planar(body.into()));
-            let of_matrices = |key: &String| key.starts_with("body.matrices");
+            // The gains of the modes are those of the load.
+            if let Some(manoeuvre) = &mut written.manoeuvre {
+                manoeuvre.load = None;
+            }
+            let of_matrices =
+                |key: &String| key.starts_with("body.matrices") || key.starts_with("manoeuvre.load");
             written.uncertain.retain(|key, _| !of_matrices(key));
             written.correlated.retain(|group| !group.keys.iter().any(of_matrices));
         }

@@ -38,6 +38,9 @@ impl Results for PlanResults {
         if let (Some(object), Json::Object(report)) =
             (object.as_object_mut(), self.report.to_json(&self.plan, &self.body))
         {
+            if let Some(load) = &self.manoeuvre.load {
+                object.insert("load".to_owned(), json!(load));
+            }
             object.extend(report);
         }
         vec![object]
@@ -59,6 +62,9 @@ impl Results for PlanResults {
         let kind = manoeuvre.command.kind().replace('_', " ");
         let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
         say!("{name}   {angle} in {} s by {kind}{shaped}", digits(time));
+        if let Some(load) = &manoeuvre.load {
+            say!("  load             {load}");
+        }
         if plan.start_rate != 0.0 || plan.end_rate != 0.0 {
             let rates = units.list(&[plan.start_rate, plan.end_rate], " -> ", "rad/s");
             say!("  rates            {rates}");

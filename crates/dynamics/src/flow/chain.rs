@@ -18,12 +18,13 @@ struct ChainEquations<'a> {
 impl ChainEquations<'_> {
     /// Returns the accelerations of all angles (rad/s²) at `t` seconds after the input began.
     fn acceleration(&self, t: f64, y: &[f64]) -> DVector<f64> {
-        let Chain { inertia, stiffness, damping, .. } = self.chain;
+        let Chain { inertia, stiffness, damping, load, .. } = self.chain;
         let n = inertia.nrows();
         let (angle, rate) = (DVector::from_column_slice(&y[..n]), DVector::from_column_slice(&y[n..]));
         let mut force = -(stiffness * &angle) - damping * &rate;
         let waveform = self.input.waveform.as_ref().map_or(0.0, |forced| forced.at(t));
-        force[0] += self.input.constant + waveform;
+        let torque = self.input.constant + waveform;
+        force.iter_mut().zip(load).for_each(|(force, part)| *force += part * torque);
         let mut coupling = inertia.clone();
         for i in 0..n {
             for j in 0..i {
@@ -175,9 +176,9 @@ impl ChainExpansion<'_> {
         reach(&self.angles, fastest)
     }
 
-    /// Computes the series from their first two terms, under a torque at the hub.
+    /// Computes the series from their first two terms, under a commanded torque.
     fn fill(&mut self, torque: &Series) {
-        let Chain { inertia, stiffness, damping, .. } = &self.flight.chain;
+        let Chain { inertia, stiffness, damping, load, .. } = &self.flight.chain;
         let (n, angles) = (inertia.nrows(), &mut self.angles);
         let zero = vec![[0.0; TERMS]; n];
         // Sine and cosine of the angle between each pair of sections; squares of the rates; accelerations.
@@ -210,7 +211,7 @@ impl ChainExpansion<'_> {
                 }
             }
             for i in 0..n {
-                let mut sum = if i == 0 { torque[k] } else { 0.0 };
+                let mut sum = load[i] * torque[k];
                 for j in 0..n {
                     sum -= stiffness[(i, j)] * angles[j][k] + damping[(i, j)] * rate(&angles[j], k);
                     let (sine, cosine) = (&sines[i][j], &cosines[i][j]);

@@ -153,13 +153,8 @@ mod tests {
     use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
     fn mode(frequency: f64, damping: f64) -> AxisMode {
-        AxisMode {
-            frequency: Frequency::new(frequency).expect("in range"),
-            gain: Finite::default(),
-            damping: NonNegative::new(damping).expect("in range"),
-            displacement: Finite::default(),
-            rate: Finite::default(),
-        }
+        let frequency = Frequency::new(frequency).expect("in range");
+        AxisMode::at_rest(frequency, Finite::default(), NonNegative::new(damping).expect("in range"))
     }
 
     /// Returns exp(A h) by scaling and squaring of its Taylor series, independent of the closed form.

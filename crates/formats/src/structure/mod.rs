@@ -142,6 +142,11 @@ impl Structure {
         &self.stiffness
     }
 
+    /// Returns the displacement of each coordinate under a unit rigid rotation.
+    pub fn rotation(&self) -> &[f64] {
+        self.rotation.as_slice()
+    }
+
     /// Returns a damping matrix of this structure, made symmetric to the last digit.
     ///
     /// # Errors

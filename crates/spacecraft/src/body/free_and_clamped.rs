@@ -33,7 +33,7 @@ fn frequencies(body: &AxisModel) -> Vec<f64> {
 /// x_i/sqrt(k_i) the modes are then those of (1 + sign s s') z'' + W² z = 0 with s_i = sqrt(k_i), whose inverse
 /// squares are the eigenvalues of W⁻¹ (1 + sign s s') W⁻¹.
 fn other_frequencies(body: &AxisModel, sign: f64) -> Option<Vec<f64>> {
-    let gains = body.modes.iter().map(|mode| mode.gain.get());
+    let gains = body.modes.iter().map(|mode| mode.hub_gain.get());
     if gains.clone().any(|gain| gain < 0.0) || (sign < 0.0 && gains.clone().sum::<f64>() >= 1.0) {
         return None;
     }

@@ -6,6 +6,7 @@ mod damping_ratios;
 mod drift;
 mod free_and_clamped;
 mod initial_motion;
+mod load;
 mod mode;
 mod model;
 mod one_axis;
@@ -30,6 +31,7 @@ pub use damping_ratios::DampingRatios;
 pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, Sinusoid};
 pub use free_and_clamped::{clamped_frequencies, free_frequencies};
 pub use initial_motion::{InitialMotion, StartValue};
+pub use load::{Load, LoadPart};
 pub use mode::Mode;
 pub use model::{BodyAxes, BodyModel};
 pub use one_axis::{Drive, Planar};
@@ -98,15 +100,32 @@ impl Body {
         }
     }
 
-    /// Assembles the model of the body that a run uses.
+    /// Returns the commanded quantity of a body about one axis.
+    fn drive(&self) -> Option<Drive> {
+        match self {
+            Self::Planar(planar) => Some(planar.drive),
+            Self::Matrices(matrices) => Some(matrices.drive),
+            Self::Panels(panels) => Some(panels.drive),
+            Self::Spatial(_) => None,
+        }
+    }
+
+    /// Assembles the model of the body that a run uses, whose commanded torque acts on the hub, or is distributed over the
+    /// body as a load.
     ///
     /// # Errors
-    /// An inconsistent key within the body, and the reason.
-    pub fn assemble(&self) -> Result<BodyModel, ConfigError> {
+    /// An inconsistent key within the body, or `load` or a key within it, and the reason.
+    pub fn assemble(&self, load: Option<&Load>) -> Result<BodyModel, ConfigError> {
+        if load.is_some() && self.drive() == Some(Drive::Motion) {
+            return Err(ConfigError::new(
+                "load",
+                "needs a commanded torque: with `drive = \"motion\"` the hub follows its command, and nothing else drives the body",
+            ));
+        }
         let body: AxisModel = match self {
-            Self::Planar(planar) => planar.into(),
-            Self::Matrices(matrices) => matrices.solve()?,
-            Self::Panels(panels) => panels.solve()?,
+            Self::Planar(planar) => planar.solve(load)?,
+            Self::Matrices(matrices) => matrices.solve(load)?,
+            Self::Panels(panels) => panels.solve(load)?,
             Self::Spatial(spatial) => {
                 return Ok(BodyModel::ThreeAxis(Arc::new(spatial.solve()?)));
             }
@@ -114,7 +133,7 @@ impl Body {
         if let Some(fault) = one_axis::inconsistency(&body) {
             return Err(fault);
         }
-        let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
+        let chain = if let Self::Panels(panels) = self { panels.chain(&body, load) } else { None };
         let body = Arc::new(body);
         Ok(chain.map_or(BodyModel::OneAxis(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
     }

@@ -13,6 +13,10 @@ pub struct Mode {
     pub frequency: Frequency,
     /// Modal gain k: modal acceleration per unit of rigid acceleration.
     pub gain: Finite,
+    /// Modal gain of a torque on the hub, if the commanded torque acts elsewhere: it determines the energy of the mode;
+    /// default: `gain`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hub_gain: Option<Finite>,
     /// Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an `[estimator.envelope]`.
     #[serde(default)]
     pub damping: NonNegative,
@@ -26,14 +30,15 @@ pub struct Mode {
 
 impl From<&Mode> for AxisMode {
     fn from(mode: &Mode) -> Self {
-        let Mode { frequency, gain, damping, displacement, rate } = *mode;
-        Self { frequency, gain, damping, displacement, rate }
+        let Mode { frequency, gain, hub_gain, damping, displacement, rate } = *mode;
+        Self { frequency, gain, hub_gain: hub_gain.unwrap_or(gain), damping, displacement, rate }
     }
 }
 
 impl From<&AxisMode> for Mode {
     fn from(mode: &AxisMode) -> Self {
-        let AxisMode { frequency, gain, damping, displacement, rate } = *mode;
-        Self { frequency, gain, damping, displacement, rate }
+        let AxisMode { frequency, gain, hub_gain, damping, displacement, rate } = *mode;
+        let hub_gain = Some(hub_gain).filter(|at_hub| *at_hub != gain);
+        Self { frequency, gain, hub_gain, damping, displacement, rate }
     }
 }

@@ -7,7 +7,7 @@ use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Mode, Output};
+use super::{Load, Mode, Output, load};
 
 /// A planar body: one angle and elastic modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,6 +67,31 @@ impl Default for Planar {
             modes: Vec::new(),
             outputs: Vec::new(),
         }
+    }
+}
+
+impl Planar {
+    /// Returns the model of the body, under a torque on the hub or under a load: a generalised torque on the rigid angle and
+    /// one on the displacement of each mode, which are all 1 for a torque on the hub.
+    ///
+    /// # Errors
+    /// A load that does not fit, or that comes beside the gains of another one.
+    pub fn solve(&self, load: Option<&Load>) -> Result<AxisModel, ConfigError> {
+        let mut model = AxisModel::from(self);
+        let Some(load) = load else { return Ok(model) };
+        if let Some(mode) = self.modes.iter().position(|mode| mode.hub_gain.is_some()) {
+            let why = format!(
+                "must be left out where a mode has a `hub_gain`, as mode {mode}: its `gain` is that of a load"
+            );
+            return Err(ConfigError::new("load", why));
+        }
+        let (rigid, modes) = load.on_parts("rigid", "modes", self.modes.len(), "mode")?;
+        let torque = load::torque(&[rigid], &[1.0])?;
+        for (mode, load) in model.modes.iter_mut().zip(modes) {
+            let gain = Finite::new(mode.hub_gain.get() * (load / torque));
+            mode.gain = gain.ok_or_else(|| ConfigError::new("load", "must give the modes finite gains"))?;
+        }
+        Ok(model)
     }
 }
 

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
-use super::{DampingRatios, Drive};
+use super::{DampingRatios, Drive, Load, load};
 
 /// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;
@@ -149,16 +149,46 @@ impl Panels {
         Structure::new(mass, stiffness, 0, None).map_err(|fault| exceeds_precision(&fault.why))
     }
 
-    /// Returns the exact chain, if the sections turn by any angles.
-    pub fn chain(&self, model: &AxisModel) -> Option<Chain> {
+    /// Returns the exact chain, if the sections turn by any angles, under a torque on the hub or under a load.
+    pub fn chain(&self, model: &AxisModel, load: Option<&Load>) -> Option<Chain> {
         let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
         let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
-        Some(Chain::new(&lengths, structure.mass(), structure.stiffness(), model, self.tolerance.get()))
+        let chain =
+            Chain::new(&lengths, structure.mass(), structure.stiffness(), model, self.tolerance.get());
+        Some(match load.and_then(|load| self.torques(load).ok()) {
+            Some(torques) => chain.with_load(torques),
+            None => chain,
+        })
     }
 
-    /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
-    /// relative to the hub (rad): `section_1`, `section_2` and so on.
-    pub fn solve(&self) -> Result<AxisModel, ConfigError> {
+    /// Returns the torque of a load on the hub, and on each section of all panels together, per unit of their sum.
+    fn torques(&self, load: &Load) -> Result<Vec<f64>, ConfigError> {
+        let (hub, sections) = load.on_parts("hub", "sections", self.sections.len(), "section")?;
+        let of_panels = sections.into_iter().map(|torque| f64::from(self.count) * torque);
+        let torques: Vec<f64> = std::iter::once(hub).chain(of_panels).collect();
+        let sum = load::torque(&torques, &vec![1.0; torques.len()])?;
+        Ok(torques.into_iter().map(|torque| torque / sum).collect())
+    }
+
+    /// Returns the generalised forces of a load on theta, v_1, v_2, ...: a torque M on section k does the work
+    /// M (theta + (v_k - v_(k-1))/l_k).
+    fn forces(&self, load: &Load) -> Result<Vec<f64>, ConfigError> {
+        let torques = self.torques(load)?;
+        let mut forces = vec![0.0; torques.len()];
+        forces[0] = torques.iter().sum();
+        for (k, (torque, section)) in (1..).zip(torques[1..].iter().zip(&self.sections)) {
+            let force = torque / section.length.get();
+            forces[k] += force;
+            if k > 1 {
+                forces[k - 1] -= force;
+            }
+        }
+        Ok(forces)
+    }
+
+    /// Computes the planar body with the modes of the structure, under a torque on the hub or under a load. Its outputs are the
+    /// angles phi_k of the sections relative to the hub (rad): `section_1`, `section_2` and so on.
+    pub fn solve(&self, load: Option<&Load>) -> Result<AxisModel, ConfigError> {
         let structure = self.structure()?;
         let observed = |(index, section): (usize, &Section)| {
             let mut weights = vec![0.0; self.sections.len() + 1];
@@ -178,9 +208,10 @@ impl Panels {
             angle: *angle,
             rate: *rate,
             outputs,
+            load: load.map(|load| self.forces(load)).transpose()?,
         };
         reduction.axis_model(&structure).map_err(|fault| match fault.key.as_str() {
-            "damping" | "keep" => fault,
+            "damping" | "keep" | "load" => fault,
             _ => exceeds_precision(&fault.why),
         })
     }

@@ -3,15 +3,25 @@
 //! Free modes move the hub: x_n = X_n\[theta\] f_n with the gain J X_n\[theta\]², so that the hub's angle is x_r + sum
 //! x_n. Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the
 //! hub as commanded is J (u - sum x_n'').
+//!
+//! A torque that acts elsewhere has generalised forces Q on the coordinates, in sum 1 about the axis: it excites a free mode
+//! with X_n' Q in place of X_n\[theta\], which is the gain J X_n\[theta\] X_n' Q.
 
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput, CommandedQuantity};
 use flexsc_formats::document::ConfigError;
-use flexsc_formats::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
+use flexsc_formats::structure::{HubState, Modes, Structure, TOO_FAR_APART, eigenvalues};
 use flexsc_numerics::quantity::{Finite, Frequency, Positive};
 use nalgebra::DMatrix;
 
 use super::DampingRatios;
+use super::load;
 use super::one_axis::HUB_FREE;
+
+/// Part of the largest load on a mode that counts as none.
+const UNLOADED: f64 = 1e-9;
+/// Ratio x_n/f_n times sqrt(J) for a mode that a load excites and that does not turn the hub: so small that the mode is lost
+/// in the rounding of the hub's angle.
+const UNSEEN: f64 = 1e-24;
 
 /// Settings of a modal reduction: damping, number of modes to keep, initial state and outputs.
 pub struct ModalReduction<'a> {
@@ -22,6 +32,8 @@ pub struct ModalReduction<'a> {
     pub angle: Finite,
     pub rate: Finite,
     pub outputs: Vec<ObservedCoordinate>,
+    /// Generalised force on each coordinate, if the commanded torque acts elsewhere than on the hub.
+    pub load: Option<Vec<f64>>,
 }
 
 /// Observed coordinate: its name, its unit, and a weight for each coordinate of the structure.
@@ -44,6 +56,7 @@ impl ModalReduction<'_> {
             let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
             weights.extend((0..order).map(unit));
         }
+        weights.extend(self.load.clone());
         let hub = match self.drive {
             CommandedQuantity::Torque => HubState::Free,
             CommandedQuantity::Motion => HubState::Held,
@@ -61,10 +74,14 @@ impl ModalReduction<'_> {
         }
         let damping = self.damping.for_modes(count).map_err(|why| ConfigError::new("damping", why))?;
         let inertia = solved.inertia;
+        let loads = self.loads(structure, &solved)?;
         // Ratio of the body's modal displacement x_n to the structure's f_n.
-        let scale = |n: usize| match self.drive {
-            CommandedQuantity::Torque => solved.participations[n],
-            CommandedQuantity::Motion => -solved.participations[n] / inertia,
+        let scale = |n: usize| match (self.drive, solved.participations[n]) {
+            (CommandedQuantity::Torque, 0.0) if loads.as_ref().is_some_and(|loads| is_loaded(loads, n)) => {
+                UNSEEN / f64::sqrt(inertia)
+            }
+            (CommandedQuantity::Torque, own) => own,
+            (CommandedQuantity::Motion, own) => -own / inertia,
         };
         let mut modes = Vec::with_capacity(count);
         for (n, damping) in damping.into_iter().enumerate() {
@@ -73,13 +90,21 @@ impl ModalReduction<'_> {
                 let why = format!("gives an elastic mode of {w:e} rad/s, and the lowest accepted has 1e-4");
                 ConfigError::new("stiffness", why)
             })?;
-            let gain = finite(inertia * scale(n) * scale(n))?;
-            modes.push(AxisMode::at_rest(frequency, gain, damping));
+            let hub_gain = finite(inertia * scale(n) * scale(n))?;
+            let gain = match &loads {
+                Some(loads) => finite(inertia * scale(n) * loads[n])?,
+                None => hub_gain,
+            };
+            modes.push(AxisMode { hub_gain, ..AxisMode::at_rest(frequency, gain, damping) });
         }
         let output = |(observed, (rigid, shape)): (&ObservedCoordinate, (&f64, &Vec<f64>))| {
             let weight = |n: usize| {
-                // A mode that the hub cannot excite stays at rest.
-                if modes[n].gain.get() == 0.0 { Ok(Finite::default()) } else { finite(shape[n] / scale(n)) }
+                // A mode that neither the hub nor the load excites stays at rest.
+                if modes[n].hub_gain.get() == 0.0 {
+                    Ok(Finite::default())
+                } else {
+                    finite(shape[n] / scale(n))
+                }
             };
             Ok(AxisOutput {
                 name: observed.name.clone(),
@@ -92,7 +117,10 @@ impl ModalReduction<'_> {
         let outputs =
             self.outputs.iter().zip(observations).map(output).collect::<Result<_, ConfigError>>()?;
         let damping_matrix = match &self.damping_matrix {
-            Some(matrix) => coupled(matrix, &solved.shapes[self.outputs.len()..], count, &scale)?,
+            Some(matrix) => {
+                let coordinates = &solved.shapes[self.outputs.len()..][..matrix.nrows()];
+                coupled(matrix, coordinates, count, &scale)?
+            }
             None => Vec::new(),
         };
         let inertia = Positive::new(inertia).ok_or_else(too_large)?;
@@ -106,6 +134,20 @@ impl ModalReduction<'_> {
             outputs,
         })
     }
+}
+
+impl ModalReduction<'_> {
+    /// Returns the load X_n' Q on each mode of unit modal mass, per unit of torque about the axis.
+    fn loads(&self, structure: &Structure, solved: &Modes) -> Result<Option<Vec<f64>>, ConfigError> {
+        let (Some(forces), Some(own)) = (&self.load, solved.shapes.last()) else { return Ok(None) };
+        let torque = load::torque(forces, structure.rotation())?;
+        Ok(Some(own.iter().map(|load| load / torque).collect()))
+    }
+}
+
+/// Returns true if the load on a mode is more than rounding.
+fn is_loaded(loads: &[f64], mode: usize) -> bool {
+    loads[mode].abs() > UNLOADED * loads.iter().fold(0.0, |most: f64, load| most.max(load.abs()))
 }
 
 /// Returns the damping matrix of the kept modes, from the damping matrix of the coordinates and the shapes for unit

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
-use super::{CoordinateWeights, DampingRatios, Drive};
+use super::{CoordinateWeights, DampingRatios, Drive, Load};
 
 /// A body given by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -80,8 +80,8 @@ impl MatrixBody {
         Structure::new(mass, stiffness, self.hub as usize, rotation.as_deref())
     }
 
-    /// Returns the planar body with the modes of the structure.
-    pub fn solve(&self) -> Result<AxisModel, ConfigError> {
+    /// Returns the planar body with the modes of the structure, under a torque on the hub or under a load.
+    pub fn solve(&self, load: Option<&Load>) -> Result<AxisModel, ConfigError> {
         let structure = self.structure()?;
         let names = self.names(structure.mass().nrows())?;
         let observed = |(index, sum): (usize, &WeightedSum)| {
@@ -103,6 +103,7 @@ impl MatrixBody {
             angle: *angle,
             rate: *rate,
             outputs,
+            load: load.map(|load| load.on_coordinates(&names)).transpose()?,
         }
         .axis_model(&structure)
     }

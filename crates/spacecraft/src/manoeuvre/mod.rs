@@ -51,7 +51,7 @@ pub use slew::{AttitudeMotion, Slew, SlewProfile};
 pub use suppression::{SuppressedMode, Suppression};
 pub use task::RestToRestTask;
 
-use crate::body::Planar;
+use crate::body::{Load, Planar};
 use planner::ManoeuvrePlanner;
 
 /// A manoeuvre. The modes of the body are at rest at its start.
@@ -77,6 +77,11 @@ pub struct Manoeuvre {
     /// Shaper with which the command is convolved; it uses part of the duration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
+    /// Distribution of the torque over the body, in any unit, as only the ratios matter: `{ hub, sections }` of panels, `{ rigid,
+    /// modes }` of a planar body, coordinates of matrices by name or in order; default: a torque on the hub. The actuator acts
+    /// there during the whole run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load: Option<Load>,
     /// Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the body plans for the
     /// body as written in the scenario: the plan does not depend on the drawn values.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -66,7 +66,7 @@ impl PlanReport {
         let rate = plan.start_rate + command.impulse(0.0, plan.time) / inertia;
         let energy = body.modes.iter().zip(&end).map(|(mode, [x, rate, _])| {
             // The modal mass is J/k: the gain is J times the square of the mass-normalised shape at the hub.
-            let (w, gain) = (mode.frequency.get(), mode.gain.get().abs());
+            let (w, gain) = (mode.frequency.get(), mode.hub_gain.get().abs());
             if gain == 0.0 { 0.0 } else { 0.5 * body.inertia.get() / gain * (rate * rate + w * w * x * x) }
         });
         let step = peak_search::sampling(fastest(body, command)).max(plan.time / 1e4);
