@@ -167,8 +167,10 @@ impl ScenarioSpec {
     /// Checks that a drive is slow enough for the modes of its appendage.
     fn too_fast(&self, index: usize, most: f64) -> Result<(), ConfigError> {
         let clamped = self.appendage[index].clamped_modes();
+        let factor =
+            self.spacecraft.as_ref().map_or(1.0, |craft| craft.frequency_factor(&self.appendage[index]));
         let own = clamped.iter().map(|mode| mode.frequency.get());
-        let limit = 0.2 * own.fold(f64::INFINITY, f64::min);
+        let limit = 0.2 * own.fold(f64::INFINITY, f64::min) * factor;
         if most <= limit {
             return Ok(());
         }

@@ -131,6 +131,7 @@ impl Scenario {
         own: &CustomParts,
     ) -> Result<(ScenarioSpec, BodyModel), ScenarioError> {
         let mut written: ScenarioSpec = document.read()?;
+        written.write_uncertain_factors();
         written.inherit_custom_parts(own, document);
         if !written.mode.is_empty() && document.has("law") {
             let why = "must be left out with `[[mode]]`: each mode has a law of its own";

@@ -165,6 +165,7 @@ impl<'a> Magnitudes<'a> {
         let acts = |key: &&str| table.get(*key).is_some_and(is_nonzero);
         if table.contains_key("frequency")
             && path.starts_with("appendage")
+            && path.contains("modes")
             && !["translation", "along", "rotation", "moments", "shapes"].iter().any(acts)
         {
             let why = "takes part in no translation and no rotation: it acts on nothing, and nothing excites it; give `translation` and \

@@ -10,6 +10,7 @@ use flexsc_control::one_or_many::OneOrMany;
 use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
 use flexsc_spacecraft::body::{Body, Drift};
@@ -150,6 +151,27 @@ impl ScenarioSpec {
         match self.stage_choice().filter(|_| is_other) {
             Some(why) => Err(ConfigError::new("law", why)),
             None => Ok(()),
+        }
+    }
+
+    /// Writes out the factors on natural frequencies that are uncertain.
+    pub(super) fn write_uncertain_factors(&mut self) {
+        let keys: Vec<String> = self.uncertain.keys().cloned().collect();
+        self.write_frequency_factors(&keys);
+    }
+
+    /// Writes out those of some keys that are factors on natural frequencies: without a value of their own they are 1.
+    pub fn write_frequency_factors(&mut self, keys: &[String]) {
+        for key in keys {
+            let Some(table) = key.strip_suffix(".frequency_factor") else { continue };
+            let index = table.strip_prefix("appendage[").and_then(|index| index.strip_suffix(']'));
+            let factor = match index.and_then(|index| index.parse::<usize>().ok()) {
+                Some(index) => self.appendage.get_mut(index).map(|own| &mut own.frequency_factor),
+                None => self.spacecraft.as_mut().map(|own| &mut own.frequency_factor),
+            };
+            if let Some(factor @ None) = factor.filter(|_| index.is_some() || table == "spacecraft") {
+                *factor = Some(Positive::ONE);
+            }
         }
     }
 

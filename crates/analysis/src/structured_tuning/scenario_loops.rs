@@ -35,7 +35,8 @@ impl ScenarioLoops {
         keys: Vec<String>,
         corners: bool,
     ) -> Result<Self, ConfigError> {
-        let whole = scenario.self_contained();
+        let mut whole = scenario.self_contained();
+        whole.write_frequency_factors(&keys);
         let mut table = whole.to_table();
         let all = UncertainBox::new(&scenario.uncertain, &table);
         table.remove("uncertain");

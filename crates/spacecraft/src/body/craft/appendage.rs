@@ -17,6 +17,7 @@ use super::drive::AppendageDrive;
 use super::fe_results::Units;
 use super::hinge::{Hinge, HingedBody};
 use super::mass::MassProperties;
+use super::plate::{Plate, PlateAxis, UniformPlate};
 use super::thermal::Thermal;
 use crate::body::DampingRatios;
 use crate::body::spatial::NamedPoint;
@@ -47,10 +48,11 @@ pub struct Appendage {
     /// Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hinge: Option<Hinge>,
-    /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
-    /// from the participations in rotation.
+    /// For a thin plate in the plane of its own x and y: the axis along which it extends, from which first moments follow
+    /// with the participations in rotation; or size and first frequency of a uniform panel, in place of `modes`, `centre`
+    /// and `inertia`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plate: Option<PlateAxis>,
+    pub plate: Option<Plate>,
     /// Named points of the appendage, measured from its root in its own axes; a name is unique in the spacecraft.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
@@ -66,6 +68,9 @@ pub struct Appendage {
     /// Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
+    /// Factor on its natural frequencies, whichever way they are given; damping ratios and shapes stay. Default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_factor: Option<Positive>,
     /// Thermal bending in sunlight; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
@@ -74,21 +79,28 @@ pub struct Appendage {
     pub units: Option<Units>,
 }
 
-/// Axis along which a plate extends, in its own axes.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Plate")]
-pub enum PlateAxis {
-    /// Along x.
-    X,
-    /// Along y.
-    Y,
-}
-
 impl Appendage {
     /// Returns true if the appendage is a point mass, with zero inertia tensor.
     pub(super) fn is_point(&self) -> bool {
-        tensor(&self.inertia) == Matrix3::zeros()
+        self.inertia_tensor() == Matrix3::zeros()
+    }
+
+    /// Returns the uniform panel by whose size and first frequency the appendage is known, if it is.
+    pub(super) const fn uniform_plate(&self) -> Option<&UniformPlate> {
+        match &self.plate {
+            Some(Plate::Uniform(plate)) => Some(plate),
+            _ => None,
+        }
+    }
+
+    /// Returns the centre of mass from the root (m), in the axes of the appendage.
+    pub(super) fn centre_of_mass(&self) -> Vector {
+        self.uniform_plate().map_or_else(|| vector(&self.centre), UniformPlate::centre)
+    }
+
+    /// Returns the inertia tensor about the centre of mass (kg m²), in the axes of the appendage.
+    pub(super) fn inertia_tensor(&self) -> Matrix3<f64> {
+        self.uniform_plate().map_or_else(|| tensor(&self.inertia), |plate| plate.inertia(self.mass.get()))
     }
 
     /// Returns the matrix that transforms vectors from the appendage's axes, at drive angle `angle` (rad), to the
@@ -98,8 +110,12 @@ impl Appendage {
         self.drive.as_ref().map_or(orientation, |drive| orientation * drive.rotation(angle))
     }
 
-    /// Returns the clamped modes: those of the table, or the single mode of the hinge.
+    /// Returns the clamped modes: those of the table, or the single mode of the hinge or of a uniform panel; without
+    /// [`Spacecraft::frequency_factor`](super::Spacecraft::frequency_factor).
     pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
+        if let Some(plate) = self.uniform_plate() {
+            return Cow::Owned(vec![plate.mode(self.mass.get(), &self.points)]);
+        }
         let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.hinged_body()));
         hinged.map_or(Cow::Borrowed(&self.modes), |mode| Cow::Owned(vec![mode]))
     }
@@ -133,10 +149,33 @@ impl Appendage {
         hinge.check(&self.hinged_body()).map_err(|fault| fault.within("hinge"))
     }
 
-    /// Returns the appendage as a panel of the integrator; its drive, if it has one, gets the index `drives`.
-    pub(super) fn for_integrator(&self, drives: usize) -> ArticulatedPanel {
+    /// Checks that no key is given that follows from the size and the frequency of a uniform panel, and that its points
+    /// are on it.
+    ///
+    /// # Errors
+    /// The faulty key, and the reason.
+    pub(super) fn check_plate(&self) -> Result<(), ConfigError> {
+        let Some(plate) = self.uniform_plate() else { return Ok(()) };
+        let others = [
+            ("centre", vector(&self.centre) != Vector::zeros()),
+            ("inertia", tensor(&self.inertia) != Matrix3::zeros()),
+            ("modes", self.modes.file().is_some() || !self.modes.is_empty()),
+        ];
+        if let Some((key, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
+            let why = "must be left out: it follows from the size and the frequency of `plate`; a plate whose modes are given is \
+                       `plate = \"x\"` or `\"y\"`";
+            return Err(ConfigError::new(key, why));
+        }
+        self.points.iter().enumerate().try_for_each(|(index, point)| {
+            plate.carries(&point.position).map_err(|fault| fault.within(&format!("points[{index}]")))
+        })
+    }
+
+    /// Returns the appendage as a panel of the integrator, with a factor on its natural frequencies; its drive, if it has
+    /// one, gets the index `drives`.
+    pub(super) fn for_integrator(&self, factor: f64, drives: usize) -> ArticulatedPanel {
         let mode = |mode: &ClampedMode| PanelMode {
-            frequency: mode.frequency.get(),
+            frequency: mode.frequency.get() * factor,
             damping: mode.damping.get(),
             translation: self.translation(mode),
             moments: self.moments(mode),
@@ -145,8 +184,8 @@ impl Appendage {
             mass: self.mass.get(),
             root: vector(&self.at),
             axes: self.turned.matrix(),
-            centre: vector(&self.centre),
-            inertia: tensor(&self.inertia),
+            centre: self.centre_of_mass(),
+            inertia: self.inertia_tensor(),
             modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
             hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.hinged_body())),
@@ -158,8 +197,8 @@ impl Appendage {
     pub(super) fn mass_properties(&self, axes: &Matrix3<f64>) -> MassProperties {
         MassProperties {
             mass: self.mass.get(),
-            centre: vector(&self.at) + axes * vector(&self.centre),
-            inertia: axes * tensor(&self.inertia) * axes.transpose(),
+            centre: vector(&self.at) + axes * self.centre_of_mass(),
+            inertia: axes * self.inertia_tensor() * axes.transpose(),
         }
     }
 
@@ -191,7 +230,7 @@ impl Appendage {
             return vector(&self.centre) * self.translation(mode).transpose();
         }
         let r = mode.rotation.as_ref().map_or_else(Vector::zeros, vector);
-        match self.plate {
+        match self.plate.as_ref().map(Plate::axis) {
             // Bending and torsion are unambiguous; in plane, points are assumed to move across the length.
             Some(PlateAxis::Y) => Matrix3::new(0.0, 0.0, -r.y, -r.z, 0.0, r.x, 0.0, 0.0, 0.0),
             Some(PlateAxis::X) => Matrix3::new(0.0, r.z, -r.y, 0.0, 0.0, r.x, 0.0, 0.0, 0.0),

@@ -69,7 +69,7 @@ impl AssembledSpacecraft {
         let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
         let whole = MassProperties::sum(&bodies);
         let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
-        let parts = parts(&oriented, &whole.centre);
+        let parts = parts(spacecraft, &oriented, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
             if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.clamped_modes().len())) {
@@ -130,7 +130,7 @@ fn articulation(
         ArticulatedBody { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
     for appendage in appendages {
         let drives = body.drives();
-        body.panels.push(appendage.for_integrator(drives));
+        body.panels.push(appendage.for_integrator(spacecraft.frequency_factor(appendage), drives));
     }
     body.is_articulated().then(|| Arc::new(body))
 }
@@ -152,14 +152,19 @@ impl ClampedModeInBody {
 
 /// Returns the clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C
 /// t)'.
-fn parts(appendages: &[OrientedAppendage<'_>], centre: &Vector) -> Vec<ClampedModeInBody> {
+fn parts(
+    spacecraft: &Spacecraft,
+    appendages: &[OrientedAppendage<'_>],
+    centre: &Vector,
+) -> Vec<ClampedModeInBody> {
     let modes_of = |(appendage, axes): &OrientedAppendage<'_>| -> Vec<ClampedModeInBody> {
         let from_centre = vector(&appendage.at) - centre;
+        let factor = spacecraft.frequency_factor(appendage);
         let mode = |mode: &super::ClampedMode| {
             let translation = axes * appendage.translation(mode);
             let own = axes * appendage.moments(mode) * axes.transpose();
             ClampedModeInBody {
-                frequency: mode.frequency.get(),
+                frequency: mode.frequency.get() * factor,
                 damping: mode.damping.get(),
                 translation,
                 moments: own + from_centre * translation.transpose(),

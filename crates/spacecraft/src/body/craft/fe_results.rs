@@ -132,6 +132,9 @@ impl Appendage {
             ("units", self.units.is_some()),
         ];
         keys.iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(key, _)| {
+            if *key == "damping" && self.uniform_plate().is_some() {
+                return Err(ConfigError::new(*key, "must be in `plate`, whose mode it damps"));
+            }
             let why = "must be left out: it applies to `modes` from a .f06, .frd, .dat or .flex file, and a table contains this itself";
             Err(ConfigError::new(*key, why))
         })

@@ -5,6 +5,7 @@ use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::appendage::Appendage;
 use super::mass::MassProperties;
 use crate::body::spatial::NamedPoint;
 use crate::body::{InitialMotion, SmallAngles, StartValue};
@@ -44,6 +45,9 @@ pub struct Spacecraft {
     /// off-diagonal terms are not negligible.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub whole_damping: Option<bool>,
+    /// Factor on the natural frequencies of all appendages; default: 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_factor: Option<Positive>,
     /// Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
@@ -53,6 +57,12 @@ impl Spacecraft {
     /// Returns the attitude and rates at the start, as written.
     pub const fn initial_motion(&self) -> InitialMotion {
         InitialMotion::new((self.attitude, self.attitude_error), (self.rate, self.rate_error))
+    }
+
+    /// Returns the factor on the natural frequencies of an appendage: its own times that of all.
+    pub fn frequency_factor(&self, appendage: &Appendage) -> f64 {
+        let value = |factor: Option<Positive>| factor.map_or(1.0, Positive::get);
+        value(appendage.frequency_factor) * value(self.frequency_factor)
     }
 
     /// Returns the mass properties of the hub.

@@ -6,6 +6,7 @@ use flexsc_formats::document::key::bare_or_quoted;
 use flexsc_formats::structure::eigenvalues;
 use flexsc_formats::structure::mode_table::MOST_MODES;
 use flexsc_numerics::attitude::{Vector, asymmetry, impossible_moments, tensor, vector};
+use flexsc_numerics::quantity::{Frequency, shortest};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 use super::appendage::Appendage;
@@ -39,7 +40,7 @@ pub fn validate(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(),
             let why = format!("must differ from the other names, got `{}` again", appendage.name);
             return Err(within(ConfigError::new("name", why)));
         }
-        modes += appendage.modes.len().max(usize::from(appendage.hinge.is_some()));
+        modes += appendage.clamped_modes().len();
         if modes > MOST_MODES {
             let why =
                 format!("brings the number of modes to {modes}, and at most {MOST_MODES} are supported");
@@ -47,6 +48,10 @@ pub fn validate(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(),
         }
         distinct(&appendage.points, &mut points).map_err(within)?;
         appendage_itself(appendage).map_err(within)?;
+        scaled_frequencies(spacecraft, appendage).map_err(|fault| match appendage.frequency_factor {
+            Some(_) => within(fault),
+            None => fault.within("spacecraft"),
+        })?;
     }
     Ok(())
 }
@@ -74,7 +79,7 @@ fn hub(spacecraft: &Spacecraft) -> Result<(), ConfigError> {
 }
 
 fn appendage_itself(appendage: &Appendage) -> Result<(), ConfigError> {
-    let inertia = tensor(&appendage.inertia);
+    let inertia = appendage.inertia_tensor();
     if let Some(why) = asymmetry(&inertia) {
         return Err(ConfigError::new("inertia", why));
     }
@@ -87,13 +92,14 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), ConfigError> {
         ));
     }
     looks_like_metres("at", vector(&appendage.at).norm())?;
-    looks_like_metres("centre", vector(&appendage.centre).norm())?;
+    looks_like_metres("centre", appendage.centre_of_mass().norm())?;
     extent(&inertia, appendage.mass.get())?;
     appendage.turned.check().map_err(|fault| fault.within("turned"))?;
     if let Some(drive) = &appendage.drive {
         drive.validate().map_err(|fault| fault.within("drive"))?;
     }
     appendage.check_hinge()?;
+    appendage.check_plate()?;
     for (index, point) in appendage.points.iter().enumerate() {
         looks_like_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;
     }
@@ -101,6 +107,21 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), ConfigError> {
         mode_itself(appendage, mode).map_err(|fault| fault.within(&format!("modes[{index}]")))?;
     }
     residual(appendage)
+}
+
+/// Checks that the factor on an appendage's natural frequencies leaves them in the range that is computed.
+fn scaled_frequencies(spacecraft: &Spacecraft, appendage: &Appendage) -> Result<(), ConfigError> {
+    let factor = spacecraft.frequency_factor(appendage);
+    let clamped = appendage.clamped_modes();
+    let mut scaled = clamped.iter().map(|mode| mode.frequency.get() * factor);
+    let Some(outside) = scaled.find(|frequency| Frequency::new(*frequency).is_none()) else { return Ok(()) };
+    let why = format!(
+        "must leave natural frequencies of {} to {} rad/s, got one of {} rad/s",
+        Frequency::SMALLEST,
+        Frequency::LARGEST,
+        shortest(outside)
+    );
+    Err(ConfigError::new("frequency_factor", why))
 }
 
 fn looks_like_metres(key: &str, length: f64) -> Result<(), ConfigError> {
@@ -179,8 +200,8 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), ConfigEr
 /// The matrix is taken about the centre of mass and in principal axes, each divided by the appendage's own value, so
 /// that the rounding tolerance does not depend on units or on the distance of the root.
 fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
-    let (mass, centre) = (appendage.mass.get(), vector(&appendage.centre));
-    let inertia = tensor(&appendage.inertia);
+    let (mass, centre) = (appendage.mass.get(), appendage.centre_of_mass());
+    let inertia = appendage.inertia_tensor();
     let about_root = inertia + point_mass_inertia(mass, &centre);
     let own = SymmetricEigen::new(inertia);
     let rounded = AGREEMENT * (mass * centre.norm_squared() + 0.5 * inertia.trace());
