@@ -1,9 +1,11 @@
 //! Noise of closed loops against numbers of SciPy, of integrals and of closed forms, and against a long run.
 
+use std::f64::consts::PI;
+
 use flexsc_core::Scenario;
 use flexsc_core::analysis::noise::{
-    LineLoop, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, Window, WindowVariances, WindowWeights,
-    cumulative_rms,
+    LineLoop, NoiseError, NoiseReport, NoiseRequest, NoisyLoop, SpectralLine, Window, WindowRms,
+    WindowVariances, WindowWeights, cumulative_rms,
 };
 
 use flexsc_core::record::Detail;
@@ -165,6 +167,35 @@ fn a_sine_has_weights_of_windows() {
     agree("smear", slow.smear, 1e-6 * 100.0 / 12.0, 1e-4);
 }
 
+/// The indices of lines are those of sines by quadrature: tests/golden/sine_indices_oracle.py.
+#[test]
+fn lines_have_the_indices_of_sines_over_windows() {
+    let window = Window { length: 0.01, separation: Some(0.173) };
+    #[rustfmt::skip]
+    let golden = [
+        (50.0 * PI, [0.636_619_772_367_581_3, 0.307_758_453_061_242_4, 0.518_329_009_608_539_8, 0.070_487_008_818_966_18, 0.301_289_712_768_781_2, 0.062_767_622_309_230_91, 1.085_615_174_685_118_7]),
+        (30.0, [0.704_458_112_266_237_5, 0.061_145_466_408_304_61, 0.105_801_117_195_955_5, 0.002_648_668_920_310_013, 0.061_099_570_444_550_14, 0.002_368_660_756_748_819, 0.732_325_565_003_317_7]),
+        (600.0, [0.033_262_304_886_744_12, 0.706_324_018_474_256_1, 0.740_051_100_010_127_5, 0.673_844_476_299_803_4, 0.423_366_744_989_412_7, 0.565_379_711_619_271_7, 0.066_389_597_425_165_65]),
+    ];
+    let values = |of: WindowRms| {
+        let pde = of.pde.expect("a separation");
+        [of.mpe, of.rpe_uniform, of.rpe_end, of.rpe_middle, of.smear, of.beyond_smear, pde]
+    };
+    let line = |frequency_rad_s: f64, amplitude: f64| SpectralLine { frequency_rad_s, amplitude };
+    let mut squares = [0.0; 7];
+    for (frequency, expected) in golden {
+        let found = values(WindowRms::of_lines([line(frequency, 2.0)].into_iter(), window));
+        for ((found, expected), square) in found.into_iter().zip(expected).zip(&mut squares) {
+            agree("index", found, 2.0 * expected, 1e-11);
+            *square += expected * expected;
+        }
+    }
+    let all = golden.map(|(frequency, _)| line(frequency, 1.0));
+    for (found, square) in values(WindowRms::of_lines(all.into_iter(), window)).into_iter().zip(squares) {
+        agree("all", found, square.sqrt(), 1e-11);
+    }
+}
+
 /// Closed loop under a torque that turns, by the sum over aliases and by integration.
 #[test]
 fn a_torque_that_turns_has_a_line_and_aliases() {
@@ -304,6 +335,41 @@ fn unbalanced_wheels_excite_a_mode_at_its_frequency() {
     assert_eq!((strongest.speed_rad_s, strongest.order, strongest.wheel), (92.9, 1.0, 1));
     // The Nyquist frequency of the law is 12.566 rad/s.
     assert!(strongest.outputs[yaw].aliases[0].frequency_rad_s < 12.567);
+}
+
+/// Lines over a window, in every form: the direct line, at 92.9 rad/s, is the largest.
+#[test]
+fn lines_of_wheels_have_indices_over_speed() {
+    let dir = Dir::with(&["wheel-run-up"]);
+    let line = "spectrum wheel-run-up.toml --signal yaw --window 0.02 --speeds 46.45:92.9:3";
+    let report = dir.run(&format!("{line} --json")).exits(0).json();
+    let wheels = &report["wheels"];
+    let number = |value: &serde_json::Value| value.as_f64().expect("a number");
+    for speed in 0..3 {
+        let mut expected = 0.0;
+        for of_wheel in &wheels["lines"].as_array().expect("lines")[8 * speed..8 * (speed + 1)] {
+            let output = &of_wheel["outputs"][0];
+            for line in output["aliases"].as_array().expect("aliases").iter().chain([&output["direct"]]) {
+                let (u, amplitude) = (0.01 * number(&line["frequency_rad_s"]), number(&line["amplitude"]));
+                let mean = u.sin() / u;
+                expected += 0.5 * amplitude * amplitude * (1.0 - mean * mean);
+            }
+        }
+        agree("RPE", number(&wheels["windows"][0][speed]["rpe_uniform"]), expected.sqrt(), 1e-9);
+    }
+    let text = dir.run(line).exits(0);
+    text.says(&["indices of these lines over windows of 0.02 s", "887.1 rpm"]);
+    dir.run(&format!("{line} -o lines.csv")).exits(0);
+    let table = String::from_utf8(dir.read("lines.csv")).expect("text");
+    assert!(table.starts_with("speed_rad_s,yaw_rms,yaw_mpe,yaw_rpe_uniform,yaw_rpe_end"), "{table}");
+    assert_eq!(table.lines().count(), 4);
+    dir.run(&format!("{line} -o figures")).exits(0);
+    let figure = String::from_utf8(dir.read("figures/wheel-run-up-waterfall_yaw.svg")).expect("text");
+    assert!(figure.contains("RPE uniform, 0.02 s"));
+    // Without a window, nothing is added.
+    let plain =
+        dir.run("spectrum wheel-run-up.toml --signal yaw --speeds 46.45:92.9:3 --json").exits(0).json();
+    assert!(plain["wheels"].get("windows").is_none());
 }
 
 /// The pointing errors of a log are those of the mean axes of this body, and not the angles at its sensor, which modes turn.

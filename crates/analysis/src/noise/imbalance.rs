@@ -12,7 +12,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::lines::{LineLoop, OutputLines, SineLoad};
+use super::report::WindowRms;
 use super::speed_grid::{ResonantSpeed, resonant_speeds};
+use super::windows::Window;
 use flexsc_scenario::Scenario;
 
 /// Lines of the outputs under one harmonic of one wheel at one speed.
@@ -37,6 +39,10 @@ pub struct WheelSpectrum {
     pub rms: Vec<Vec<f64>>,
     /// Lines of each harmonic of each wheel at each speed.
     pub lines: Vec<WheelLines>,
+    /// Indices of each output at each speed, of all lines of all wheels, over windows that begin at any time; empty without
+    /// a window.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub windows: Vec<Vec<WindowRms>>,
 }
 
 /// Number of equal steps up to the largest speed, and the smallest of them relative to the largest.
@@ -56,6 +62,21 @@ struct WheelHarmonic {
 }
 
 impl WheelSpectrum {
+    /// Returns the spectrum with the indices of its lines over windows: each line has its weight.
+    #[must_use]
+    pub fn over_windows(mut self, window: Window) -> Self {
+        let each = (self.lines.len() / self.speed_rad_s.len().max(1)).max(1);
+        let index = |output: usize| {
+            let at = |own: &[WheelLines]| {
+                let lines = own.iter().flat_map(|lines| lines.outputs[output].all());
+                WindowRms::of_lines(lines.copied(), window)
+            };
+            self.lines.chunks(each).map(at).collect()
+        };
+        self.windows = (0..self.rms.len()).map(index).collect();
+        self
+    }
+
     /// Returns the lines at some of the speeds.
     fn selected(&self, places: &[usize]) -> Self {
         let each = self.lines.len() / self.speed_rad_s.len().max(1);
@@ -65,6 +86,7 @@ impl WheelSpectrum {
             speed_rad_s: of(&self.speed_rad_s),
             rms: self.rms.iter().map(of).collect(),
             lines: lines.cloned().collect(),
+            windows: Vec::new(),
         }
     }
 
@@ -129,7 +151,12 @@ impl WheelImbalance {
             };
             lines.chunks(each.max(1)).map(at).collect()
         };
-        Ok(WheelSpectrum { rms: (0..outputs.len()).map(rms).collect(), speed_rad_s: speeds.to_vec(), lines })
+        Ok(WheelSpectrum {
+            rms: (0..outputs.len()).map(rms).collect(),
+            speed_rad_s: speeds.to_vec(),
+            lines,
+            windows: Vec::new(),
+        })
     }
 
     /// Computes the lines of some outputs at equal steps up to the largest speed that the scenario gives, and at the peaks between

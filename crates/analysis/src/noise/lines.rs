@@ -50,10 +50,14 @@ pub struct OutputLines {
 }
 
 impl OutputLines {
+    /// Returns all lines.
+    pub fn all(&self) -> impl Iterator<Item = &SpectralLine> {
+        self.aliases.iter().chain([&self.direct])
+    }
+
     /// Returns the mean square of all lines.
     pub fn mean_square(&self) -> f64 {
-        let all = self.aliases.iter().chain([&self.direct]);
-        all.map(|line| 0.5 * line.amplitude * line.amplitude).sum()
+        self.all().map(|line| 0.5 * line.amplitude * line.amplitude).sum()
     }
 }
 

@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::density::cumulative_rms;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
-use super::lines::LineLoop;
+use super::lines::{LineLoop, SpectralLine};
 use super::noisy_loop::{NoiseError, NoisyLoop};
-use super::windows::{Window, WindowVariances};
+use super::windows::{Window, WindowVariances, WindowWeights};
 use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
@@ -70,7 +70,8 @@ pub struct OutputNoise {
     pub window: Option<WindowRms>,
 }
 
-/// Rms of an output over windows that begin at a sample of the law, in the unit of the output.
+/// Rms of an output over windows, in the unit of the output: of noise over those that begin at a sample of the law, of the
+/// lines of wheels over those that begin at any time.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct WindowRms {
     /// Length of the window (s).
@@ -103,6 +104,10 @@ impl NoiseReport {
         let noisy = NoisyLoop::from_scenario(scenario)?;
         let outputs = chosen(&noisy, &request.signals)?;
         let wheels = wheel_spectrum(scenario, request.speeds.clone(), &outputs)?;
+        let wheels = match request.window {
+            Some(window) => wheels.map(|wheels| wheels.over_windows(window)),
+            None => wheels,
+        };
         if noisy.sources.is_empty() && wheels.is_none() {
             let why =
                 "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
@@ -203,11 +208,32 @@ fn wheel_spectrum(
 }
 
 impl WindowRms {
+    /// Returns the rms over windows of sines whose phases are unrelated.
+    pub fn of_lines(lines: impl Iterator<Item = SpectralLine>, window: Window) -> Self {
+        let mut sum = WindowVariances::default();
+        for SpectralLine { frequency_rad_s, amplitude } in lines {
+            let square = 0.5 * amplitude * amplitude;
+            let weights = WindowWeights::new(frequency_rad_s, window);
+            sum.total += square;
+            sum.mpe += square * weights.mpe;
+            sum.rpe_uniform += square * weights.rpe_uniform;
+            sum.rpe_end += square * weights.rpe_end;
+            sum.rpe_middle += square * weights.rpe_middle;
+            sum.smear += square * weights.smear;
+            sum.pde += square * weights.pde;
+        }
+        Self::of_variances(&[sum], window)
+    }
+
     /// Returns the rms of an output over windows, from all sources together.
     fn new(noisy: &NoisyLoop, output: usize, window: Window) -> Result<Self, String> {
-        let each = noisy.window_variances(output, window)?;
+        Ok(Self::of_variances(&noisy.window_variances(output, window)?, window))
+    }
+
+    /// Returns the rms over windows of several sources together.
+    fn of_variances(each: &[WindowVariances], window: Window) -> Self {
         let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());
-        Ok(Self {
+        Self {
             window_s: window.length,
             separation_s: window.separation,
             mpe: rms(|index| index.mpe),
@@ -217,6 +243,6 @@ impl WindowRms {
             smear: rms(|index| index.smear),
             beyond_smear: rms(WindowVariances::beyond_smear),
             pde: window.separation.map(|_| rms(|index| index.pde)),
-        })
+        }
     }
 }

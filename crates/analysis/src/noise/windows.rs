@@ -255,14 +255,19 @@ impl NoisyLoop {
 
 /// Weights on the variance of a sine of one frequency, or on a one-sided density: indices over windows of a length.
 ///
-/// With u = w T/2 the mean over a window has the weight j0(u)², the straight line through it 3 j1(u)², and the difference
-/// of two means that are S apart 2 (1 - cos w S) j0(u)² (\[PittelkauMcKinley16\]).
+/// With u = w T/2 the mean over a window has the weight j0(u)², the straight line through it 3 j1(u)², the value at its end
+/// less the mean 1 + j0(u)² - 2 j0(u) cos u, that in its middle (1 - j0(u))², and the difference of two means that are S
+/// apart 2 (1 - cos w S) j0(u)² (\[PittelkauMcKinley16\]).
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct WindowWeights {
     /// Mean over the window; of an exposure, the displacement.
     pub mpe: f64,
     /// Output less the mean, at any time of the window.
     pub rpe_uniform: f64,
+    /// Output less the mean, at the end of the window.
+    pub rpe_end: f64,
+    /// Output less the mean, in the middle of the window.
+    pub rpe_middle: f64,
     /// Straight line about its mean.
     pub smear: f64,
     /// Difference of two means; 0 without the distance of their starts.
@@ -273,10 +278,18 @@ impl WindowWeights {
     /// Returns the weights at a frequency (rad/s).
     pub fn new(frequency: f64, window: Window) -> Self {
         let u = 0.5 * frequency * window.length;
-        let mean = j0(u) * j0(u);
+        let own = j0(u);
+        let mean = own * own;
         let difference =
             window.separation.map_or(0.0, |separation| 2.0 * (1.0 - libm::cos(frequency * separation)));
-        Self { mpe: mean, rpe_uniform: 1.0 - mean, smear: 3.0 * j1(u) * j1(u), pde: difference * mean }
+        Self {
+            mpe: mean,
+            rpe_uniform: 1.0 - mean,
+            rpe_end: 1.0 + mean - 2.0 * own * libm::cos(u),
+            rpe_middle: (1.0 - own) * (1.0 - own),
+            smear: 3.0 * j1(u) * j1(u),
+            pde: difference * mean,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, WheelSpectrum};
+use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, WheelSpectrum, WindowRms};
 use flexsc_figure::{
     Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour, name_and_unit, palette,
 };
@@ -94,9 +94,26 @@ fn waterfall(name: &str, wheels: &WheelSpectrum, (index, output): (usize, &Outpu
     let speed = || FigureAxis::around("speed", "rad/s", wheels.speed_rad_s.iter().copied());
     let frequency = FigureAxis::around("frequency", "Hz", lines.iter().map(|(point, _)| point.0));
     let rms = &wheels.rms[index];
-    let size = FigureAxis::decades(&format!("rms ({})", output.unit), "", rms.iter().copied());
-    let points = wheels.speed_rad_s.iter().copied().zip(rms.iter().copied()).collect();
-    let line = Layer::new("", colour::BLUE, LayerShape::Line(1.5), points);
-    let panels = vec![Panel::new(frequency, speed(), layers), Panel::new(speed(), size, vec![line])];
+    let over_speed = |name: &str, colour: RGBColor, values: &[f64]| {
+        let points = wheels.speed_rad_s.iter().copied().zip(values.iter().copied()).collect();
+        Layer::new(name, colour, LayerShape::Line(1.5), points)
+    };
+    let mut all = rms.clone();
+    let curves = match wheels.windows.get(index) {
+        Some(windows) => {
+            let of = |value: fn(&WindowRms) -> f64| windows.iter().map(value).collect::<Vec<f64>>();
+            let (mpe, rpe) = (of(|index| index.mpe), of(|index| index.rpe_uniform));
+            all.extend(mpe.iter().chain(&rpe));
+            let length = windows.first().map_or(0.0, |index| index.window_s);
+            vec![
+                over_speed("rms", colour::BLUE, rms),
+                over_speed(&format!("MPE, {length} s"), colour::GREEN, &mpe),
+                over_speed(&format!("RPE uniform, {length} s"), colour::VERMILLION, &rpe),
+            ]
+        }
+        None => vec![over_speed("", colour::BLUE, rms)],
+    };
+    let size = FigureAxis::decades(&format!("rms ({})", output.unit), "", all.into_iter());
+    let panels = vec![Panel::new(frequency, speed(), layers), Panel::new(speed(), size, curves)];
     Figure { title: format!("{name}: lines of the wheels in {}", output.output), panels, panel_height: 260 }
 }

@@ -33,7 +33,7 @@ pub struct SpectrumArgs {
     /// Outputs of the loop, or `all` [default: measured angles, with --log pointing errors, and lines of sight]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     signal: Vec<String>,
-    /// Length of the windows of pointing indices (s), such as an exposure time
+    /// Length of the windows of pointing indices of noise and of the lines of wheels (s), such as an exposure time
     #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     window: Option<f64>,
     /// Time from the start of a window to that of the next (s), for differences of their means
@@ -64,6 +64,8 @@ pub struct SpectrumResults {
     report: NoiseReport,
     welch: Vec<WelchEstimate>,
     units: Units,
+    /// Whether speeds of the wheels are asked for, over which a table then is.
+    over_speed: bool,
 }
 
 /// Computes the noise of a scenario's loop.
@@ -99,7 +101,7 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
             estimates(&part, &noisy, &outputs)?
         }
     };
-    Ok(SpectrumResults { name, report, welch, units: args.units.units })
+    Ok(SpectrumResults { name, report, welch, units: args.units.units, over_speed: args.speeds.is_some() })
 }
 
 pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
@@ -150,27 +152,38 @@ impl SpectrumResults {
         let apart =
             first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
         say!("  indices over windows of {} s{apart}, rms", first.window_s);
-        let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
-        let mut rows = vec![
-            texts(&["output", "MPE", "RPE", "RPE", "RPE", "smear", "jitter", "PDE"]),
-            texts(&["", "", "uniform", "end", "middle", "", "without smear", ""]),
-        ];
+        let mut rows = index_header();
         for (output, window) in windows {
-            let all = [window.mpe, window.rpe_uniform, window.rpe_end, window.rpe_middle];
-            let quantity = self.in_one_unit(&all, &output.unit);
-            rows.push(vec![
-                output.output.clone(),
-                quantity(window.mpe),
-                quantity(window.rpe_uniform),
-                quantity(window.rpe_end),
-                quantity(window.rpe_middle),
-                quantity(window.smear),
-                quantity(window.beyond_smear),
-                window.pde.map_or_else(|| "-".to_owned(), quantity),
-            ]);
+            rows.push(index_row(&window, output, self.units));
         }
         print_table(&rows, 0);
     }
+}
+
+/// Returns the row of the indices of an output.
+fn index_row(window: &WindowRms, output: &OutputNoise, units: Units) -> Vec<String> {
+    let all = [window.mpe, window.rpe_uniform, window.rpe_end, window.rpe_middle];
+    let (factor, unit) = units.common(&all, &output.unit);
+    let quantity = |value: f64| format!("{} {unit}", digits(value * factor)).trim_end().to_owned();
+    vec![
+        output.output.clone(),
+        quantity(window.mpe),
+        quantity(window.rpe_uniform),
+        quantity(window.rpe_end),
+        quantity(window.rpe_middle),
+        quantity(window.smear),
+        quantity(window.beyond_smear),
+        window.pde.map_or_else(|| "-".to_owned(), quantity),
+    ]
+}
+
+/// Returns the header of a table of indices.
+fn index_header() -> Vec<Vec<String>> {
+    let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    vec![
+        texts(&["output", "MPE", "RPE", "RPE", "RPE", "smear", "jitter", "PDE"]),
+        texts(&["", "", "uniform", "end", "middle", "", "without smear", ""]),
+    ]
 }
 
 impl SpectrumResults {
@@ -229,6 +242,9 @@ impl Results for SpectrumResults {
     }
 
     fn table(&self) -> Option<NumberTable> {
+        if let Some(wheels) = self.report.wheels.as_ref().filter(|_| self.over_speed) {
+            return Some(wheels::table(&self.report, wheels));
+        }
         let mut columns = vec!["frequency_hz".to_owned()];
         let mut lists: Vec<&Vec<f64>> = vec![&self.report.frequency_hz];
         for output in &self.report.outputs {

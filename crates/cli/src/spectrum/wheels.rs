@@ -2,10 +2,11 @@
 
 use std::io::Write;
 
-use flexsc_core::analysis::noise::{NoiseReport, SpectralLine, WheelLines, WheelSpectrum};
+use flexsc_core::analysis::noise::{NoiseReport, SpectralLine, WheelLines, WheelSpectrum, WindowRms};
 
-use super::print_table;
+use super::{index_header, index_row, print_table};
 use crate::human::{Units, digits};
+use crate::number_table::NumberTable;
 use crate::say;
 
 /// Selection of a line under a harmonic of a wheel.
@@ -43,4 +44,56 @@ pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
         [speeds.first(), speeds.last()].map(|speed| units.speed(speed.copied().unwrap_or(0.0)));
     say!("  largest lines of the wheels' imbalance, {first} to {last}");
     print_table(&rows, 0);
+    print_windows(report, wheels, units);
+}
+
+/// Prints the indices over windows at the speed at which the relative performance error is largest.
+fn print_windows(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
+    let mut rows = index_header();
+    rows[0].push("speed".to_owned());
+    rows[1].push(String::new());
+    for (output, over_speed) in report.outputs.iter().zip(&wheels.windows) {
+        let each = over_speed.iter().zip(&wheels.speed_rad_s);
+        let largest = each.max_by(|a, b| a.0.rpe_uniform.total_cmp(&b.0.rpe_uniform));
+        let Some((window, speed)) = largest else { continue };
+        let mut row = index_row(window, output, units);
+        row.push(units.speed(*speed));
+        rows.push(row);
+    }
+    let Some(window) = wheels.windows.first().and_then(|over_speed| over_speed.first()) else { return };
+    say!(
+        "  indices of these lines over windows of {} s, rms, at the speed of the largest RPE uniform",
+        window.window_s
+    );
+    print_table(&rows, 0);
+}
+
+/// Returns rms and indices of each output as a table over the speed of the wheels.
+pub fn table(report: &NoiseReport, wheels: &WheelSpectrum) -> NumberTable {
+    let mut columns = vec!["speed_rad_s".to_owned()];
+    let mut lists: Vec<Vec<Option<f64>>> =
+        vec![wheels.speed_rad_s.iter().map(|speed| Some(*speed)).collect()];
+    for (index, output) in report.outputs.iter().enumerate() {
+        let name = &output.output;
+        columns.push(format!("{name}_rms"));
+        lists.push(wheels.rms[index].iter().map(|rms| Some(*rms)).collect());
+        let Some(over_speed) = wheels.windows.get(index) else { continue };
+        let indices: [(&str, fn(&WindowRms) -> Option<f64>); 7] = [
+            ("mpe", |of| Some(of.mpe)),
+            ("rpe_uniform", |of| Some(of.rpe_uniform)),
+            ("rpe_end", |of| Some(of.rpe_end)),
+            ("rpe_middle", |of| Some(of.rpe_middle)),
+            ("smear", |of| Some(of.smear)),
+            ("beyond_smear", |of| Some(of.beyond_smear)),
+            ("pde", |of| of.pde),
+        ];
+        let is_given =
+            |value: &fn(&WindowRms) -> Option<f64>| over_speed.iter().any(|of| value(of).is_some());
+        for (index, value) in indices.into_iter().filter(|(_, value)| is_given(value)) {
+            columns.push(format!("{name}_{index}"));
+            lists.push(over_speed.iter().map(value).collect());
+        }
+    }
+    let row = |place: usize| lists.iter().map(|list| list[place]).collect();
+    NumberTable { columns, rows: (0..wheels.speed_rad_s.len()).map(row).collect() }
 }

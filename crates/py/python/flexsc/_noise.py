@@ -155,6 +155,14 @@ class WheelSpectrum(Brief):
     >>> len(wheels.harmonics)
     8
     """
+    window: dict[str, dict[str, Values]] | None
+    """Rms of these lines over windows that begin at any time, if a window is given: for each output the
+    indices of `OutputNoise.window`, each of shape (speeds,).
+
+    >>> over = flexsc.Scenario.example("wheel-run-up").spectrum(window=0.01, speeds=[40.0, 93.0]).wheels
+    >>> over.window["yaw"]["rpe_uniform"].shape
+    (2,)
+    """
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -270,8 +278,7 @@ def _array(values: Sequence[float]) -> Values:
 def _output(found: dict[str, Any], sources: list[str]) -> OutputNoise:
     window = found.get("window")
     if window is not None:
-        times = ("window_s", "separation_s")
-        window = {name: value for name, value in window.items() if name not in times and value is not None}
+        window = _indices(window)
     densities = map(_array, found["density_by_source"])
     return read(
         OutputNoise,
@@ -280,6 +287,12 @@ def _output(found: dict[str, Any], sources: list[str]) -> OutputNoise:
         density_by_source=dict(zip(sources, densities, strict=True)),
         window=window,
     )
+
+
+def _indices(window: dict[str, Any]) -> dict[str, float]:
+    """The indices over a window, without its times."""
+    times = ("window_s", "separation_s")
+    return {name: value for name, value in window.items() if name not in times and value is not None}
 
 
 def _wheels(found: dict[str, Any], names: list[str]) -> WheelSpectrum:
@@ -310,4 +323,11 @@ def _wheels(found: dict[str, Any], names: list[str]) -> WheelSpectrum:
         for (wheel, order), lines in groups.items()
     )
     rms = {name: _array(values) for name, values in zip(names, found["rms"], strict=True)}
-    return WheelSpectrum(speed, rms, tuple(harmonics))
+    windows = found.get("windows")
+    if windows is not None:
+        over_speed = [[_indices(window) for window in each] for each in windows]
+        windows = {
+            name: {index: _array([window[index] for window in each]) for index in each[0]}
+            for name, each in zip(names, over_speed, strict=True)
+        }
+    return WheelSpectrum(speed, rms, tuple(harmonics), windows)

@@ -594,12 +594,13 @@ class Scenario:
         """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
 
         The noise is that of the sensors, of their rounding, and of random torques. Limits and steady
-        disturbances are left out; the body is about its target at rest.
+        disturbances are left out; the body is about its target at rest. The lines of unbalanced wheels are
+        over their speed, with the same indices over windows.
 
         Args:
             signals: Names of outputs, such as `roll`, `roll_rate`, `command_roll`, `mode0_displacement` and
                 `line_of_sight0_x`; `["all"]` for all of them, None for measured angles and lines of sight.
-            window: Length (s) of windows for pointing indices.
+            window: Length (s) of windows for pointing indices, of the noise and of the lines of wheels.
             separation: Time (s) from the start of a window to that of the next, for differences of means.
             speeds: Speeds (rad/s) of the wheels for the lines of their imbalance; None for 48 up to their
                 largest.
