@@ -28,6 +28,9 @@ fn a_page_for_a_review() {
         assert!(page.contains(&format!("<code>{command}</code>")), "{command}");
     }
     assert!(page.matches("<svg").count() >= 8, "{}", page.matches("<svg").count());
+    // Long lines wrap on the screen too.
+    let (screen, _) = page.split_once("@media print").expect("a style for print");
+    assert!(screen.contains("white-space: pre-wrap"));
     // The page refers to no other file, and names nothing of the computer.
     for outside in ["http://", "https://", "<script", "<link", "<img", "/tmp", " ms"] {
         let found = page.replace("http://www.w3.org/2000/svg", "");
