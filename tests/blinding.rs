@@ -4,6 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Detail, Trace};
 
+use crate::drawing::{Drawing, VERMILLION, near};
 use crate::traces::{column, flown, traced, within};
 use crate::util::Dir;
 
@@ -143,4 +144,30 @@ fn the_filter_lives_through_the_gap_of_the_example() {
     dir.run("simulate blinded-tracker.toml")
         .exits(0)
         .says(&["goal           met", "star tracker   blinded for 1665 s"]);
+}
+
+/// Every figure over time shows eclipses and blinding, where a run has them.
+#[test]
+fn figures_show_eclipses_and_blinding() {
+    let dir = Dir::with(&["blinded-tracker", "earth-observer"]);
+    dir.run("simulate blinded-tracker.toml --log full").exits(0);
+    dir.run("plot blinded-tracker.mcap --format svg -o figures").exits(0);
+    let path = dir.path("blinded-tracker.toml");
+    let found = events(&Scenario::load(&path).expect("a scenario"));
+    assert_eq!(found.len(), 2, "{found:?}");
+    for name in ["pointing", "wheel", "consistency", "orbit"] {
+        let drawing = Drawing::read(&dir, &format!("blinded-tracker-{name}"));
+        drawing.shows(&["eclipse", "star tracker blinded"]);
+        // The first polygon is in the legend.
+        let strip = &drawing.shapes("polygon", "fill", VERMILLION)[1];
+        let times: Vec<f64> = strip.iter().map(|(x, _)| 60.0 * drawing.across(*x, ["0", "100"])).collect();
+        let ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let [from, to] = times.iter().fold(ends, |[from, to], time| [from.min(*time), to.max(*time)]);
+        near(from, found[0], 10.0);
+        near(to, found[1], 10.0);
+    }
+    dir.run("simulate earth-observer.toml --log full --set duration=20").exits(0);
+    dir.run("plot earth-observer.mcap --format svg --what pointing -o figures").exits(0);
+    let texts = Drawing::read(&dir, "earth-observer-pointing").texts();
+    assert!(!texts.iter().any(|text| text.contains("eclipse") || text.contains("blinded")), "{texts:?}");
 }

@@ -23,7 +23,8 @@ pub struct CycleData(Vec<(f64, Report)>);
 /// Topic whose rows a figure shows.
 #[derive(Copy, Clone)]
 pub struct RowSource {
-    topic: &'static str,
+    /// Name of the topic.
+    pub topic: &'static str,
     /// Reads the rows of a log's table; `None` for rows of another form.
     read: fn(&Columns) -> Option<Vec<(f64, Report)>>,
 }

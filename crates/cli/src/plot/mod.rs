@@ -37,6 +37,7 @@ mod phase_plane;
 mod pointing;
 mod repeated_run;
 mod run_events;
+mod sky;
 mod stale_check;
 mod three_axis;
 mod time_range;
@@ -50,7 +51,8 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::record::Log;
+use flexsc_core::record::row::TopicRow;
+use flexsc_core::record::{Log, Orbit};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
 use crate::error::CliError;
@@ -258,7 +260,12 @@ fn drawn_over(
     let chosen: Vec<&FigureSpec> = chosen.into_iter().filter_map(FigureKind::of_log).collect();
     let is_three_axis = story.scenario.axis_count() == 3;
     let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
-    let rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();
+    let mut rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();
+    // Every figure shows the eclipses.
+    let is_orbit = |source: &RowSource| source.topic == Orbit::TOPIC.name;
+    if (orbit::SPEC.is_in)(&story) && !rows.is_empty() && !rows.iter().any(is_orbit) {
+        rows.extend(orbit::SPEC.rows);
+    }
     let cycles = if is_three_axis && !rows.is_empty() {
         CycleData::read(&story, log, path, &rows)?
     } else {
@@ -278,6 +285,7 @@ fn drawn_over(
     let run = RunData { story: &story, motion: &motion, cycles: &cycles };
     let drawn = chosen.into_iter().map(|spec| {
         let figure = story.shown.iter().fold((spec.draw)(&run), time_range::crop);
+        let figure = sky::shaded(figure, &story, &cycles);
         (spec.name.to_owned(), failures::shaded(operation::shaded(figure, &story), &story))
     });
     let crop = |figure| story.shown.iter().fold(figure, time_range::crop);

@@ -1,8 +1,7 @@
-//! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the
-//! intervals in shadow.
+//! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes.
 
-use flexsc_core::record::{Light, Orbit, OrbitAxis};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
+use flexsc_core::record::{Orbit, OrbitAxis};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::cycle_data::{CycleData, RowSource};
 use super::figure_kind::{FigureSpec, MotionPart};
@@ -44,46 +43,14 @@ fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         }
         let values: Vec<f64> = lines.iter().flatten().map(|(_, value)| *value).collect();
         let y = FigureAxis::around(name, unit, values);
-        let (low, high) = (y.range.start, y.range.end);
-        let mut layers: Vec<Layer> = shadows(cycles, story.end)
-            .into_iter()
-            .enumerate()
-            .map(|(index, [from, to])| {
-                let label = if index == 0 && panels.is_empty() { "shadow" } else { "" };
-                let band_edge = |level: f64| [(from, level), (to, level)];
-                Layer::new(
-                    label,
-                    colour::GREY,
-                    LayerShape::Area(0.2),
-                    band(&band_edge(low), &band_edge(high)),
-                )
-            })
-            .collect();
-        layers.extend(lines.into_iter().zip(COLOURS).map(|(points, (axis, colour))| {
+        let layers = lines.into_iter().zip(COLOURS).map(|(points, (axis, colour))| {
             Layer::new(if panels.is_empty() { axis } else { "" }, colour, LayerShape::Line(1.2), points)
-        }));
+        });
+        let layers = layers.collect();
         panels.push(Panel::new(time(0.0..story.end).unnamed(), y, layers));
     }
     if let Some(last) = panels.last_mut() {
         last.x = time(0.0..story.end);
     }
     Figure { title: title(story, "magnetic field, nadir and Sun in body axes"), panels, panel_height: 160 }
-}
-
-/// Returns the intervals of the log in shadow (s).
-fn shadows(cycles: &CycleData, end: f64) -> Vec<[f64; 2]> {
-    let mut shadows = Vec::new();
-    let mut since = None;
-    for (time, row) in cycles.rows::<Orbit>() {
-        match (row.light, since) {
-            (Light::Shadow, None) => since = Some(time),
-            (Light::Lit, Some(from)) => {
-                shadows.push([from, time]);
-                since = None;
-            }
-            _ => {}
-        }
-    }
-    shadows.extend(since.map(|from| [from, end]));
-    shadows
 }

@@ -9,6 +9,7 @@ use flexsc_core::record::{Column, Columns, Log};
 
 use super::columns::{labels, rows, topics};
 use super::motion::{MotionData, MotionRecorder};
+use super::sky;
 use crate::error::CliError;
 
 /// Run of a log.
@@ -39,6 +40,8 @@ pub struct RunEvents {
     pub steps: Vec<AdaptationStep>,
     /// Starts of the modes of operation.
     pub modes: Vec<ModeStart>,
+    /// Intervals in which a star tracker is blinded (s).
+    pub blinded: Vec<[f64; 2]>,
 }
 
 /// Start of a mode of operation.
@@ -97,7 +100,7 @@ impl RunEvents {
         let decisions = labels(&adaptation, "decision");
         let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
         let steps = steps.map(|([time, gain], decision)| AdaptationStep { time, decision, gain }).collect();
-        let [mode] = topics(log, ["/mode"])?;
+        let [mode, blinding] = topics(log, ["/mode", "/blinding"])?;
         let indices = match mode.get("index") {
             Some(Column::Counts(indices)) => indices.as_slice(),
             _ => &[],
@@ -134,6 +137,7 @@ impl RunEvents {
             objective,
             steps,
             modes,
+            blinded: sky::blinded(&blinding, end),
         })
     }
 
