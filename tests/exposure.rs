@@ -2,9 +2,10 @@
 
 use nalgebra::Quaternion;
 
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::{ObservationField, Scenario, Simulation};
+use flexsc_core::{Scenario, Simulation};
 
 use crate::spatial::FREE;
 use crate::traces::{column, traced};
@@ -37,10 +38,9 @@ impl Looked {
     fn new(scenario: &Scenario, point: &str) -> Self {
         let run = Simulation::new(scenario, 3);
         let fields = run.observation_fields(scenario);
-        let widths = |fields: &[ObservationField]| fields.iter().map(ObservationField::width).sum::<usize>();
         let place = |name: &str, nth: usize| {
             let of = fields.iter().enumerate().filter(|(_, field)| field.name == name).nth(nth);
-            widths(&fields[..of.expect("a field").0])
+            total_width(&fields[..of.expect("a field").0])
         };
         let body = scenario.model.three_axis().expect("three axes");
         // Modes that act back turn the hub too, and the attitude is that of the hub.
@@ -48,7 +48,7 @@ impl Looked {
         let beyond = |(there, hub): (&(Vector, Vector), &(Vector, Vector))| there.1 - hub.1;
         Self {
             turns: body.shapes(point).iter().zip(&hub).map(beyond).collect(),
-            row: vec![0.0; widths(&fields)],
+            row: vec![0.0; total_width(&fields)],
             places: [place("attitude", 0), place("error", 0), place("error", 1)],
             run,
         }

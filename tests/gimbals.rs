@@ -2,6 +2,7 @@
 //! and the shipped scenario.
 
 use flexsc_core::Simulation;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::metrics::MetricValue;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
@@ -121,11 +122,7 @@ fn a_clone_repeats_the_run_to_the_last_bit() {
     let mut second = first.clone();
     let ends = [&mut first, &mut second].map(|run| {
         run.run(&mut Trace::new(Detail::Events)).expect("a run");
-        let mut row =
-            vec![
-                0.0;
-                run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum()
-            ];
+        let mut row = vec![0.0; total_width(&run.observation_fields(&scenario))];
         run.observe(&mut row).expect("a state");
         let names: Vec<&str> = run.observation_fields(&scenario).iter().map(|field| field.name).collect();
         assert!(names.contains(&"gimbal_angles") && names.contains(&"gimbal_rates"));

@@ -4,6 +4,7 @@
 use std::hash::{Hash, Hasher};
 
 use flexsc_core::control::actuator::JetCycle;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant, Span};
@@ -11,7 +12,7 @@ use flexsc_core::record::{
     Column, Columns, Detail, Energy, Magnetorquers, Modes, Orbit, Pointing, Rate, Record, RecordError,
     Report, Sample, ThreeAxisCycle, Torque, Torques, Trace,
 };
-use flexsc_core::{ObservationField, Scenario, Simulation};
+use flexsc_core::{Scenario, Simulation};
 use nalgebra::{Matrix3, Quaternion};
 
 /// Times at which a run in pieces is stopped (s): between all events, at a sample, and at one of a law's
@@ -205,7 +206,7 @@ impl Flown {
         }
         simulation.run(&mut record).expect("a run");
         let fields = simulation.observation_fields(scenario);
-        let mut end = vec![0.0; fields.iter().map(ObservationField::width).sum()];
+        let mut end = vec![0.0; total_width(&fields)];
         simulation.observe(&mut end).expect("finite numbers");
         let ((trace, rows), metrics) = record;
         let mut hasher = WordHasher::default();

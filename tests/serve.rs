@@ -6,10 +6,11 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
 use flexsc_core::control::law::Command;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::metrics::Metrics;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
-use flexsc_core::{Document, Scenario, Simulation, Telemetry, TelemetryField, TelemetryLayout};
+use flexsc_core::{Document, Scenario, Simulation, Telemetry, TelemetryLayout};
 use flexsc_view::scene::Scene;
 use flexsc_view::with_layout;
 
@@ -58,9 +59,8 @@ pub fn run_of(dir: &Dir, name: &str, duration: f64) -> CampaignRun {
 
 /// Returns the numbers of a field of the telemetry.
 fn field(layout: &TelemetryLayout, telemetry: &Telemetry, name: &str) -> Vec<f64> {
-    let fields = layout.law_inputs.iter();
-    let place = layout.law_inputs.iter().position(|field| field.name == name).expect("a field");
-    let before: usize = fields.take(place).map(TelemetryField::width).sum();
+    let place = layout.law_inputs.iter().position(|field| field.path() == name).expect("a field");
+    let before = total_width(&layout.law_inputs[..place]);
     telemetry.law_inputs[before..before + layout.law_inputs[place].width()].to_vec()
 }
 

@@ -1,6 +1,7 @@
 //! Small rotations about three axes: what gyros, wheels, filters and rows of energy read of them, and a crossing that a push
 //! prevents.
 
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::attitude::{Vector, rotation_vector};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation, StopAt};
@@ -96,7 +97,7 @@ inertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\nrate = [1e-4, 0, 0]\nsmall_angl
     assert!((crossed.seconds() - 4.0 - f64::sqrt(32.0)).abs() < 1e-6, "{}", crossed.seconds());
     let mut run = pushed(&[(2.0, -5e-3), (3.9, 0.0)]);
     run.run_until(crossed, &mut ()).expect("a run");
-    let width = run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum();
+    let width = total_width(&run.observation_fields(&scenario));
     let mut row = vec![0.0; width];
     run.observe(&mut row).expect("finite");
     let roll = rotation_vector(&Quaternion::identity(), &Quaternion::new(row[0], row[1], row[2], row[3])).x;

@@ -5,6 +5,7 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::attitude::{Vector, rotation_vector};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation, StopAt};
@@ -74,7 +75,7 @@ fn switchings(scenario: &Scenario) -> (Vec<i128>, Simulation) {
 
 /// Returns the observation of a run.
 fn observed(scenario: &Scenario, run: &mut Simulation) -> Vec<f64> {
-    let width = run.observation_fields(scenario).iter().map(flexsc_core::ObservationField::width).sum();
+    let width = total_width(&run.observation_fields(scenario));
     let mut row = vec![0.0; width];
     run.observe(&mut row).expect("finite");
     row

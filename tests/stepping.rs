@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use flexsc_core::control::law::Command;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::{ObservationField, Scenario, Simulation, StopAt, TelemetryField};
+use flexsc_core::{Scenario, Simulation, StopAt};
 
 use crate::study::pairs;
 use crate::util::SCENARIOS;
@@ -43,8 +44,7 @@ fn flown(name: &str, seconds: f64) -> Scenario {
 
 /// Returns the row of a simulation, to the bit.
 fn row(simulation: &mut Simulation, scenario: &Scenario) -> Vec<u64> {
-    let mut row =
-        vec![0.0; simulation.observation_fields(scenario).iter().map(ObservationField::width).sum()];
+    let mut row = vec![0.0; total_width(&simulation.observation_fields(scenario))];
     simulation.observe(&mut row).expect("finite numbers");
     row.into_iter().map(f64::to_bits).collect()
 }
@@ -85,14 +85,13 @@ fn telemetry_has_the_values_of_its_layout_and_changes_no_controlled_run() {
         let scenario = flown(name, seconds.min(20.0));
         let [mut seen, mut unseen] = [0, 1].map(|_| Simulation::new(&scenario, 3));
         let layout = seen.telemetry_layout(&scenario);
-        let width = |fields: &[TelemetryField]| -> usize { fields.iter().map(TelemetryField::width).sum() };
         seen.open(&mut ()).expect("a start");
         while !seen.is_finished() {
             let telemetry = seen.telemetry(&layout).expect("numbers");
-            assert_eq!(telemetry.law_inputs.len(), width(&layout.law_inputs), "{name}");
+            assert_eq!(telemetry.law_inputs.len(), total_width(&layout.law_inputs), "{name}");
             assert!(telemetry.law_inputs.iter().all(|value| value.is_finite()), "{name}");
             for (sensor, read) in pairs(layout.sensors.iter(), &telemetry.sensors) {
-                assert_eq!(read.values.len(), width(&sensor.fields), "{name} {}", sensor.group);
+                assert_eq!(read.values.len(), total_width(&sensor.fields), "{name} {}", sensor.group);
                 assert!(read.at.is_none_or(|at| at <= seen.time()), "{name} {}", sensor.group);
             }
             let until = seen.time() + Span::from_seconds(0.3);
@@ -113,12 +112,12 @@ fn what_a_law_would_command_may_come_from_outside() {
     let fields = Simulation::new(&scenario, 0).observation_fields(&scenario);
     let place = |name: &str| -> usize {
         let found = fields.iter().position(|field| field.name == name).expect("a field");
-        fields[..found].iter().map(ObservationField::width).sum()
+        total_width(&fields[..found])
     };
     let (attitude, rate) = (place("attitude"), place("rate"));
     let mut whole = Simulation::new(&scenario, 0);
     let mut steered = Simulation::new(&scenario, 0);
-    let mut row = vec![0.0; fields.iter().map(ObservationField::width).sum()];
+    let mut row = vec![0.0; total_width(&fields)];
     for second in 1..=60 {
         steered.open(&mut ()).expect("a start");
         steered.observe(&mut row).expect("numbers");

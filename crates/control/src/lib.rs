@@ -18,6 +18,7 @@ pub mod one_or_many;
 pub mod operation;
 pub mod orientation;
 pub mod part;
+pub mod quantity;
 pub mod requirement;
 pub mod sensor;
 pub mod state_estimate;

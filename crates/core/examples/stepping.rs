@@ -5,8 +5,9 @@
 use std::error::Error;
 
 use flexsc_core::control::law::Command;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::Span;
-use flexsc_core::{ObservationField, ObservationGroup, Scenario, Simulation};
+use flexsc_core::{QuantityField, QuantityGroup, Scenario, Simulation};
 
 /// Flexible body about one axis whose angle and rate are measured each second, with noise.
 const SCENARIO: &str = "
@@ -27,10 +28,10 @@ const GAINS: [f64; 2] = [1.0, 15.0];
 const LIMIT: f64 = 0.05;
 
 /// Returns the place of a measurement in the vector of observations.
-fn measured(fields: &[ObservationField], name: &str) -> Option<usize> {
-    let is_it = |field: &ObservationField| field.group == ObservationGroup::Measured && field.name == name;
+fn measured(fields: &[QuantityField], name: &str) -> Option<usize> {
+    let is_it = |field: &QuantityField| field.group == QuantityGroup::Measured && field.name == name;
     let index = fields.iter().position(is_it)?;
-    Some(fields[..index].iter().map(ObservationField::width).sum())
+    Some(total_width(&fields[..index]))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -39,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let fields = simulation.observation_fields(&scenario);
     let angle = measured(&fields, "angle").ok_or("no measured angle")?;
     let rate = measured(&fields, "rate").ok_or("no measured rate")?;
-    let mut observation = vec![0.0; fields.iter().map(ObservationField::width).sum()];
+    let mut observation = vec![0.0; total_width(&fields)];
 
     // The first sample, at the start.
     simulation.open(&mut ())?;

@@ -32,7 +32,6 @@ mod journal_values;
 mod library;
 mod moment;
 mod parameters;
-mod texts;
 mod units;
 mod variable;
 mod variable_table;

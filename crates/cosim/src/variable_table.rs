@@ -2,11 +2,11 @@
 
 use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::numerics::time::Span;
-use flexsc_core::{ObservationGroup, Scenario, Simulation};
+use flexsc_core::record::description::field_text;
+use flexsc_core::{QuantityField, QuantityGroup, Scenario, Simulation};
 
 use crate::content::FmuPart;
 use crate::parameters::numeric_keys;
-use crate::texts::Texts;
 use crate::variable::{Causality, ClockRole, Quantity, ValueKind, Variable, VariableStart};
 
 /// Longest interval (s) that a clock can state as a fraction with the resolution of a femtosecond.
@@ -42,10 +42,10 @@ impl VariableTable {
         let mut table = Self::empty(axes, axes * if is_commanded { 2 } else { 1 });
         table.is_commanded = is_commanded;
         table.push("time", "Time since the start".to_owned(), "s", Causality::Independent, Quantity::Time);
-        let texts = Texts::new();
-        table.add_observation(scenario, simulation, &texts);
-        table.add_law_inputs(scenario, simulation);
-        table.add_loop(scenario, simulation, part, &texts);
+        let observed = simulation.observation_fields(scenario);
+        table.add_observation(scenario, &observed);
+        table.add_law_inputs(scenario, simulation, &observed);
+        table.add_loop(scenario, simulation, part);
         table.add_counts();
         table.add_inputs(scenario);
         table.add_parameters(scenario);
@@ -109,63 +109,56 @@ impl VariableTable {
     }
 
     /// Adds the state, the measurements and the estimates.
-    fn add_observation(&mut self, scenario: &Scenario, simulation: &Simulation, texts: &Texts) {
-        let is_three_axis = self.axes > 1;
+    fn add_observation(&mut self, scenario: &Scenario, fields: &[QuantityField]) {
         let is_sampled = scenario.study.sample_period.is_some();
-        for field in simulation.observation_fields(scenario) {
-            let group = match field.group {
-                ObservationGroup::True => "state",
-                ObservationGroup::Measured => "measured",
-                ObservationGroup::Estimated => "estimate",
-            };
+        for field in fields {
+            let is_discrete = is_sampled && field.group != QuantityGroup::True;
             for index in 0..field.width() {
-                let place = field.count.map_or(String::new(), |_| format!("[{}]", index + 1));
-                let name = format!("{group}.{}{place}", field.name);
-                let text = texts.observed(&field, index, is_three_axis);
                 let quantity = Quantity::Observed(self.observed);
-                let variable = self.push(name, text, field.unit, Causality::Output, quantity);
-                variable.is_discrete = is_sampled && field.group != ObservationGroup::True;
+                self.push_component(field, index, quantity).is_discrete = is_discrete;
                 self.observed += 1;
             }
         }
     }
 
+    /// Adds a component of a quantity of the run.
+    fn push_component(&mut self, field: &QuantityField, index: usize, quantity: Quantity) -> &mut Variable {
+        let place = field.shape.count().map_or(String::new(), |_| format!("[{}]", index + 1));
+        let name = format!("{}{place}", field.path());
+        self.push(name, field.description(index), field.unit, Causality::Output, quantity)
+    }
+
     /// Adds the quantities of the closed loop.
-    fn add_loop(&mut self, scenario: &Scenario, simulation: &Simulation, part: FmuPart, texts: &Texts) {
+    fn add_loop(&mut self, scenario: &Scenario, simulation: &Simulation, part: FmuPart) {
         if part == FmuPart::Plant {
             return;
         }
-        let text = texts.command(self.axes > 1);
+        let path = if self.axes > 1 { "torques/axes/feedback_nm" } else { "torque/feedback_nm" };
+        let text = field_text(path).unwrap_or_default();
         for axis in 0..self.axes {
             let name = self.about_axis("command", axis);
             let unit = scenario.model.torque_unit();
             self.push(name, text.clone(), unit, Causality::Output, Quantity::Commanded(axis));
         }
         if simulation.window_mean().is_some() {
-            let text = texts.window_mean();
+            let text = field_text("envelope_mean/mean_rad").unwrap_or_default();
             let variable = self.push("window_mean", text, "rad", Causality::Output, Quantity::WindowMean);
             variable.is_discrete = true;
         }
     }
 
     /// Adds the estimates and references that laws read, of a plant, as far as they are not outputs already.
-    fn add_law_inputs(&mut self, scenario: &Scenario, simulation: &Simulation) {
+    fn add_law_inputs(&mut self, scenario: &Scenario, simulation: &Simulation, observed: &[QuantityField]) {
         if !self.is_commanded {
             return;
         }
-        for field in simulation.telemetry_layout(scenario).law_inputs {
-            let is_new =
-                !self.variables.iter().any(|known| known.name.split('[').next() == Some(field.name.as_str()));
+        for field in &simulation.telemetry_layout(scenario).law_inputs {
+            let is_new = !observed.iter().any(|known| known.path() == field.path());
             for index in 0..field.width() {
                 let quantity = Quantity::LawInput(self.law_inputs);
                 self.law_inputs += 1;
                 if is_new {
-                    let place =
-                        if field.components.is_empty() { String::new() } else { format!("[{}]", index + 1) };
-                    let mut text = field.meaning.to_owned();
-                    text[..1].make_ascii_uppercase();
-                    let name = format!("{}{place}", field.name);
-                    self.push(name, text, field.unit, Causality::Output, quantity);
+                    self.push_component(field, index, quantity);
                 }
             }
         }

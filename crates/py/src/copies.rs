@@ -4,8 +4,9 @@ use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
 use flexsc_core::campaign::{Campaign, CommandLog, RunError};
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::record::{Record, StopFlag};
-use flexsc_core::{ObservationField, Simulation};
+use flexsc_core::{QuantityField, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -85,7 +86,7 @@ impl Flight {
 pub struct Simulators {
     campaign: Arc<Campaign>,
     flights: Vec<Flight>,
-    fields: Vec<ObservationField>,
+    fields: Vec<QuantityField>,
     width: usize,
     pool: Arc<ThreadPool>,
     keeps: bool,
@@ -152,7 +153,7 @@ impl Simulators {
         let mut simulators = Self {
             campaign: Arc::new(campaign),
             flights: runs.into_iter().map(flight).collect(),
-            width: fields.iter().map(ObservationField::width).sum(),
+            width: total_width(&fields),
             fields,
             pool: Arc::new(pool),
             keeps,

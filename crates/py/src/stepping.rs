@@ -5,9 +5,10 @@ use std::time::Instant as WallInstant;
 use flexsc_core::campaign::CommandLog;
 use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::law::Command;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Record, RecordError, Sample};
-use flexsc_core::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};
+use flexsc_core::{QuantityField, QuantityGroup, Simulation, SimulationError, StopAt};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -21,13 +22,12 @@ use crate::error::simulation_error;
 pub type FieldRow = (&'static str, &'static str, &'static str, Option<usize>);
 
 /// The fields of a simulation's row.
-pub fn fields(fields: &[ObservationField]) -> Vec<FieldRow> {
-    let group = |quantity| match quantity {
-        ObservationGroup::True => "state",
-        ObservationGroup::Measured => "measured",
-        ObservationGroup::Estimated => "believed",
+pub fn fields(fields: &[QuantityField]) -> Vec<FieldRow> {
+    let group = |group: QuantityGroup| match group {
+        QuantityGroup::Estimated => "believed",
+        other => other.name(),
     };
-    fields.iter().map(|field| (group(field.group), field.name, field.unit, field.count)).collect()
+    fields.iter().map(|field| (group(field.group), field.name, field.unit, field.shape.count())).collect()
 }
 
 /// The unit of commands to a scenario.
@@ -96,7 +96,7 @@ pub struct Simulator {
     axes: usize,
     unit: &'static str,
     limit: Vec<f64>,
-    fields: Vec<ObservationField>,
+    fields: Vec<QuantityField>,
     /// Commands of the run, if they were kept.
     commands: Option<CommandLog>,
     /// Why it cannot go on.
@@ -202,7 +202,7 @@ impl Simulator {
     }
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut row = vec![0.0; self.fields.iter().map(ObservationField::width).sum()];
+        let mut row = vec![0.0; total_width(&self.fields)];
         self.simulation.observe(&mut row).map_err(|error| simulation_error(&self.name, error))?;
         Ok(row.into_pyarray(py))
     }

@@ -49,6 +49,22 @@ fn field(field: &RowField) -> Value {
     reported
 }
 
+/// Returns the description of the field at a path of topics and nested rows, such as `rates/axes/rate_rad_s`.
+pub fn field_text(path: &str) -> Option<String> {
+    let mut steps = path.split('/');
+    let topic = steps.next()?;
+    let mut fields = TOPICS.iter().find(|known| known.name.trim_start_matches('/') == topic)?.fields;
+    let mut found = None;
+    for step in steps {
+        let field = fields.iter().find(|field| field.name == step)?;
+        if let FieldKind::Row(message) | FieldKind::Rows(message) = field.kind {
+            fields = message.fields;
+        }
+        found = Some(field);
+    }
+    found.map(|field| text(field.doc))
+}
+
 fn text(lines: &[&str]) -> String {
     lines.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")
 }

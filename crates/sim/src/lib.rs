@@ -16,9 +16,9 @@ mod guidance;
 mod loads;
 mod mode_sky;
 mod objective;
-mod observation;
 mod operation;
 mod plant;
+mod quantities;
 mod recorder;
 mod relay_kernel;
 pub mod relay_setup;
@@ -42,10 +42,10 @@ use relay_setup::RunSetup;
 
 pub use control_trace::{ControlCall, ControlDecision, ModeTrial, SensorSample};
 pub use error::SimulationError;
-pub use observation::{ObservationField, ObservationGroup};
 pub use plant::AppliedTorque;
+pub use quantities::{QuantityField, QuantityGroup};
 pub use stepping::StopAt;
-pub use telemetry::{SensorTelemetry, Telemetry, TelemetryField, TelemetryLayout, TelemetrySensor};
+pub use telemetry::{SensorTelemetry, Telemetry, TelemetryLayout, TelemetrySensor};
 
 use clock::Clock;
 use controllers::ControlLaws;

@@ -6,7 +6,7 @@ use flexsc_dynamics::flow::ThreeAxisState;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 
-use super::{ObservationField, Simulation, SimulationError};
+use super::{QuantityField, Simulation, SimulationError};
 use flexsc_scenario::Scenario;
 
 const FEMTOSECONDS: i128 = 1_000_000_000_000_000;
@@ -72,8 +72,8 @@ impl Simulation {
     }
 
     /// Returns the fields of the vector of [`Simulation::observe`], in its order, for a run of this scenario.
-    pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
-        self.read_view().observation_fields(scenario)
+    pub fn observation_fields(&self, scenario: &Scenario) -> Vec<QuantityField> {
+        self.read_view().quantity_fields(scenario, true)
     }
 
     /// Writes the current state into a vector with the fields of [`Simulation::observation_fields`]. With a sensor that measures at

@@ -1,5 +1,6 @@
 //! Scenario of a witness: the body from the state at the start of the witness, under its inputs as disturbances.
 
+use flexsc_control::quantity::total_width;
 use flexsc_formats::document::Document;
 use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::Finite;
@@ -10,7 +11,7 @@ use toml::{Table, Value};
 use super::witness::{InputHistory, Witness};
 use crate::linear_model::LinearModel;
 use flexsc_scenario::{Scenario, ScenarioSpec};
-use flexsc_sim::{ObservationField, Simulation};
+use flexsc_sim::Simulation;
 
 /// Parts of a scenario that a witness keeps.
 const KEPT: [&str; 7] = ["name", "about", "seed", "body", "spacecraft", "appendage", "epoch"];
@@ -83,7 +84,7 @@ pub fn final_state(scenario: &Scenario, model: &LinearModel) -> Option<Vec<f64>>
     let end = Instant::START + scenario.duration;
     simulation.run_up_to(end, &mut ()).ok()?;
     let fields = simulation.observation_fields(scenario);
-    let mut row = vec![0.0; fields.iter().map(ObservationField::width).sum()];
+    let mut row = vec![0.0; total_width(&fields)];
     simulation.observe(&mut row).ok()?;
     let mut place = 0;
     let mut values = |name: &str| -> Option<Vec<f64>> {

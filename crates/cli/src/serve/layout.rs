@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use flexsc_core::control::law::{Command, CommandQuantity};
+use flexsc_core::control::quantity::Quantity;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::{SensorTelemetry, Telemetry, TelemetryField, TelemetryLayout};
+use flexsc_core::{SensorTelemetry, Telemetry, TelemetryLayout};
 
 use super::packet::{ContentReader, LONGEST_PACKET, PacketKind};
 
@@ -59,9 +60,9 @@ impl Field {
         Self { name: name.into(), form, unit, components: Vec::new(), meaning: meaning.into() }
     }
 
-    fn measured(field: &TelemetryField) -> Self {
-        let components = field.components.clone();
-        Self { components, ..Self::new(&field.name, FieldType::F64, field.unit, field.meaning) }
+    fn measured(name: String, quantity: &Quantity) -> Self {
+        let components = quantity.shape.components();
+        Self { components, ..Self::new(name, FieldType::F64, quantity.unit, quantity.text(0)) }
     }
 }
 
@@ -106,9 +107,11 @@ impl PacketLayout {
             fields.push(Field::new(format!("{group}.time_s"), FieldType::I64, "s", at));
             let past = "femtoseconds past it";
             fields.push(Field::new(format!("{group}.time_fs"), FieldType::I64, "fs", past));
-            fields.extend(sensor.fields.iter().map(Field::measured));
+            fields.extend(
+                sensor.fields.iter().map(|own| Field::measured(format!("{group}.{}", own.name), own)),
+            );
         }
-        fields.extend(self.telemetry.law_inputs.iter().map(Field::measured));
+        fields.extend(self.telemetry.law_inputs.iter().map(|own| Field::measured(own.path(), own)));
         fields
     }
 

@@ -1,32 +1,47 @@
-//! Quantities that a sensor measures, with their units and components, for programs outside the run.
+//! Quantities that a sensor measures, with their values in a reading, for programs outside the run.
 
-use super::SensorKind;
+use std::ops::Deref;
 
-/// Names of the components of vectors and quaternions.
-const VECTOR: &[&str] = &["x", "y", "z"];
-const QUATERNION: &[&str] = &["w", "x", "y", "z"];
+use super::{Reading, SensorKind};
+use crate::quantity::{Meaning, Quantity, Shape};
 
 /// Quantity of a sensor's readings.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug)]
 pub struct MeasuredQuantity {
-    /// Name, such as `rate`.
-    pub name: &'static str,
-    /// Unit; empty for a dimensionless quantity.
-    pub unit: &'static str,
-    /// Names of the components; empty for a scalar.
-    pub components: Vec<String>,
-    /// Meaning, as a noun phrase.
-    pub meaning: &'static str,
+    quantity: Quantity,
+    read: fn(&Reading) -> Vec<f64>,
+}
+
+impl Deref for MeasuredQuantity {
+    type Target = Quantity;
+
+    fn deref(&self) -> &Quantity {
+        &self.quantity
+    }
 }
 
 impl MeasuredQuantity {
-    fn new(name: &'static str, unit: &'static str, meaning: &'static str) -> Self {
-        Self { name, unit, components: Vec::new(), meaning }
+    fn new(
+        name: &'static str,
+        unit: &'static str,
+        shape: Shape,
+        meaning: &'static str,
+        read: fn(&Reading) -> Vec<f64>,
+    ) -> Self {
+        Self { quantity: Quantity { name, unit, shape, meaning: Meaning::Text(meaning) }, read }
     }
 
-    fn with(mut self, components: &[&str]) -> Self {
-        self.components = components.iter().map(|&name| name.to_owned()).collect();
-        self
+    /// Creates a quantity that is a vector, such as a magnetic field.
+    fn sight(name: &'static str, unit: &'static str, shape: Shape, meaning: &'static str) -> Self {
+        let read = |reading: &Reading| {
+            reading.sight.map(|measured| measured.vector).unwrap_or_default().iter().copied().collect()
+        };
+        Self::new(name, unit, shape, meaning, read)
+    }
+
+    /// Iterates over the values in a reading.
+    pub fn values(&self, reading: &Reading) -> impl Iterator<Item = f64> + use<> {
+        (self.read)(reading).into_iter().take(self.width())
     }
 }
 
@@ -34,38 +49,46 @@ impl SensorKind {
     /// Returns the quantities that the sensor measures on a body with `axes` axes, of which it is the source of the attitude
     /// or not; none of a tachometer, whose readings are the speeds of the wheels.
     pub fn measured_quantities(&self, provides_attitude: bool, axes: usize) -> Vec<MeasuredQuantity> {
-        let quantity = MeasuredQuantity::new;
+        let sight = MeasuredQuantity::sight;
         match self {
             Self::Tachometer(_) => Vec::new(),
             Self::Accelerometer(accelerometer) => {
-                let meaning = "specific force along the axes of the sensor";
-                let mut force = quantity("specific_force", "m/s²", meaning);
-                force.components = (1..=accelerometer.along.len()).map(|number| number.to_string()).collect();
-                vec![force]
+                let shape = Shape::List(accelerometer.axis_count());
+                vec![sight("specific_force", "m/s²", shape, "specific force along the axes of the sensor")]
             }
-            Self::Magnetometer(_) => {
-                vec![quantity("field", "T", "magnetic field in body axes").with(VECTOR)]
-            }
+            Self::Magnetometer(_) => vec![sight("field", "T", Shape::Vector, "magnetic field in body axes")],
             Self::SunSensor(_) | Self::SunCells(_) => {
-                vec![quantity("direction", "", "direction to the Sun in body axes").with(VECTOR)]
+                vec![sight("direction", "", Shape::Vector, "direction to the Sun in body axes")]
             }
             Self::EarthSensor(_) => {
-                vec![quantity("direction", "", "direction to the planet's centre in body axes").with(VECTOR)]
+                vec![sight("direction", "", Shape::Vector, "direction to the planet's centre in body axes")]
             }
             Self::Continuous | Self::Sampled(_) | Self::Gyro(_) | Self::StarTracker(_) | Self::Own(_) => {
-                let mut quantities = Vec::new();
-                if provides_attitude && axes > 1 {
-                    let meaning = "measured rotation from body axes to inertial axes";
-                    quantities.push(quantity("attitude", "", meaning).with(QUATERNION));
-                } else if provides_attitude {
-                    quantities.push(quantity("angle", "rad", "measured angle"));
-                }
-                if self.is_continuous() || self.rate_noise(0).is_some() {
-                    let rate = quantity("rate", "rad/s", "measured rate in body axes");
-                    quantities.push(if axes > 1 { rate.with(VECTOR) } else { rate });
-                }
-                quantities
+                let attitude = if axes > 1 { measured_attitude } else { measured_angle };
+                let has_rate = self.is_continuous() || self.rate_noise(0).is_some();
+                let attitude = provides_attitude.then(attitude);
+                attitude.into_iter().chain(has_rate.then(|| measured_rate(axes))).collect()
             }
         }
     }
+}
+
+fn measured_attitude() -> MeasuredQuantity {
+    let meaning = "measured rotation from body axes to inertial axes";
+    MeasuredQuantity::new("attitude", "", Shape::Quaternion, meaning, |reading| {
+        let attitude = reading.at.attitude().unwrap_or_default();
+        vec![attitude.w, attitude.i, attitude.j, attitude.k]
+    })
+}
+
+fn measured_angle() -> MeasuredQuantity {
+    MeasuredQuantity::new("angle", "rad", Shape::Scalar, "measured angle", |reading| {
+        reading.at.error_from(&reading.at.difference_origin()).to_vec()
+    })
+}
+
+fn measured_rate(axes: usize) -> MeasuredQuantity {
+    MeasuredQuantity::new("rate", "rad/s", Shape::about_axes(axes), "measured rate in body axes", |reading| {
+        reading.rate.unwrap_or_default().to_vec()
+    })
 }

@@ -3,8 +3,9 @@
 use std::ffi::{CString, c_char, c_int, c_void};
 use std::ptr;
 
+use flexsc_core::Simulation;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::{ObservationField, Simulation};
 use flexsc_cosim::FmuPart;
 
 use crate::c_call;
@@ -82,7 +83,7 @@ fn both_versions_have_equal_bits_at_points() {
 fn the_error_of_a_point_is_the_rounding_of_its_time() {
     let scenario = shipped("relay-fixed", &[("duration", "1000.0")]);
     let mut run = Simulation::new(&scenario, 0);
-    let mut row = vec![0.0; run.observation_fields(&scenario).iter().map(ObservationField::width).sum()];
+    let mut row = vec![0.0; total_width(&run.observation_fields(&scenario))];
     let mut expected = Vec::new();
     for point in 1..=10_000_i64 {
         let at = Instant::START + Span::from_femtoseconds(point * 100_000_000_000_000);

@@ -13,6 +13,7 @@ mod sequences;
 mod states;
 
 use flexsc_core::control::law::Command;
+use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation, StopAt};
@@ -99,7 +100,7 @@ fn the_end_of_an_fmu_is_that_of_the_native_run() {
         let scenario = shipped(name, &[("duration", "30.0")]);
         let mut run = Simulation::new(&scenario, 0);
         run.run(&mut ()).expect("a run");
-        let width = run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum();
+        let width = total_width(&run.observation_fields(&scenario));
         let mut expected = vec![0.0; width];
         run.observe(&mut expected).expect("a state");
         let fmu = Fmu3::new(&scenario, FmuPart::Loop, false);
@@ -119,7 +120,7 @@ fn a_plant_is_commanded_at_its_samples() {
     let mut run = Simulation::new(&scenario, 0);
     let mut expected = Vec::new();
     run.set_external_command([Command::Torque(0.0); 3]);
-    let width = run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum();
+    let width = total_width(&run.observation_fields(&scenario));
     let mut row = vec![0.0; width];
     while run.run_to_next(StopAt::Sample, Instant::END, &mut ()).expect("a run") && !run.is_finished() {
         run.observe(&mut row).expect("a state");
@@ -168,7 +169,7 @@ fn a_grid_gives_points_the_samples_of_their_instants() {
     let scenario = shipped("wheel-fixed-gain", &[("duration", "400.0"), OFTEN[0], OFTEN[1]]);
     let period = scenario.study.sample_period.expect("sampled").seconds();
     let (mut run, mut row) = (Simulation::new(&scenario, 0), Vec::new());
-    let width = run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum();
+    let width = total_width(&run.observation_fields(&scenario));
     row.resize(width, 0.0);
     let mut expected = Vec::new();
     for point in 1..=(400.0 / period) as i64 {

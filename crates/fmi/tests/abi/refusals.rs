@@ -2,6 +2,7 @@
 
 use std::ffi::c_int;
 
+use flexsc_core::control::quantity::total_width;
 use flexsc_cosim::FmuPart;
 
 use crate::c_call;
@@ -81,7 +82,7 @@ fn parameters_change_the_run() {
     let mut run = flexsc_core::Simulation::new(&other, 0);
     run.run(&mut ()).expect("a run");
     let mut row = vec![0.0; 64];
-    let width = run.observation_fields(&other).iter().map(flexsc_core::ObservationField::width).sum();
+    let width = total_width(&run.observation_fields(&other));
     row.truncate(width);
     run.observe(&mut row).expect("a state");
     assert_eq!(end(&[("law.relay.k_t", 0.35)]), row[0].to_bits());
