@@ -116,3 +116,65 @@ fn a_row_is_named_by_its_part_and_its_readers() {
         assert_eq!(built, 1, "{row} is built in {named:?}");
     }
 }
+
+/// Quantities of runs with names that mean nothing else.
+const QUANTITIES: [&str; 5] =
+    ["gimbal_angles", "gimbal_rates", "hinge_angles", "hinge_rates", "wheel_speeds"];
+
+/// File that declares them.
+const TABLE: &str = "crates/sim/src/quantities.rs";
+
+#[test]
+fn a_quantity_is_declared_in_one_file() {
+    let mut all = Vec::new();
+    for part in ENGINE.into_iter().chain(["cli", "cosim", "export-c", "figure", "fmi", "papers", "py"]) {
+        sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut all);
+    }
+    for quantity in QUANTITIES {
+        let names = |(_, text): &&(String, String)| text.contains(&format!("\"{quantity}\""));
+        let named: Vec<&str> = all.iter().filter(names).map(|(name, _)| name.as_str()).collect();
+        assert!(named.len() == 1 && TABLE.ends_with(named[0]), "{quantity} is in {named:?}");
+    }
+}
+
+#[test]
+#[cfg(feature = "full")]
+fn quantities_of_a_run_are_in_its_packets_and_fmus() {
+    use flexsc_core::{Scenario, Simulation};
+    use flexsc_cosim::{FmuPart, VariableTable};
+
+    let names = [
+        "agile-observer",
+        "attitude-hold",
+        "earth-observer",
+        "panel-deployment",
+        "relay-adaptive",
+        "wheel-ekf",
+    ];
+    let dir = crate::util::Dir::with(&names);
+    let mut seen = BTreeSet::new();
+    for name in names {
+        let scenario = Scenario::load(&dir.path(&format!("{name}.toml"))).expect("a scenario");
+        let simulation = Simulation::new(&scenario, 0);
+        let (observed, layout) =
+            (simulation.observation_fields(&scenario), simulation.telemetry_layout(&scenario));
+        let table = VariableTable::new(&scenario, &simulation, FmuPart::Plant);
+        let packets = dir.run(&format!("serve {name}.toml --describe --period 1")).exits(0).printed();
+        for field in observed.iter().chain(&layout.law_inputs) {
+            let path = field.path();
+            for component in 1..=field.width() {
+                let element = field.shape.count().map_or(path.clone(), |_| format!("{path}[{component}]"));
+                let variable = table.find(&element).unwrap_or_else(|| panic!("{name}: {element}"));
+                assert_eq!(variable.unit, field.unit, "{name}: {element}");
+            }
+            seen.insert(field.name);
+        }
+        for field in &layout.law_inputs {
+            let parameter = field.path().replace('.', "_");
+            let component =
+                field.shape.components().first().map_or(String::new(), |first| format!("_{first}"));
+            assert!(packets.contains(&format!("\"{parameter}{component}\"")), "{name}: {parameter}");
+        }
+    }
+    assert!(QUANTITIES.iter().all(|quantity| seen.contains(quantity)), "{seen:?}");
+}

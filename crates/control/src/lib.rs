@@ -10,6 +10,7 @@ pub mod adaptation;
 pub mod custom;
 pub mod drive_profile;
 pub mod estimator;
+pub mod flight_quantity;
 pub mod interval;
 pub mod law;
 pub mod linear_block;

@@ -6,7 +6,7 @@ use flexsc_record::description::field_text;
 
 /// Shape of the values of a quantity.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum QuantityShape {
     /// Number.
     Scalar,
     /// Vector with the components x, y and z.
@@ -17,7 +17,7 @@ pub enum Shape {
     List(usize),
 }
 
-impl Shape {
+impl QuantityShape {
     /// Returns the shape of a value about each axis of a body: a number or a vector.
     pub const fn about_axes(axes: usize) -> Self {
         if axes > 1 { Self::Vector } else { Self::Scalar }
@@ -50,24 +50,24 @@ impl Shape {
 pub enum Meaning {
     /// Noun phrase.
     Text(&'static str),
-    /// That of the field of the log at this path, such as `rates/axes/rate_rad_s`, for all components or one for each.
+    /// Paths of fields of the log with the meaning, such as `rates/axes/rate_rad_s`: one for all components, or one for each.
     Logged(&'static [&'static str]),
 }
 
 /// Quantity that a program outside a run can ask for.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Quantity {
+pub struct QuantityDescription {
     /// Name within its group, such as `rate`.
     pub name: &'static str,
     /// Unit; empty for a dimensionless quantity.
     pub unit: &'static str,
     /// Shape of the values.
-    pub shape: Shape,
+    pub shape: QuantityShape,
     /// Meaning.
     pub meaning: Meaning,
 }
 
-impl Quantity {
+impl QuantityDescription {
     /// Returns the number of values.
     pub fn width(&self) -> usize {
         self.shape.count().unwrap_or(1)
@@ -86,6 +86,6 @@ impl Quantity {
 }
 
 /// Returns the number of values of all fields together.
-pub fn total_width<Q: Deref<Target = Quantity>>(fields: &[Q]) -> usize {
+pub fn total_width<Q: Deref<Target = QuantityDescription>>(fields: &[Q]) -> usize {
     fields.iter().map(|field| field.width()).sum()
 }

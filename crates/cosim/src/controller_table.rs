@@ -1,6 +1,7 @@
 //! Table of the variables of an FMU that holds the laws of a scenario alone: the inputs and outputs of their flight code.
 
 use flexsc_core::Scenario;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::numerics::time::Span;
 use flexsc_export_c::control_system::{CallLayout, Channel};
 
@@ -8,22 +9,6 @@ use crate::parameters::numeric_keys;
 use crate::units::BaseExponents;
 use crate::variable::{Causality, ClockRole, Quantity, ValueKind, VariableStart};
 use crate::variable_table::{VariableTable, command_unit};
-
-/// Names of channels of flight code, with those of the variables: a plant has outputs and inputs of the same names.
-const NAMES: [(&str, &str); 9] = [
-    ("angle", "estimate.angle"),
-    ("rate", "estimate.rate"),
-    ("displacement", "estimate.mode_displacement"),
-    ("displacement_rate", "estimate.mode_rate"),
-    ("frequency", "estimate.mode_frequency"),
-    ("reference_angle", "reference.angle"),
-    ("reference_rate", "reference.rate"),
-    ("reference_acceleration", "reference.acceleration"),
-    (TORQUE, "command"),
-];
-
-/// Channel of the commanded torque.
-const TORQUE: &str = "torque";
 
 /// Returns the unit in the description of a channel; empty without one.
 fn unit_of(channel: &Channel) -> &str {
@@ -42,7 +27,8 @@ impl VariableTable {
         table.push("time", "Time since the start".to_owned(), "s", Causality::Independent, Quantity::Time);
         let mut outputs = 0;
         for channel in &layout.outputs {
-            let unit = if channel.name == TORQUE { command_unit(scenario) } else { unit_of(channel) };
+            let is_torque = channel.quantity == Some(FlightQuantity::Torque);
+            let unit = if is_torque { command_unit(scenario) } else { unit_of(channel) };
             table
                 .push_channel(channel, unit, Causality::Output, |index| Quantity::LawOutput(outputs + index));
             outputs += channel.count;
@@ -79,8 +65,8 @@ impl VariableTable {
         causality: Causality,
         quantity: impl Fn(usize) -> Quantity,
     ) {
-        let known = NAMES.iter().find(|(own, _)| *own == channel.name);
-        let name = known.map_or(channel.name.as_str(), |(_, name)| name);
+        // A plant has outputs and inputs of the same names.
+        let name = channel.quantity.map_or_else(|| channel.name.clone(), FlightQuantity::path);
         for index in 0..channel.count {
             let place = if channel.count > 1 { format!("[{}]", index + 1) } else { String::new() };
             let (name, text) = (format!("{name}{place}"), channel.about.clone());

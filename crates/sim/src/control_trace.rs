@@ -1,7 +1,9 @@
 //! Inputs and outputs of the control system at each of its calls, for replays by flight code.
 
 use flexsc_control::actuator::PulsedActuator;
+use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::law::AxisDecision;
+use flexsc_control::operation::ModeQuantity;
 use flexsc_control::sensor::{Orientation, Reading};
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::time::Instant;
@@ -29,18 +31,8 @@ pub struct ModeTrial {
     pub mode: usize,
     /// Values that conditions of the mode before compare, in the order of the mode tables; NaN of all others.
     pub readings: Vec<f64>,
-    /// Estimated angle (rad) and rate (rad/s) about each axis.
-    pub estimates: Vec<[f64; 2]>,
-    /// Angle (rad) and rate (rad/s) of the reference about each axis.
-    pub reference: Vec<[f64; 2]>,
-    /// Target attitude from which angles are counted.
-    pub origin: Orientation,
-    /// Momentum stored in the rotors, as available to the drives (N m s).
-    pub stored_momentum: [f64; 3],
-    /// Speed of each wheel (rad/s).
-    pub wheel_speeds: Vec<f64>,
-    /// Last measured magnetic field (T) and its change by the last two readings (T/s); NaN before.
-    pub field: [[f64; 3]; 2],
+    /// Knowledge of the control system: the target attitude, and the vectors that conditions read; NaN before a measurement.
+    pub known: Vec<(FlightQuantity, Vec<f64>)>,
 }
 
 /// Sample of the sensors.
@@ -124,19 +116,9 @@ impl Simulation {
             return;
         }
         let run = self.read_view();
-        let angles = run.estimation.estimates.iter().map(|estimate| estimate.angle);
-        let field = [run.sensors.measured_field(), run.sensors.field_rate];
-        let trial = ModeTrial {
-            now,
-            mode,
-            readings,
-            estimates: angles.zip(run.rates()).map(|(angle, rate)| [angle, rate]).collect(),
-            reference: run.reference(),
-            origin: *run.estimation.origin(),
-            stored_momentum: run.loads.actuator.capabilities().stored_momentum(now),
-            wheel_speeds: run.loads.wheel_speeds(now, run.plant.truth().rigid_rate),
-            field: field.map(|vector| vector.map_or([f64::NAN; 3], Into::into)),
-        };
+        let quantities = ModeQuantity::all_vectors().chain([FlightQuantity::TargetAttitude]);
+        let known = quantities.map(|quantity| (quantity, run.known(quantity))).collect();
+        let trial = ModeTrial { now, mode, readings, known };
         if let Some(trace) = &mut self.laws.trace {
             trace.push(ControlCall::Mode(trial));
         }

@@ -4,6 +4,7 @@
 //! Each part of a run has a file of its own and reaches another part only through the arguments of its methods. Between
 //! two instants every input is constant or a waveform, and the motion is exact.
 
+mod asked_run;
 mod batch_hooks;
 mod blinding;
 mod clock;

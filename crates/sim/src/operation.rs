@@ -4,9 +4,11 @@
 use std::sync::Arc;
 
 use flexsc_control::actuator::ActuatorEvent;
-use flexsc_control::operation::{ModeChange, ModeQuantity, ModeReadings, ModeSequence};
+use flexsc_control::flight_quantity::FlightQuantity;
+use flexsc_control::operation::{ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence};
 use flexsc_flight::mode_readings::{distance, largest_size, norm};
 use flexsc_flight::mode_supervisor::MOST_CHANGES;
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
 
@@ -132,30 +134,17 @@ impl Simulation {
 impl ModeReadings for KnownQuantities<'_> {
     fn value(&self, quantity: ModeQuantity) -> f64 {
         let run = &self.run;
-        let (now, estimates) = (run.now, &run.estimation.estimates);
+        match quantity.formula() {
+            ModeFormula::Norm(vector) => return norm(&run.known(vector)),
+            ModeFormula::Distance(one, other) => return distance(&run.known(one), &run.known(other)),
+            ModeFormula::LargestSize(list) => {
+                let values = run.known(list);
+                return if values.is_empty() { f64::NAN } else { largest_size(&values) };
+            }
+            ModeFormula::Single => {}
+        }
         match quantity {
-            ModeQuantity::Rate => norm(&run.rates()),
-            ModeQuantity::RateError => {
-                let reference: Vec<f64> = run.reference().into_iter().map(|[_, rate]| rate).collect();
-                distance(&run.rates(), &reference)
-            }
-            ModeQuantity::AttitudeError => {
-                let angles: Vec<f64> = estimates.iter().map(|estimate| estimate.angle).collect();
-                let reference: Vec<f64> = run.reference().into_iter().map(|[angle, _]| angle).collect();
-                distance(&angles, &reference)
-            }
-            ModeQuantity::Momentum => norm(&run.loads.actuator.capabilities().stored_momentum(now)),
-            ModeQuantity::WheelSpeed => {
-                let speeds = run.loads.wheel_speeds(now, run.plant.truth().rigid_rate);
-                if speeds.is_empty() { f64::NAN } else { largest_size(&speeds) }
-            }
-            ModeQuantity::Field => {
-                run.sensors.measured_field().map_or(f64::NAN, |field| norm(field.as_slice()))
-            }
-            ModeQuantity::FieldRate => {
-                run.sensors.field_rate.map_or(f64::NAN, |change| norm(change.as_slice()))
-            }
-            ModeQuantity::Silent(sensor) => run.sensors.silence(now, sensor).seconds(),
+            ModeQuantity::Silent(sensor) => run.sensors.silence(run.now, sensor).seconds(),
             // The supervisor counts entries itself.
             ModeQuantity::Entries(_) => f64::NAN,
             ModeQuantity::LockLost => {
@@ -164,7 +153,7 @@ impl ModeReadings for KnownQuantities<'_> {
             ModeQuantity::Sunlight
             | ModeQuantity::Elevation(_)
             | ModeQuantity::TrueSunlight
-            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, now.seconds()),
+            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, run.now.seconds()),
             clock => self.clock(clock).seconds(),
         }
     }
@@ -176,14 +165,32 @@ impl ModeReadings for KnownQuantities<'_> {
 }
 
 impl RunView<'_> {
-    /// Returns the estimated rate about each axis (rad/s).
-    pub(super) fn rates(&self) -> Vec<f64> {
-        self.estimation.estimates.iter().map(|estimate| estimate.rate).collect()
+    /// Returns a vector or list that the control system knows; nothing for those that no condition reads.
+    pub(super) fn known(&self, quantity: FlightQuantity) -> Vec<f64> {
+        let estimates = self.estimation.estimates.iter();
+        let field = |vector: Option<Vector>| vector.map_or([f64::NAN; 3], Into::into).to_vec();
+        match quantity {
+            FlightQuantity::Angle => estimates.map(|estimate| estimate.angle).collect(),
+            FlightQuantity::Rate => estimates.map(|estimate| estimate.rate).collect(),
+            FlightQuantity::ReferenceAngle => self.reference().into_iter().map(|[angle, _]| angle).collect(),
+            FlightQuantity::ReferenceRate => self.reference().into_iter().map(|[_, rate]| rate).collect(),
+            FlightQuantity::TargetAttitude => {
+                let attitude = self.estimation.origin().attitude();
+                attitude.map_or_else(Vec::new, |q| vec![q.w, q.i, q.j, q.k])
+            }
+            FlightQuantity::StoredMomentum => {
+                self.loads.actuator.capabilities().stored_momentum(self.now).to_vec()
+            }
+            FlightQuantity::WheelSpeed => self.loads.wheel_speeds(self.now, self.plant.truth().rigid_rate),
+            FlightQuantity::Field => field(self.sensors.measured_field()),
+            FlightQuantity::FieldRate => field(self.sensors.field_rate),
+            _ => Vec::new(),
+        }
     }
 
     /// Returns the angle (rad) of the reference about each axis, from which the estimated angles differ by the error, and
     /// its rate (rad/s).
-    pub(super) fn reference(&self) -> Vec<[f64; 2]> {
+    fn reference(&self) -> Vec<[f64; 2]> {
         let estimates = &self.estimation.estimates;
         if estimates.len() == 1 {
             let (angle, rate) = self.guidance.manoeuvre_state(self.now);

@@ -1,17 +1,17 @@
-//! What a run can be asked, declared once: a row of this table appears in the observation or the telemetry of every run that
+//! Table of the quantities that programs outside a run can read: a row of it appears in the observation or the telemetry of every run that
 //! has it, and so in Gymnasium spaces, in the packets of `flexsc serve` and their description, and among the variables of FMUs.
 
-use std::cell::OnceCell;
 use std::ops::Deref;
 
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::{AttitudeErrorMeasure, ReferenceNeeds, Setpoint};
-use flexsc_control::quantity::{Meaning, Quantity, Shape};
+use flexsc_control::flight_quantity::FlightQuantity;
+use flexsc_control::law::AttitudeErrorMeasure;
+use flexsc_control::quantity::{Meaning, QuantityDescription, QuantityShape};
 use flexsc_control::sensor::SensorKind;
-use flexsc_control::state_estimate::{EstimateNeeds, StateEstimate};
-use flexsc_record::{ControlMomentGyros, Hinges};
+use flexsc_control::state_estimate::EstimateNeeds;
 
-use super::plant::{FlowQuantities, OneAxisQuantities, ThreeAxisQuantities};
+use super::asked_run::{AskedRun, give};
+use super::plant::{FlowQuantities, ThreeAxisQuantities};
 use super::run_view::RunView;
 use flexsc_scenario::Scenario;
 
@@ -55,14 +55,14 @@ impl QuantityGroup {
 pub struct QuantityField {
     /// Origin of the values.
     pub group: QuantityGroup,
-    quantity: Quantity,
+    quantity: QuantityDescription,
     read: Read,
 }
 
 impl Deref for QuantityField {
-    type Target = Quantity;
+    type Target = QuantityDescription;
 
-    fn deref(&self) -> &Quantity {
+    fn deref(&self) -> &QuantityDescription {
         &self.quantity
     }
 }
@@ -116,22 +116,41 @@ struct Declared {
     extent: Extent,
     /// Meaning on one axis, and on three.
     meaning: [Meaning; 2],
-    /// Returns true for a scenario whose runs have the quantity, as far as `read` does not tell.
+    /// Returns true for a scenario whose runs have the quantity, where `read` cannot decide that.
     given: fn(&Scenario) -> bool,
     read: Read,
 }
 
+/// Declares the rows of the table, one by one: a group with name, unit, extent and meaning, or with a quantity of flight code,
+/// a condition on the scenario if there is one, and the function that reads the values.
 macro_rules! quantities {
-    ($($group:ident $name:literal, $unit:expr, $extent:ident, $meaning:expr $(, if $given:expr)? => $read:expr;)*) => {
-        const QUANTITIES: &[Declared] = &[$(Declared {
+    (@ [$($row:expr,)*]) => {
+        const QUANTITIES: &[Declared] = &[$($row),*];
+    };
+    (@ [$($row:expr,)*] $group:ident flight $quantity:ident $(, if $given:expr)? => $read:expr; $($rest:tt)*) => {
+        quantities! { @ [$($row,)* Declared {
+            group: QuantityGroup::$group,
+            name: FlightQuantity::$quantity.declaration().name,
+            unit: Of(FlightQuantity::$quantity.declaration().unit),
+            extent: Extent::Axes,
+            meaning: text(FlightQuantity::$quantity.declaration().meaning),
+            given: given!($($given)?),
+            read: $read,
+        },] $($rest)* }
+    };
+    (@ [$($row:expr,)*] $group:ident $name:literal, $unit:expr, $extent:ident, $meaning:expr => $read:expr; $($rest:tt)*) => {
+        quantities! { @ [$($row,)* Declared {
             group: QuantityGroup::$group,
             name: $name,
             unit: $unit,
             extent: Extent::$extent,
             meaning: $meaning,
-            given: given!($($given)?),
+            given: |_| true,
             read: $read,
-        }),*];
+        },] $($rest)* }
+    };
+    ($group:ident $($rest:tt)*) => {
+        quantities! { @ [] $group $($rest)* }
     };
 }
 
@@ -172,7 +191,7 @@ quantities! {
         FlowQuantities::ThreeAxis(motion) => give(out, motion.body().mode_rates()),
     };
     True "torque", Torque, Axes, logged(&["torque/applied_nm"], &["torques/axes/applied_nm"]) => |run, out| {
-        let magnetic = run.three_axis().map(|motion| motion.magnetic_torque());
+        let magnetic = run.three_axis().map(<dyn ThreeAxisQuantities>::magnetic_torque);
         give(out, (0..run.axes()).map(|axis| magnetic.map_or(0.0, |torque| torque[axis]) + run.torque(axis)))
     };
     True "wheel_speed", Of("rad/s"), Axes, logged(&["wheel/speed_rad_s"], &[]) => |run, out| {
@@ -198,28 +217,25 @@ quantities! {
     Estimated "rate", Of("rad/s"), Axes, RATES => |run, out| run.estimated(|own| own.rate, 1, out);
 
     // What the laws would read at this instant: the telemetry.
-    Predicted "angle", Of("rad"), Axes, [
-        Meaning::Text("estimated angle"),
-        Meaning::Text("rotation vector from the reference attitude to the estimated one"),
-    ] => |run, out| run.predicted(|own| own.angle, out);
-    Predicted "rate", Of("rad/s"), Axes, text("estimated rate in body axes") => |run, out| run.predicted(|own| own.rate, out);
+    Predicted flight Angle => |run, out| run.predicted(|own| own.angle, out);
+    Predicted flight Rate => |run, out| run.predicted(|own| own.rate, out);
     Predicted "error", Of("rad"), Axes, text("twice the vector part of the quaternion from the reference attitude to the estimated one")
         => |run, out| run.three_axis().and_then(|_| run.predicted(|own| AttitudeErrorMeasure::Quaternion.error(own), out));
-    Predicted "field_rate", Of("T/s"), Axes, text("rate of change of the measured magnetic field"), if |scenario| scenario.sensor.iter().any(SensorKind::measures_field)
+    Predicted flight FieldRate, if |scenario| scenario.sensor.iter().any(SensorKind::measures_field)
         => |run, out| run.predicted(|own| own.field_rate, out);
-    Predicted "mode_displacement", Of("rad"), Axes, text("displacement of the dominant mode"), if reads_dominant_mode
+    Predicted flight Displacement, if reads_dominant_mode
         => |run, out| run.predicted(|own| own.dominant.displacement, out);
-    Predicted "mode_rate", Of("rad/s"), Axes, text("rate of the dominant mode"), if reads_dominant_mode
+    Predicted flight DisplacementRate, if reads_dominant_mode
         => |run, out| run.predicted(|own| own.dominant.rate, out);
-    Predicted "mode_frequency", Of("rad/s"), Axes, text("frequency of the dominant mode"), if reads_dominant_mode
+    Predicted flight Frequency, if reads_dominant_mode
         => |run, out| run.predicted(|own| own.dominant.frequency, out);
     Reference "attitude", Of(""), Quaternion, text("rotation from the axes of the reference to inertial axes") => |run, out| {
         let q = run.estimation.origin().attitude()?;
         give(out, [q.w, q.i, q.j, q.k])
     };
-    Reference "angle", Of("rad"), Axes, text("reference of `estimate.angle`") => |run, out| run.setpoints(|own| own.at(run.now).0, out);
-    Reference "rate", Of("rad/s"), Axes, text("reference of `estimate.rate`") => |run, out| run.setpoints(|own| own.at(run.now).1, out);
-    Reference "acceleration", Of("rad/s²"), Axes, text("acceleration of the reference") => |run, out| run.setpoints(|own| own.acceleration, out);
+    Reference flight ReferenceAngle => |run, out| run.setpoints(|own| own.at(run.now).0, out);
+    Reference flight ReferenceRate => |run, out| run.setpoints(|own| own.at(run.now).1, out);
+    Reference flight ReferenceAcceleration => |run, out| run.setpoints(|own| own.acceleration, out);
     Wheels "speed", Of("rad/s"), List, text("speeds of the wheels, as available to their drives") => |run, out| {
         let speeds = run.wheel_speeds();
         speeds.first()?;
@@ -243,12 +259,6 @@ const fn text(text: &'static str) -> [Meaning; 2] {
     [Meaning::Text(text), Meaning::Text(text)]
 }
 
-/// Gives values one after another.
-fn give(out: &mut dyn FnMut(f64), values: impl IntoIterator<Item = f64>) -> Option<()> {
-    values.into_iter().for_each(out);
-    Some(())
-}
-
 /// Returns true if the law reads the dominant mode.
 fn reads_dominant_mode(scenario: &Scenario) -> bool {
     let is_own = matches!(scenario.estimator, Some(EstimatorKind::Own(_)));
@@ -258,6 +268,10 @@ fn reads_dominant_mode(scenario: &Scenario) -> bool {
 impl RunView<'_> {
     /// Returns the quantities of a scenario's run in the observation, or in the telemetry, in the order of the table.
     pub fn quantity_fields(&self, scenario: &Scenario, is_observed: bool) -> Vec<QuantityField> {
+        self.fields_in(QUANTITIES, scenario, is_observed)
+    }
+
+    fn fields_in(&self, table: &[Declared], scenario: &Scenario, is_observed: bool) -> Vec<QuantityField> {
         let (axes, run) = (self.estimation.axis_count(), AskedRun::new(*self));
         let field = |row: &Declared| {
             let mut count = 0;
@@ -274,16 +288,16 @@ impl RunView<'_> {
                 }
             };
             let shape = match row.extent {
-                Extent::Axes => Shape::about_axes(axes),
-                Extent::Quaternion => Shape::Quaternion,
-                Extent::List => Shape::List(count),
+                Extent::Axes => QuantityShape::about_axes(axes),
+                Extent::Quaternion => QuantityShape::Quaternion,
+                Extent::List => QuantityShape::List(count),
             };
             let meaning = row.meaning[usize::from(axes > 1)];
-            let quantity = Quantity { name: row.name, unit, shape, meaning };
+            let quantity = QuantityDescription { name: row.name, unit, shape, meaning };
             Some(QuantityField { group: row.group, quantity, read: row.read })
         };
         let wanted = |row: &&Declared| row.group.is_observed() == is_observed && (row.given)(scenario);
-        QUANTITIES.iter().filter(wanted).filter_map(field).collect()
+        table.iter().filter(wanted).filter_map(field).collect()
     }
 
     /// Writes the observation into a vector.
@@ -307,135 +321,37 @@ impl RunView<'_> {
     }
 }
 
-/// Run that is asked, with what its laws would read at this instant.
-struct AskedRun<'a> {
-    run: RunView<'a>,
-    law_inputs: OnceCell<LawInputs>,
-}
-
-/// State estimates predicted to this instant, and setpoints, about each axis.
-struct LawInputs {
-    estimates: Vec<StateEstimate>,
-    setpoints: Vec<Setpoint>,
-}
-
-impl<'a> Deref for AskedRun<'a> {
-    type Target = RunView<'a>;
-
-    fn deref(&self) -> &RunView<'a> {
-        &self.run
-    }
-}
-
-impl<'a> AskedRun<'a> {
-    const fn new(run: RunView<'a>) -> Self {
-        Self { run, law_inputs: OnceCell::new() }
-    }
-
-    fn axes(&self) -> usize {
-        self.estimation.axis_count()
-    }
-
-    fn one_axis(&self) -> Option<&dyn OneAxisQuantities> {
-        self.plant.quantities().one_axis()
-    }
-
-    fn three_axis(&self) -> Option<&dyn ThreeAxisQuantities> {
-        self.plant.quantities().three_axis()
-    }
-
-    fn of_axes(&self, values: [f64; 3]) -> impl Iterator<Item = f64> + use<> {
-        values.into_iter().take(self.axes())
-    }
-
-    /// Gives the measured angles (part 0) or rates (part 1); those of a continuous sensor are true.
-    fn measured(&self, part: usize, out: &mut dyn FnMut(f64)) -> Option<()> {
-        if self.sensors.is_continuous() {
-            return self.true_motion(part, out);
-        }
-        let is_reported = self.sensors.reading.is_some();
-        give(out, self.sensors.measured.iter().map(|own| if is_reported { own[part] } else { f64::NAN }))
-    }
-
-    /// Gives a part of the estimates of the last sample; those of a continuous sensor are true angles (part 0) or rates (part
-    /// 1).
-    fn estimated(
-        &self,
-        value: fn(&StateEstimate) -> f64,
-        part: usize,
-        out: &mut dyn FnMut(f64),
-    ) -> Option<()> {
-        if self.sensors.is_continuous() {
-            return self.true_motion(part, out);
-        }
-        give(out, self.estimation.estimates.iter().map(value))
-    }
-
-    fn true_motion(&self, part: usize, out: &mut dyn FnMut(f64)) -> Option<()> {
-        if part == 1 {
-            return give(out, self.of_axes(self.plant.truth().rate));
-        }
-        give(out, self.of_axes(self.plant.sensed_angles(&self.guidance.origin(self.now))))
-    }
-
-    /// Gives a part of the estimates predicted to this instant.
-    fn predicted(&self, value: fn(&StateEstimate) -> f64, out: &mut dyn FnMut(f64)) -> Option<()> {
-        give(out, self.law_inputs().estimates.iter().map(value))
-    }
-
-    /// Gives a part of the setpoints.
-    fn setpoints(&self, value: impl Fn(&Setpoint) -> f64, out: &mut dyn FnMut(f64)) -> Option<()> {
-        give(out, self.law_inputs().setpoints.iter().map(value))
-    }
-
-    fn law_inputs(&self) -> &LawInputs {
-        self.law_inputs.get_or_init(|| {
-            let mut estimates = self.estimation.estimates.clone();
-            self.estimation.predict_into(self.now, self.plant, self.sensors, &mut estimates);
-            let square: f64 = estimates.iter().map(|estimate| estimate.angle * estimate.angle).sum();
-            for estimate in &mut estimates {
-                estimate.total_angle = f64::sqrt(square);
-            }
-            let led = self.guidance.reference_motion(self.now, &estimates);
-            let needs = ReferenceNeeds { tracks_manoeuvre: true, ..ReferenceNeeds::default() };
-            let setpoint = |axis: usize| {
-                self.guidance.setpoint_for(needs, self.now, led.map(|setpoints| setpoints[axis]))
-            };
-            let setpoints = (0..estimates.len()).map(setpoint).collect();
-            LawInputs { estimates, setpoints }
-        })
-    }
-
-    /// Returns the speeds of the wheels (rad/s), as available to their drives.
-    fn wheel_speeds(&self) -> Vec<f64> {
-        let truth = self.plant.truth();
-        if self.axes() > 1 {
-            return self.loads.wheel_speeds(self.now, truth.rigid_rate);
-        }
-        let response = self.loads.actuator.response(self.now, 0, [truth.rate[0], truth.rigid_rate[0]]);
-        response.rotor.iter().map(|wheel| wheel.speed_rad_s).collect()
-    }
-
-    /// Returns the motion of the appendages' hinges; `None` without hinges.
-    fn hinges(&self) -> Option<Hinges> {
-        self.three_axis()?.hinges()
-    }
-
-    /// Returns the row of the control moment gyros; `None` without any.
-    fn gyros(&self) -> Option<ControlMomentGyros> {
-        self.loads.actuator.capabilities().momentum?.gyros(self.now)
-    }
-
-    /// Returns the torque that the actuator applies about an axis (N m).
-    fn torque(&self, axis: usize) -> f64 {
-        let truth = self.plant.truth();
-        self.loads.actuator.response(self.now, axis, [truth.rate[axis], truth.rigid_rate[axis]]).applied
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Simulation;
+
+    const TOY: Declared = Declared {
+        group: QuantityGroup::True,
+        name: "toy",
+        unit: Of("rad/s"),
+        extent: Extent::Axes,
+        meaning: text("twice the rate"),
+        given: |_| true,
+        read: |run, out| give(out, run.of_axes(run.plant.truth().rate).map(|rate| 2.0 * rate)),
+    };
+
+    #[test]
+    fn a_row_is_all_that_a_quantity_needs() {
+        let toml = "duration = 1.0\n[law.open]\n[body.spatial]\ninertia = [[3, 0, 0], [0, 2, 0], [0, 0, 2]]\n\
+                    rate = [1e-5, -1e-5, 2e-5]\npoints = [{ name = \"hub\" }]\n\
+                    modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]";
+        let scenario = Scenario::parse("toy.toml", toml).unwrap();
+        let mut simulation = Simulation::new(&scenario, 0);
+        simulation.open(&mut ()).unwrap();
+        let run = simulation.read_view();
+        let fields = run.fields_in(&[TOY], &scenario, true);
+        let [toy] = &fields[..] else { panic!("{fields:?}") };
+        assert_eq!((toy.path().as_str(), toy.unit, toy.shape), ("state.toy", "rad/s", QuantityShape::Vector));
+        assert_eq!(toy.description(2), "Twice the rate");
+        assert_eq!(run.values(&fields), run.plant.truth().rate.map(|rate| 2.0 * rate));
+        assert!(run.fields_in(&[TOY], &scenario, false).is_empty());
+    }
 
     #[test]
     fn every_quantity_has_a_meaning_and_a_name_of_its_own() {

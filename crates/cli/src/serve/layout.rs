@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use flexsc_core::control::law::{Command, CommandQuantity};
-use flexsc_core::control::quantity::Quantity;
+use flexsc_core::control::quantity::QuantityDescription;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{SensorTelemetry, Telemetry, TelemetryLayout};
 
@@ -60,7 +60,7 @@ impl Field {
         Self { name: name.into(), form, unit, components: Vec::new(), meaning: meaning.into() }
     }
 
-    fn measured(name: String, quantity: &Quantity) -> Self {
+    fn measured(name: String, quantity: &QuantityDescription) -> Self {
         let components = quantity.shape.components();
         Self { components, ..Self::new(name, FieldType::F64, quantity.unit, quantity.text(0)) }
     }
@@ -117,9 +117,9 @@ impl PacketLayout {
 
     /// Returns the fields of the packet with the commands.
     pub fn command_fields(&self) -> Vec<Field> {
-        let words: &[&str] = &["torque", "rate_change", "acceleration", "moment"];
         let meaning = "quantity of the command about the axis";
-        let mut quantity = Field::new("command.quantity", FieldType::Word(words), "", meaning);
+        let words = FieldType::Word(&CommandQuantity::LABELS);
+        let mut quantity = Field::new("command.quantity", words, "", meaning);
         let mut value =
             Field::new("command.value", FieldType::F64, "", "command, in the SI unit of its quantity");
         quantity.components = self.axis_names();

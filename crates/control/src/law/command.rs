@@ -49,13 +49,17 @@ impl CommandQuantity {
     /// All quantities, in the order of their codes.
     pub const ALL: [Self; 4] = [Self::Torque, Self::Change, Self::Acceleration, Self::Moment];
 
+    /// Words of all quantities, in the order of their codes.
+    pub const LABELS: [&str; 4] =
+        [Self::ALL[0].label(), Self::ALL[1].label(), Self::ALL[2].label(), Self::ALL[3].label()];
+
     /// Returns the quantity of a word.
     pub fn from_label(label: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|quantity| quantity.label() == label)
     }
 
     /// Returns the word of the quantity in files and packets.
-    pub fn label(self) -> &'static str {
+    pub const fn label(self) -> &'static str {
         match self {
             Self::Torque => "torque",
             Self::Change => "rate_change",

@@ -12,5 +12,5 @@ pub use condition::{Comparison, ConditionFault, Expression, ModeReadings, Vocabu
 pub use mode_condition::ModeCondition;
 pub use mode_tables::{ModeReading, ModeTables, WrittenExit};
 pub use operating_mode::{ModeExit, ModeTarget, OperatingMode, SlewStart};
-pub use quantity::ModeQuantity;
+pub use quantity::{ModeFormula, ModeQuantity};
 pub use sequence::{ModeChange, ModeSequence};

@@ -5,7 +5,7 @@ use std::ops::Range;
 use flexsc_formats::document::{nearest, number_in};
 
 use super::condition::{Comparison, ConditionFault, Expression, Vocabulary};
-use super::quantity::ModeQuantity;
+use super::quantity::{ModeQuantity, ModeWord};
 
 /// Largest length of a condition (bytes), and largest depth of its brackets.
 const LONGEST: usize = 1000;
@@ -139,14 +139,14 @@ impl<'a> Parser<'a> {
         self.skip_spaces();
         let sign = COMPARISONS.into_iter().find(|(sign, _)| self.rest().starts_with(sign));
         let Some((sign, comparison)) = sign else {
-            if quantity.is_flag() {
+            if quantity.is_boolean() {
                 return Ok(Expression::Flag(quantity));
             }
             let part = if self.at == self.text.len() { written.clone() } else { self.next_part() };
             let name = &self.text[written];
             return Err(fault(part, format!("needs one of `<`, `<=`, `>` and `>=` after `{name}`")));
         };
-        if quantity.is_flag() {
+        if quantity.is_boolean() {
             let name = &self.text[written];
             let why = format!("compares `{name}`, which is true or false: write `{name}` or `not {name}`");
             return Err(fault(self.at..self.at + sign.len(), why));
@@ -178,19 +178,18 @@ impl<'a> Parser<'a> {
             return Err(fault(end.saturating_sub(1)..end, "needs a quantity at its end"));
         }
         self.at = part.end;
-        match word {
-            ModeQuantity::SILENT => {
+        match ModeQuantity::from_word(word) {
+            Some(ModeWord::Plain(quantity)) => Ok(quantity),
+            Some(ModeWord::OfSensor(quantity)) => {
                 let (part, name) = self.argument(word, "sensor")?;
                 let index = sensor_index(name, &self.known.sensors);
-                index.map(ModeQuantity::Silent).ok_or_else(|| {
+                index.map(quantity).ok_or_else(|| {
                     let listed = listed(&self.known.sensors);
                     fault(part, format!("must name one of the sensors, {listed}, got `{name}`"))
                 })
             }
-            ModeQuantity::ENTRIES => self.mode(word).map(ModeQuantity::Entries),
-            _ if word == ModeQuantity::ELEVATIONS[0] => self.mode(word).map(ModeQuantity::Elevation),
-            _ if word == ModeQuantity::ELEVATIONS[1] => self.mode(word).map(ModeQuantity::TrueElevation),
-            _ => ModeQuantity::from_word(word).ok_or_else(|| {
+            Some(ModeWord::OfMode(quantity)) => self.mode(word).map(quantity),
+            None => {
                 let why = if word.starts_with("truth.") {
                     "reads the truth, of which `truth.time`, `truth.run_time`, `truth.sunlight` and `truth.elevation(MODE)` \
                      have exact instants; test others on what the law knows"
@@ -201,8 +200,8 @@ impl<'a> Parser<'a> {
                     let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
                     format!("must begin with a quantity, one of {}, got `{word}`{hint}", listed(&words))
                 };
-                fault(part, why)
-            }),
+                Err(fault(part, why))
+            }
         }
     }
 

@@ -1,4 +1,8 @@
-//! Quantities that conditions of modes compare, each with its word and unit.
+//! Quantities that conditions of modes compare, each with its word, its unit and its formula.
+
+use crate::flight_quantity::FlightQuantity::{
+    self, Angle, Field, FieldRate, Rate, ReferenceAngle, ReferenceRate, StoredMomentum, WheelSpeed,
+};
 
 /// Quantity in a condition.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Hash)]
@@ -41,54 +45,112 @@ pub enum ModeQuantity {
     TrueElevation(usize),
 }
 
-/// Words of the quantities without an argument, with their units.
-const WORDS: [(&str, ModeQuantity, &str); 14] = [
-    ("time", ModeQuantity::Time, "s"),
-    ("run_time", ModeQuantity::RunTime, "s"),
-    ("rate", ModeQuantity::Rate, "rad/s"),
-    ("rate_error", ModeQuantity::RateError, "rad/s"),
-    ("attitude_error", ModeQuantity::AttitudeError, "rad"),
-    ("momentum", ModeQuantity::Momentum, "N m s"),
-    ("wheel_speed", ModeQuantity::WheelSpeed, "rad/s"),
-    ("field", ModeQuantity::Field, "T"),
-    ("field_rate", ModeQuantity::FieldRate, "T/s"),
-    ("sunlight", ModeQuantity::Sunlight, ""),
-    ("lock_lost", ModeQuantity::LockLost, ""),
-    ("truth.time", ModeQuantity::TrueTime, "s"),
-    ("truth.run_time", ModeQuantity::TrueRunTime, "s"),
-    ("truth.sunlight", ModeQuantity::TrueSunlight, ""),
+/// Formula of a quantity over what the control system knows.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ModeFormula {
+    /// Value of its own.
+    Single,
+    /// Norm of a vector.
+    Norm(FlightQuantity),
+    /// Norm of the difference of two vectors.
+    Distance(FlightQuantity, FlightQuantity),
+    /// Largest size in a list.
+    LargestSize(FlightQuantity),
+}
+
+impl ModeFormula {
+    /// Iterates over the vectors and lists that the formula reads.
+    pub fn vectors(self) -> impl Iterator<Item = FlightQuantity> {
+        let [first, second] = match self {
+            Self::Single => [None, None],
+            Self::Norm(only) | Self::LargestSize(only) => [Some(only), None],
+            Self::Distance(first, second) => [Some(first), Some(second)],
+        };
+        first.into_iter().chain(second)
+    }
+}
+
+/// Quantity of a word, with its argument.
+#[derive(Copy, Clone, Debug)]
+pub(super) enum ModeWord {
+    /// Quantity without an argument.
+    Plain(ModeQuantity),
+    /// Quantity of a sensor.
+    OfSensor(fn(usize) -> ModeQuantity),
+    /// Quantity of a mode.
+    OfMode(fn(usize) -> ModeQuantity),
+}
+
+use ModeFormula::{Distance, LargestSize, Norm, Single};
+use ModeWord::{OfMode, OfSensor, Plain};
+
+/// Words of the quantities, with their units and formulas.
+const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 18] = [
+    ("time", Plain(ModeQuantity::Time), "s", Single),
+    ("run_time", Plain(ModeQuantity::RunTime), "s", Single),
+    ("rate", Plain(ModeQuantity::Rate), "rad/s", Norm(Rate)),
+    ("rate_error", Plain(ModeQuantity::RateError), "rad/s", Distance(Rate, ReferenceRate)),
+    ("attitude_error", Plain(ModeQuantity::AttitudeError), "rad", Distance(Angle, ReferenceAngle)),
+    ("momentum", Plain(ModeQuantity::Momentum), "N m s", Norm(StoredMomentum)),
+    ("wheel_speed", Plain(ModeQuantity::WheelSpeed), "rad/s", LargestSize(WheelSpeed)),
+    ("field", Plain(ModeQuantity::Field), "T", Norm(Field)),
+    ("field_rate", Plain(ModeQuantity::FieldRate), "T/s", Norm(FieldRate)),
+    ("sunlight", Plain(ModeQuantity::Sunlight), "", Single),
+    ("lock_lost", Plain(ModeQuantity::LockLost), "", Single),
+    ("truth.time", Plain(ModeQuantity::TrueTime), "s", Single),
+    ("truth.run_time", Plain(ModeQuantity::TrueRunTime), "s", Single),
+    ("truth.sunlight", Plain(ModeQuantity::TrueSunlight), "", Single),
+    ("silent", OfSensor(ModeQuantity::Silent), "s", Single),
+    ("entries", OfMode(ModeQuantity::Entries), "", Single),
+    ("elevation", OfMode(ModeQuantity::Elevation), "rad", Single),
+    ("truth.elevation", OfMode(ModeQuantity::TrueElevation), "rad", Single),
 ];
 
 impl ModeQuantity {
-    /// Word of the quantity with a sensor as its argument.
-    pub const SILENT: &'static str = "silent";
-    /// Word of the quantity with a mode as its argument.
-    pub const ENTRIES: &'static str = "entries";
-
-    /// Words of the quantities with a mode, whose target has a ground site, as their argument.
-    pub const ELEVATIONS: [&'static str; 2] = ["elevation", "truth.elevation"];
-
-    /// Returns the quantity of a word without an argument.
-    pub fn from_word(word: &str) -> Option<Self> {
-        WORDS.iter().find(|(known, ..)| *known == word).map(|(_, quantity, _)| *quantity)
+    /// Returns the quantity of a word.
+    pub(super) fn from_word(word: &str) -> Option<ModeWord> {
+        QUANTITIES.iter().find(|(known, ..)| *known == word).map(|(_, quantity, ..)| *quantity)
     }
 
     /// Iterates over the words of all quantities, without arguments.
     pub fn words() -> impl Iterator<Item = &'static str> {
-        WORDS.iter().map(|(word, ..)| *word).chain([Self::SILENT, Self::ENTRIES]).chain(Self::ELEVATIONS)
+        QUANTITIES.iter().map(|(word, ..)| *word)
+    }
+
+    /// Iterates over the vectors and lists that the formulas read.
+    pub fn all_vectors() -> impl Iterator<Item = FlightQuantity> {
+        QUANTITIES.iter().flat_map(|(.., formula)| formula.vectors())
+    }
+
+    /// Returns the unit, and the formula over what the control system knows.
+    fn declaration(self) -> (&'static str, ModeFormula) {
+        let argument = match self {
+            Self::Silent(index)
+            | Self::Elevation(index)
+            | Self::Entries(index)
+            | Self::TrueElevation(index) => index,
+            _ => 0,
+        };
+        let is_own = |word: ModeWord| match word {
+            Plain(quantity) => quantity == self,
+            OfSensor(of) | OfMode(of) => of(argument) == self,
+        };
+        let found = QUANTITIES.iter().find(|(_, word, ..)| is_own(*word));
+        found.map_or(("", Single), |(.., unit, formula)| (*unit, *formula))
     }
 
     /// Returns the unit.
     pub fn unit(self) -> &'static str {
-        match self {
-            Self::Silent(_) => "s",
-            Self::Elevation(_) | Self::TrueElevation(_) => "rad",
-            _ => WORDS.iter().find(|(_, quantity, _)| *quantity == self).map_or("", |(.., unit)| *unit),
-        }
+        self.declaration().0
     }
 
-    /// Returns true for a quantity that is true or false.
-    pub fn is_flag(self) -> bool {
+    /// Returns the formula over what the control system knows.
+    pub fn formula(self) -> ModeFormula {
+        self.declaration().1
+    }
+
+    /// Returns true if the quantity is a boolean.
+    pub fn is_boolean(self) -> bool {
         self == Self::LockLost
     }
 

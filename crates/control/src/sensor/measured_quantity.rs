@@ -3,19 +3,19 @@
 use std::ops::Deref;
 
 use super::{Reading, SensorKind};
-use crate::quantity::{Meaning, Quantity, Shape};
+use crate::quantity::{Meaning, QuantityDescription, QuantityShape};
 
 /// Quantity of a sensor's readings.
 #[derive(Copy, Clone, Debug)]
 pub struct MeasuredQuantity {
-    quantity: Quantity,
+    quantity: QuantityDescription,
     read: fn(&Reading) -> Vec<f64>,
 }
 
 impl Deref for MeasuredQuantity {
-    type Target = Quantity;
+    type Target = QuantityDescription;
 
-    fn deref(&self) -> &Quantity {
+    fn deref(&self) -> &QuantityDescription {
         &self.quantity
     }
 }
@@ -24,15 +24,15 @@ impl MeasuredQuantity {
     fn new(
         name: &'static str,
         unit: &'static str,
-        shape: Shape,
+        shape: QuantityShape,
         meaning: &'static str,
         read: fn(&Reading) -> Vec<f64>,
     ) -> Self {
-        Self { quantity: Quantity { name, unit, shape, meaning: Meaning::Text(meaning) }, read }
+        Self { quantity: QuantityDescription { name, unit, shape, meaning: Meaning::Text(meaning) }, read }
     }
 
     /// Creates a quantity that is a vector, such as a magnetic field.
-    fn sight(name: &'static str, unit: &'static str, shape: Shape, meaning: &'static str) -> Self {
+    fn vector(name: &'static str, unit: &'static str, shape: QuantityShape, meaning: &'static str) -> Self {
         let read = |reading: &Reading| {
             reading.sight.map(|measured| measured.vector).unwrap_or_default().iter().copied().collect()
         };
@@ -49,19 +49,26 @@ impl SensorKind {
     /// Returns the quantities that the sensor measures on a body with `axes` axes, of which it is the source of the attitude
     /// or not; none of a tachometer, whose readings are the speeds of the wheels.
     pub fn measured_quantities(&self, provides_attitude: bool, axes: usize) -> Vec<MeasuredQuantity> {
-        let sight = MeasuredQuantity::sight;
+        let vector = MeasuredQuantity::vector;
         match self {
             Self::Tachometer(_) => Vec::new(),
             Self::Accelerometer(accelerometer) => {
-                let shape = Shape::List(accelerometer.axis_count());
-                vec![sight("specific_force", "m/s²", shape, "specific force along the axes of the sensor")]
+                let shape = QuantityShape::List(accelerometer.axis_count());
+                vec![vector("specific_force", "m/s²", shape, "specific force along the axes of the sensor")]
             }
-            Self::Magnetometer(_) => vec![sight("field", "T", Shape::Vector, "magnetic field in body axes")],
+            Self::Magnetometer(_) => {
+                vec![vector("field", "T", QuantityShape::Vector, "magnetic field in body axes")]
+            }
             Self::SunSensor(_) | Self::SunCells(_) => {
-                vec![sight("direction", "", Shape::Vector, "direction to the Sun in body axes")]
+                vec![vector("direction", "", QuantityShape::Vector, "direction to the Sun in body axes")]
             }
             Self::EarthSensor(_) => {
-                vec![sight("direction", "", Shape::Vector, "direction to the planet's centre in body axes")]
+                vec![vector(
+                    "direction",
+                    "",
+                    QuantityShape::Vector,
+                    "direction to the planet's centre in body axes",
+                )]
             }
             Self::Continuous | Self::Sampled(_) | Self::Gyro(_) | Self::StarTracker(_) | Self::Own(_) => {
                 let attitude = if axes > 1 { measured_attitude } else { measured_angle };
@@ -75,20 +82,24 @@ impl SensorKind {
 
 fn measured_attitude() -> MeasuredQuantity {
     let meaning = "measured rotation from body axes to inertial axes";
-    MeasuredQuantity::new("attitude", "", Shape::Quaternion, meaning, |reading| {
+    MeasuredQuantity::new("attitude", "", QuantityShape::Quaternion, meaning, |reading| {
         let attitude = reading.at.attitude().unwrap_or_default();
         vec![attitude.w, attitude.i, attitude.j, attitude.k]
     })
 }
 
 fn measured_angle() -> MeasuredQuantity {
-    MeasuredQuantity::new("angle", "rad", Shape::Scalar, "measured angle", |reading| {
+    MeasuredQuantity::new("angle", "rad", QuantityShape::Scalar, "measured angle", |reading| {
         reading.at.error_from(&reading.at.difference_origin()).to_vec()
     })
 }
 
 fn measured_rate(axes: usize) -> MeasuredQuantity {
-    MeasuredQuantity::new("rate", "rad/s", Shape::about_axes(axes), "measured rate in body axes", |reading| {
-        reading.rate.unwrap_or_default().to_vec()
-    })
+    MeasuredQuantity::new(
+        "rate",
+        "rad/s",
+        QuantityShape::about_axes(axes),
+        "measured rate in body axes",
+        |reading| reading.rate.unwrap_or_default().to_vec(),
+    )
 }

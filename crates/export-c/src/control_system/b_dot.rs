@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::ActuatorKind;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::time::Span;
@@ -52,8 +53,8 @@ impl BDotLaws {
 
     /// Returns the functions: a sample of the field, and a step of the laws.
     pub(super) fn calls(&self) -> Vec<CallLayout> {
-        let rate = |scale| Channel::real("field_rate", "Rate of change of the field (T/s)", 3, scale);
-        let field = Channel::real("field", "Measured magnetic field, body axes (T)", 3, 3e-5);
+        let rate = |scale| Channel::from_quantity(FlightQuantity::FieldRate, 3, scale);
+        let field = Channel::from_quantity(FlightQuantity::Field, 3, 3e-5);
         let typical = self.limits[0].min(1e6) / self.gains[0];
         let moment = Channel::real("moment", "Magnetic moment along each axis (A m\u{b2})", 3, 1.0);
         vec![

@@ -1,5 +1,7 @@
 //! Inputs and outputs of a call of the control system: arrays of numbers with names, as members of a C struct.
 
+use flexsc_core::control::flight_quantity::{FlightDeclaration, FlightQuantity};
+
 /// Type of the numbers of a channel.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum NumberKind {
@@ -24,13 +26,29 @@ pub struct Channel {
     pub kind: NumberKind,
     /// Typical size of the numbers, for calls with random inputs.
     pub scale: f64,
+    /// Quantity of the run that the channel passes; `None` of one that only flight code has.
+    pub quantity: Option<FlightQuantity>,
 }
 
 impl Channel {
     /// Creates a channel of doubles of this typical size.
     pub fn real(name: &str, about: &str, count: usize, scale: f64) -> Self {
         let (name, about) = (name.to_owned(), about.to_owned());
-        Self { name, about, count, kind: NumberKind::Real, scale }
+        Self { name, about, count, kind: NumberKind::Real, scale, quantity: None }
+    }
+
+    /// Creates a channel of doubles of this typical size that passes a quantity of the run.
+    pub fn from_quantity(quantity: FlightQuantity, count: usize, scale: f64) -> Self {
+        let FlightDeclaration { channel, unit, meaning, .. } = quantity.declaration();
+        let mut about = if unit.is_empty() { meaning.to_owned() } else { format!("{meaning} ({unit})") };
+        about[..1].make_ascii_uppercase();
+        Self { quantity: Some(quantity), ..Self::real(channel, &about, count, scale) }
+    }
+
+    /// Returns the channel with another meaning.
+    #[must_use]
+    pub fn with_about(self, about: &str) -> Self {
+        Self { about: about.to_owned(), ..self }
     }
 
     /// Creates a channel of truth values.

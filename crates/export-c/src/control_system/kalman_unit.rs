@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::estimator::{EstimateOutputs, LinearFilter, linear_filters};
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::numerics::random::Seed;
 use flexsc_flight::kalman::KalmanSample;
 use flexsc_flight::kalman_axis::{KalmanAxis, KalmanFeed};
@@ -118,12 +119,11 @@ impl KalmanUnit {
         let moment = "Mean torque over inertia about each axis since the sample before (rad/s\u{b2})";
         let mut outputs = vec![
             angle("Estimated angle about each axis (rad)", 1.0),
-            Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1.0),
+            Channel::from_quantity(FlightQuantity::Rate, axes, 1.0),
         ];
         if self.gives_mode {
-            let about = "Displacement of the dominant mode (rad)";
-            outputs.push(Channel::real("displacement", about, axes, 1.0));
-            outputs.push(Channel::real("displacement_rate", "Rate of the displacement (rad/s)", axes, 1.0));
+            outputs.push(Channel::from_quantity(FlightQuantity::Displacement, axes, 1.0));
+            outputs.push(Channel::from_quantity(FlightQuantity::DisplacementRate, axes, 1.0));
         }
         outputs.push(Channel::flag("has_lost_lock", "True if the filter has lost lock", axes));
         let sample = CallLayout {

@@ -1,7 +1,8 @@
 //! Inputs of a supervisor of modes, and the readings that its conditions compare.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::operation::{ModeQuantity, ModeReading, ModeTables};
+use flexsc_core::control::flight_quantity::FlightQuantity;
+use flexsc_core::control::operation::{ModeFormula, ModeQuantity, ModeReading, ModeTables};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_flight::mode_condition::ConditionSource;
 use flexsc_flight::mode_readings::{distance, largest_size, norm};
@@ -18,12 +19,8 @@ pub enum ReadingFormula {
     Input(String),
     /// 1 or 0 of an input that is true or false.
     Flag(String),
-    /// Norm of an array.
-    Norm(String),
-    /// Norm of the difference of two arrays.
-    Distance(String, String),
-    /// Largest size in an array.
-    LargestSize(String),
+    /// Formula over arrays.
+    Known(ModeFormula),
 }
 
 /// Inputs of a supervisor.
@@ -43,7 +40,7 @@ impl ModeInputs {
         let mut inputs = Self { channels: Vec::new(), formulas: Vec::new(), axes: scenario.study.axes.len() };
         if has_filter {
             let about = "Target attitude of the present mode: quaternion w, x, y, z";
-            inputs.add(Channel::real("target_attitude", about, 4, 1.0));
+            inputs.add(Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0).with_about(about));
         }
         for (index, reading) in tables.readings.iter().enumerate() {
             let steps = tables.steps.iter();
@@ -67,7 +64,19 @@ impl ModeInputs {
         scale: f64,
         has_filter: bool,
     ) -> ReadingFormula {
-        let axes = self.axes;
+        let formula = match quantity.formula() {
+            ModeFormula::Distance(FlightQuantity::Angle, _) if has_filter => {
+                ModeFormula::Norm(FlightQuantity::Angle)
+            }
+            formula => formula,
+        };
+        if formula != ModeFormula::Single {
+            let given = |vector: &FlightQuantity| {
+                !has_filter || !matches!(vector, FlightQuantity::Angle | FlightQuantity::Rate)
+            };
+            formula.vectors().filter(given).for_each(|vector| self.array(scenario, vector, scale));
+            return ReadingFormula::Known(formula);
+        }
         let sensor_name = |index: usize| {
             let kinds: Vec<&str> = scenario.sensor.iter().map(SensorKind::kind).collect();
             let kind = kinds.get(index).copied().unwrap_or("sensor");
@@ -75,47 +84,6 @@ impl ModeInputs {
             if same > 1 { format!("{kind}_{index}") } else { kind.to_owned() }
         };
         match quantity {
-            ModeQuantity::Rate => {
-                self.rate(scale, has_filter);
-                ReadingFormula::Norm("rate".to_owned())
-            }
-            ModeQuantity::RateError => {
-                self.rate(scale, has_filter);
-                self.add(Channel::real("reference_rate", "Reference: rate (rad/s)", axes, scale));
-                ReadingFormula::Distance("rate".to_owned(), "reference_rate".to_owned())
-            }
-            ModeQuantity::AttitudeError if has_filter => ReadingFormula::Norm("angle".to_owned()),
-            ModeQuantity::AttitudeError => {
-                let about = "Estimated angle from the target of the present mode about each axis (rad)";
-                self.add(Channel::real("angle", about, axes, scale));
-                self.add(Channel::real(
-                    "reference_angle",
-                    "Reference: angle from the target (rad)",
-                    axes,
-                    scale,
-                ));
-                ReadingFormula::Distance("angle".to_owned(), "reference_angle".to_owned())
-            }
-            ModeQuantity::Momentum => {
-                let about = "Momentum stored in the rotors, body axes (N m s)";
-                self.add(Channel::real("stored_momentum", about, 3, scale));
-                ReadingFormula::Norm("stored_momentum".to_owned())
-            }
-            ModeQuantity::WheelSpeed => {
-                let wheels = scenario.study.wheels.as_ref().map_or(1, |wheels| wheels.flight_wheels().len());
-                self.add(Channel::real("wheel_speed", "Speed of each wheel (rad/s)", wheels, scale));
-                ReadingFormula::LargestSize("wheel_speed".to_owned())
-            }
-            ModeQuantity::Field => {
-                let about = "Last measured magnetic field (T); NaN before";
-                self.add(Channel::real("field", about, 3, scale));
-                ReadingFormula::Norm("field".to_owned())
-            }
-            ModeQuantity::FieldRate => {
-                let about = "Change of the field by the last two readings (T/s); NaN before";
-                self.add(Channel::real("field_rate", about, 3, scale));
-                ReadingFormula::Norm("field_rate".to_owned())
-            }
             ModeQuantity::Silent(sensor) => {
                 let about = "Time since the last reading of the sensor, or since it came into use (s)";
                 self.scalar(&format!("silent_{}", sensor_name(sensor)), about, scale)
@@ -136,11 +104,25 @@ impl ModeInputs {
         }
     }
 
-    fn rate(&mut self, scale: f64, has_filter: bool) {
-        if !has_filter {
-            let about = "Estimated rate about each axis (rad/s)";
-            self.add(Channel::real("rate", about, self.axes, scale));
-        }
+    /// Adds the input of an array.
+    fn array(&mut self, scenario: &Scenario, quantity: FlightQuantity, scale: f64) {
+        let (count, about) = match quantity {
+            FlightQuantity::Angle => {
+                (self.axes, "Estimated angle from the target of the present mode about each axis (rad)")
+            }
+            FlightQuantity::Field => (3, "Last measured magnetic field (T); NaN before"),
+            FlightQuantity::FieldRate => {
+                (3, "Change of the field by the last two readings (T/s); NaN before")
+            }
+            FlightQuantity::StoredMomentum => (3, ""),
+            FlightQuantity::WheelSpeed => {
+                let wheels = scenario.study.wheels.as_ref();
+                (wheels.map_or(1, |wheels| wheels.flight_wheels().len()), "")
+            }
+            _ => (self.axes, ""),
+        };
+        let channel = Channel::from_quantity(quantity, count, scale);
+        self.add(if about.is_empty() { channel } else { channel.with_about(about) });
     }
 
     fn scalar(&mut self, name: &str, about: &str, scale: f64) -> ReadingFormula {
@@ -165,8 +147,8 @@ impl ModeInputs {
         self.formulas.iter().position(is_own)
     }
 
-    /// Returns true if an input is true or false.
-    pub fn is_flag(&self, name: &str) -> bool {
+    /// Returns true if an input is a boolean.
+    pub fn is_boolean(&self, name: &str) -> bool {
         let flag = ReadingFormula::Flag(name.to_owned());
         self.formulas.contains(&flag)
     }
@@ -195,27 +177,30 @@ impl ModeInputs {
             }
             Vec::new()
         };
-        let array = |name: &str| match (filter, name) {
-            (Some(unit), "rate") => {
+        let array = |quantity: FlightQuantity| match (filter, quantity) {
+            (Some(unit), FlightQuantity::Rate) => {
                 let rate = unit.estimator.rate(&unit.entries);
                 vec![rate.x, rate.y, rate.z]
             }
-            (Some(unit), "angle") => {
+            (Some(unit), FlightQuantity::Angle) => {
                 let attitude = unit.estimator.attitude(now, &unit.entries);
                 let angle = Self::target(inputs).rotation_to(&attitude);
                 vec![angle.x, angle.y, angle.z]
             }
-            _ => given(name),
+            _ => given(quantity.channel()),
         };
         let value = |formula: &ReadingFormula| match formula {
-            ReadingFormula::Input(name) => given(name).first().copied().unwrap_or(f64::NAN),
             ReadingFormula::Flag(name) => {
                 let is_set = given(name).first().is_some_and(|value| value.to_bits() != 0);
                 f64::from(u8::from(is_set))
             }
-            ReadingFormula::Norm(name) => norm(&array(name)),
-            ReadingFormula::Distance(name, other) => distance(&array(name), &array(other)),
-            ReadingFormula::LargestSize(name) => largest_size(&array(name)),
+            ReadingFormula::Input(name) => given(name).first().copied().unwrap_or(f64::NAN),
+            ReadingFormula::Known(ModeFormula::Norm(vector)) => norm(&array(*vector)),
+            ReadingFormula::Known(ModeFormula::Distance(one, other)) => {
+                distance(&array(*one), &array(*other))
+            }
+            ReadingFormula::Known(ModeFormula::LargestSize(list)) => largest_size(&array(*list)),
+            ReadingFormula::Known(ModeFormula::Single) => f64::NAN,
         };
         self.formulas.iter().map(value).collect()
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::control::operation::ModeTables;
 use flexsc_core::{Scenario, ScenarioError};
@@ -43,9 +44,9 @@ impl StepLayout {
             modes.iter().map(|mode| mode.start.as_ref().map(SampledLaws::layout)).collect();
         let mut inputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.inputs));
         if has_estimator {
-            inputs.retain(|channel| channel.name != "angle" && channel.name != "rate");
-            let about = "Target attitude: quaternion w, x, y, z";
-            inputs.insert(0, Channel::real("target_attitude", about, 4, 1.0));
+            let estimates = [FlightQuantity::Angle, FlightQuantity::Rate];
+            inputs.retain(|channel| !channel.quantity.is_some_and(|own| estimates.contains(&own)));
+            inputs.insert(0, Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0));
         }
         let outputs = each_once(laws.iter().flatten().flat_map(|layout| &layout.outputs));
         Self { inputs, outputs, laws }

@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_flight::rigid_rate::RigidRateFilter;
 
 use super::{CallLayout, Channel, WordReader};
@@ -33,7 +34,7 @@ impl RateUnit {
                 Channel::real("rate", "Measured rate about each axis (rad/s)", axes, 1e-3),
                 Channel::real("rate_change", about, axes, 1e-5),
             ],
-            outputs: vec![Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1.0)],
+            outputs: vec![Channel::from_quantity(FlightQuantity::Rate, axes, 1.0)],
         }
     }
 

@@ -1,6 +1,7 @@
 //! Laws that decide at their period: estimates and references in, torques about the axes and of wheels out.
 
 use flexsc_core::Scenario;
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
 use flexsc_core::numerics::flight_types::to_matrix3;
 use flexsc_core::numerics::time::Span;
@@ -19,7 +20,7 @@ use super::attitude_unit::{AttitudeUnit, quaternion};
 use super::kalman_unit::KalmanUnit;
 use super::laws_of_axes::{LawsOfAxes, WheelDistribution, compensator_commands, jets, laws_of_axes, wheels};
 use super::rate_unit::RateUnit;
-use super::{CallLayout, Channel, NotExportable, WordReader};
+use super::{CallLayout, Channel, NotExportable, NumberKind, WordReader};
 
 /// Laws of a scenario that decide at their period.
 #[derive(Clone, Debug)]
@@ -148,59 +149,49 @@ impl SampledLaws {
     pub fn layout(&self) -> CallLayout {
         let axes = self.axis_count();
         let mut inputs = if self.estimator.is_some() {
-            vec![Channel::real("target_attitude", "Target attitude: quaternion w, x, y, z", 4, 1.0)]
+            vec![Channel::from_quantity(FlightQuantity::TargetAttitude, 4, 1.0)]
         } else if self.filter.is_some() {
             Vec::new()
         } else {
-            let about = "Estimated angle from the target about each axis (rad)";
-            let rate = Channel::real("rate", "Estimated rate about each axis (rad/s)", axes, 1e-3);
-            let rate = Some(rate).filter(|_| self.rate_filter.is_none());
-            [Channel::real("angle", about, axes, 1e-2)].into_iter().chain(rate).collect()
+            let rate = Some(Channel::from_quantity(FlightQuantity::Rate, axes, 1e-3));
+            let rate = rate.filter(|_| self.rate_filter.is_none());
+            [Channel::from_quantity(FlightQuantity::Angle, axes, 1e-2)].into_iter().chain(rate).collect()
         };
         if self.reads_mode() && self.filter.is_none() {
-            inputs.push(Channel::real("displacement", "Displacement of the dominant mode (rad)", axes, 1e-3));
-            inputs.push(Channel::real("displacement_rate", "Rate of the displacement (rad/s)", axes, 1e-3));
-            inputs.push(Channel::real("frequency", "Frequency of the dominant mode (rad/s)", axes, 2.0));
+            inputs.push(Channel::from_quantity(FlightQuantity::Displacement, axes, 1e-3));
+            inputs.push(Channel::from_quantity(FlightQuantity::DisplacementRate, axes, 1e-3));
+            inputs.push(Channel::from_quantity(FlightQuantity::Frequency, axes, 2.0));
         }
         if matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
-            let about = "Commanded change of the rate that is not yet executed (rad/s)";
-            inputs.push(Channel::real("queued_rate", about, axes, 1e-5));
+            inputs.push(Channel::from_quantity(FlightQuantity::QueuedRate, axes, 1e-5));
         }
         let modes = self.mode_count();
         if modes > 0 {
             let all = axes * modes;
-            inputs.push(Channel::real(
-                "mode_rate",
-                "Elastic rate of each mode about each axis (rad/s)",
-                all,
-                1e-4,
-            ));
-            inputs.push(Channel::real("mode_frequency", "Frequency of each mode (rad/s)", all, 2.0));
-            let about = "Jump of the elastic rate per unit jump of the rigid rate; 0 for no mode";
-            inputs.push(Channel::real("mode_influence", about, all, 1.0));
-            inputs.push(Channel::flag("modes_are_trusted", "True if the law may act on the modes", axes));
+            inputs.push(Channel::from_quantity(FlightQuantity::ElasticRate, all, 1e-4));
+            inputs.push(Channel::from_quantity(FlightQuantity::ElasticFrequency, all, 2.0));
+            inputs.push(Channel::from_quantity(FlightQuantity::ElasticInfluence, all, 1.0));
+            let trust = Channel::from_quantity(FlightQuantity::ElasticTrust, axes, 1.0);
+            inputs.push(Channel { kind: NumberKind::Flag, ..trust });
         }
-        inputs.push(Channel::real("reference_angle", "Reference: angle from the target (rad)", axes, 1e-2));
-        inputs.push(Channel::real("reference_rate", "Reference: rate (rad/s)", axes, 1e-3));
+        inputs.push(Channel::from_quantity(FlightQuantity::ReferenceAngle, axes, 1e-2));
+        inputs.push(Channel::from_quantity(FlightQuantity::ReferenceRate, axes, 1e-3));
         let mut outputs = Vec::new();
         if matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
             let about = "Change of the rate by pulses about each axis (rad/s)";
             outputs.push(Channel::real("rate_change", about, axes, 1.0));
         }
         if self.is_acceleration() {
-            let about = "Reference: acceleration (rad/s\u{b2})";
-            inputs.push(Channel::real("reference_acceleration", about, axes, 1e-4));
-            let about = "Momentum stored in the rotors, body axes (N m s)";
-            inputs.push(Channel::real("stored_momentum", about, 3, 1.0));
+            inputs.push(Channel::from_quantity(FlightQuantity::ReferenceAcceleration, axes, 1e-4));
+            inputs.push(Channel::from_quantity(FlightQuantity::StoredMomentum, 3, 1.0));
             let about = "Acceleration about each axis (rad/s\u{b2})";
             outputs.push(Channel::real("acceleration", about, axes, 1.0));
         }
         if self.speed_count() > 0 {
-            let about = "Speed of each wheel (rad/s)";
-            inputs.push(Channel::real("wheel_speed", about, self.speed_count(), 100.0));
+            inputs.push(Channel::from_quantity(FlightQuantity::WheelSpeed, self.speed_count(), 100.0));
         }
         if !matches!(self.laws, LawsOfAxes::PhasePlane(..)) {
-            outputs.push(Channel::real("torque", "Torque about each axis (N m)", axes, 1.0));
+            outputs.push(Channel::from_quantity(FlightQuantity::Torque, axes, 1.0));
         }
         if let Some(wheels) = &self.wheels {
             let about = "Torque of the motor of each wheel on its rotor (N m)";

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use flexsc_core::control::flight_quantity::FlightQuantity;
+use flexsc_core::control::operation::ModeFormula;
+
 use super::initialiser::initialiser;
 use super::signature::{has_time, signature};
 use super::{Plan, calls, estimator_calls, header};
@@ -181,9 +184,10 @@ fn enter(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     );
 }
 
-/// Returns an array of the inputs as two arguments; `angle` and `rate` are those of the attitude filter if there is one.
-fn array_argument(modes: &ModeSystem, name: &str) -> String {
-    let channel = modes.inputs.channels.iter().find(|channel| channel.name == name);
+/// Returns an array of the inputs as two arguments; angle and rate are those of the attitude filter if there is one.
+fn array_argument(modes: &ModeSystem, quantity: FlightQuantity) -> String {
+    let name = quantity.channel();
+    let channel = modes.inputs.channels.iter().find(|channel| channel.quantity == Some(quantity));
     match channel {
         Some(Channel { count: 1, .. }) => format!("&input->{name}, 1"),
         Some(Channel { count, .. }) => format!("input->{name}, {count}"),
@@ -197,9 +201,9 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
     let (formulas, entries) =
         (&modes.inputs.formulas, modes.estimator.as_ref().map(|unit| unit.entries.len()));
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[modes.call_index("supervise")]));
-    let reads = |wanted: &str| {
+    let reads = |wanted: FlightQuantity| {
         formulas.iter().any(|formula| match formula {
-            ReadingFormula::Norm(name) | ReadingFormula::Distance(name, _) => name == wanted,
+            ReadingFormula::Known(formula) => formula.vectors().any(|vector| vector == wanted),
             _ => false,
         })
     };
@@ -210,10 +214,10 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
              const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
              const {prefix}_vector3 rotation = quaternion_rotation_to(&target, &attitude);"
         );
-        if reads("angle") {
+        if reads(FlightQuantity::Angle) {
             text.push_str("    const double angle[3] = { rotation.x, rotation.y, rotation.z };\n");
         }
-        if reads("rate") {
+        if reads(FlightQuantity::Rate) {
             let _ = writeln!(
                 text,
                 "    const {prefix}_vector3 estimated_rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});\n    \
@@ -231,13 +235,15 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         let value = match formula {
             ReadingFormula::Input(name) => format!("input->{name}"),
             ReadingFormula::Flag(name) => format!("input->{name} ? 1.0 : 0.0"),
-            ReadingFormula::Norm(name) => format!("mode_readings_norm({})", array_argument(modes, name)),
-            ReadingFormula::Distance(name, other) => {
-                let [first, second] = [name, other].map(|name| array_argument(modes, name));
-                format!("mode_readings_distance({first}, {second})")
-            }
-            ReadingFormula::LargestSize(name) => {
-                format!("mode_readings_largest_size({})", array_argument(modes, name))
+            ReadingFormula::Known(formula) => {
+                let function = match formula {
+                    ModeFormula::Single | ModeFormula::Norm(_) => "norm",
+                    ModeFormula::Distance(..) => "distance",
+                    ModeFormula::LargestSize(_) => "largest_size",
+                };
+                let arrays: Vec<String> =
+                    formula.vectors().map(|vector| array_argument(modes, vector)).collect();
+                format!("mode_readings_{function}({})", arrays.join(", "))
             }
         };
         let _ = writeln!(text, "    readings[{index}] = {value};");

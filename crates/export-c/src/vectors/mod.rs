@@ -9,6 +9,7 @@ mod samples;
 
 use std::fmt;
 
+use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::{Command, DecisionCause};
 use flexsc_core::control::sensor::Orientation;
 use flexsc_core::numerics::time::{Instant, Span};
@@ -198,45 +199,61 @@ fn step_inputs(channels: &[Channel], decision: &ControlDecision) -> Vec<u64> {
     let references: Vec<_> = axes.iter().map(|axis| axis.goal.flight_reference(decision.now)).collect();
     let mut words = Vec::new();
     for channel in channels {
-        match channel.name.as_str() {
-            "target_attitude" => {
+        let Some(quantity) = channel.quantity else {
+            words.extend(std::iter::repeat_n(0.0, channel.count));
+            continue;
+        };
+        match quantity {
+            FlightQuantity::TargetAttitude => {
                 if let Orientation::Attitude(q) = decision.origin {
                     words.extend([q.w, q.i, q.j, q.k]);
                 }
             }
-            "angle" => words.extend(axes.iter().map(|axis| axis.estimate.angle)),
-            "rate" => words.extend(axes.iter().map(|axis| axis.estimate.rate)),
-            "displacement" => words.extend(axes.iter().map(|axis| axis.estimate.dominant.displacement)),
-            "displacement_rate" => words.extend(axes.iter().map(|axis| axis.estimate.dominant.rate)),
-            "frequency" => words.extend(axes.iter().map(|axis| axis.estimate.dominant.frequency)),
-            "queued_rate" => words.extend(axes.iter().map(|axis| axis.estimate.queued_rate)),
-            "reference_angle" => words.extend(references.iter().map(|reference| reference.angle)),
-            "reference_rate" => words.extend(references.iter().map(|reference| reference.rate)),
-            "reference_acceleration" => {
+            FlightQuantity::Angle => words.extend(axes.iter().map(|axis| axis.estimate.angle)),
+            FlightQuantity::Rate => words.extend(axes.iter().map(|axis| axis.estimate.rate)),
+            FlightQuantity::Displacement => {
+                words.extend(axes.iter().map(|axis| axis.estimate.dominant.displacement));
+            }
+            FlightQuantity::DisplacementRate => {
+                words.extend(axes.iter().map(|axis| axis.estimate.dominant.rate));
+            }
+            FlightQuantity::Frequency => {
+                words.extend(axes.iter().map(|axis| axis.estimate.dominant.frequency));
+            }
+            FlightQuantity::QueuedRate => words.extend(axes.iter().map(|axis| axis.estimate.queued_rate)),
+            FlightQuantity::ReferenceAngle => {
+                words.extend(references.iter().map(|reference| reference.angle));
+            }
+            FlightQuantity::ReferenceRate => words.extend(references.iter().map(|reference| reference.rate)),
+            FlightQuantity::ReferenceAcceleration => {
                 words.extend(references.iter().map(|reference| reference.acceleration));
             }
-            "wheel_speed" => {
+            FlightQuantity::WheelSpeed => {
                 let known = axes.first().map_or(&[][..], |axis| &axis.wheel_speeds);
                 words.extend((0..channel.count).map(|wheel| known.get(wheel).copied().unwrap_or(0.0)));
             }
-            "stored_momentum" => words.extend(decision.stored_momentum),
-            "mode_rate" | "mode_frequency" | "mode_influence" => {
+            FlightQuantity::StoredMomentum => words.extend(decision.stored_momentum),
+            FlightQuantity::ElasticRate
+            | FlightQuantity::ElasticFrequency
+            | FlightQuantity::ElasticInfluence => {
                 let modes = channel.count / axes.len();
                 for axis in axes {
                     words.extend((0..modes).map(|mode| {
                         let mode = axis.estimate.elastic.get(mode).copied().unwrap_or_default();
-                        match channel.name.as_str() {
-                            "mode_rate" => mode.rate,
-                            "mode_frequency" => mode.frequency,
+                        match quantity {
+                            FlightQuantity::ElasticRate => mode.rate,
+                            FlightQuantity::ElasticFrequency => mode.frequency,
                             _ => mode.influence,
                         }
                     }));
                 }
             }
             // Truth values are words 0 and 1.
-            "modes_are_trusted" => words
+            FlightQuantity::ElasticTrust => words
                 .extend(axes.iter().map(|axis| f64::from_bits(u64::from(axis.estimate.elastic_is_trusted)))),
-            _ => words.extend(std::iter::repeat_n(0.0, channel.count)),
+            FlightQuantity::Field | FlightQuantity::FieldRate | FlightQuantity::Torque => {
+                words.extend(std::iter::repeat_n(0.0, channel.count));
+            }
         }
     }
     words.into_iter().map(f64::to_bits).collect()

@@ -1,6 +1,5 @@
 //! Tests of conditions and decisions of modes of operation as calls of their control system.
 
-use flexsc_core::control::sensor::Orientation;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::{ControlDecision, ModeTrial};
 use flexsc_flight::ticks::Ticks;
@@ -24,30 +23,17 @@ pub(super) fn replay_trial(
 /// Returns the words of the inputs of the supervisor.
 fn trial_inputs(modes: &ModeSystem, trial: &ModeTrial) -> Vec<u64> {
     let mut words: Vec<u64> = Vec::new();
-    let mut add = |values: &[f64]| words.extend(values.iter().map(|value| value.to_bits()));
-    let column = |rows: &[[f64; 2]], index: usize| rows.iter().map(|row| row[index]).collect::<Vec<f64>>();
     for channel in &modes.inputs.channels {
-        match channel.name.as_str() {
-            "angle" => add(&column(&trial.estimates, 0)),
-            "rate" => add(&column(&trial.estimates, 1)),
-            "reference_angle" => add(&column(&trial.reference, 0)),
-            "reference_rate" => add(&column(&trial.reference, 1)),
-            "target_attitude" => {
-                if let Orientation::Attitude(q) = trial.origin {
-                    add(&[q.w, q.i, q.j, q.k]);
-                }
-            }
-            "stored_momentum" => add(&trial.stored_momentum),
-            "wheel_speed" => add(&trial.wheel_speeds),
-            "field" => add(&trial.field[0]),
-            "field_rate" => add(&trial.field[1]),
-            name => {
-                let value = modes.inputs.index_of(name).map_or(f64::NAN, |index| trial.readings[index]);
-                // Truth values are words 0 and 1.
-                let is_flag = modes.inputs.is_flag(name);
-                add(&[if is_flag { f64::from_bits(u64::from(value == 1.0)) } else { value }]);
-            }
+        let known =
+            channel.quantity.and_then(|own| trial.known.iter().find(|(quantity, _)| *quantity == own));
+        if let Some((_, values)) = known {
+            words.extend(values.iter().map(|value| value.to_bits()));
+            continue;
         }
+        let name = channel.name.as_str();
+        let value = modes.inputs.index_of(name).map_or(f64::NAN, |index| trial.readings[index]);
+        // Truth values are words 0 and 1.
+        words.push(if modes.inputs.is_boolean(name) { u64::from(value == 1.0) } else { value.to_bits() });
     }
     words
 }
