@@ -201,8 +201,11 @@ fn the_default_is_a_torque_on_the_hub() {
     assert_eq!(rows(""), rows("--set manoeuvre.load={hub=2.0}"));
 }
 
+/// Name of a case, its keys with their values, and words of its error.
+type Refused = (&'static str, &'static [(&'static str, &'static str)], &'static [&'static str]);
+
 #[rustfmt::skip] // One case a line.
-const REFUSED: &[(&str, &[(&str, &str)], &[&str])] = &[
+const REFUSED: &[Refused] = &[
     ("few sections", &[("manoeuvre.load", "{ sections = [0, 1, 0] }")], &["`manoeuvre.load.sections` must have one number for each of 4 sections, got 3"]),
     ("a number for sections", &[("manoeuvre.load", "{ sections = 1.0 }")], &["`manoeuvre.load.sections` must be an array with one number for each section, got 1"]),
     ("a list for the hub", &[("manoeuvre.load", "{ hub = [1.0] }")], &["`manoeuvre.load.hub` must be a number, got an array"]),
