@@ -127,7 +127,7 @@ const TABLE: &str = "crates/sim/src/quantities.rs";
 #[test]
 fn a_quantity_is_declared_in_one_file() {
     let mut all = Vec::new();
-    for part in ENGINE.into_iter().chain(["cli", "cosim", "export-c", "figure", "fmi", "papers", "py"]) {
+    for part in ENGINE.into_iter().chain(["cli", "export-c", "figure", "fmi", "papers", "py"]) {
         sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut all);
     }
     for quantity in QUANTITIES {
