@@ -2,8 +2,6 @@
 //!
 //! Golden numbers: tests/golden/plate_oracle.py, mpmath.
 
-#![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
-
 use flexsc_core::Scenario;
 use flexsc_core::numerics::attitude::{Vector, vector};
 
@@ -11,14 +9,14 @@ use crate::craft::near;
 use crate::traces::{column, traced};
 
 /// Participations over sqrt(m) and sqrt(m) L.
-const TRANSLATION: f64 = 0.7829917560396257365;
-const ROTATION: f64 = 0.56882574370991074181;
+const TRANSLATION: f64 = 0.782_991_756_039_625_8;
+const ROTATION: f64 = 0.568_825_743_709_910_8;
 /// Place over L, displacement times sqrt(m), slope times sqrt(m) L.
 const SHAPE: [[f64; 3]; 4] = [
-    [0.25, 0.19457161670742363158, 1.4561861340987684418],
-    [0.5, 0.67904622573064783422, 2.326108900682365099],
-    [0.8, 1.4509553834680020576, 2.7223128322691008552],
-    [1.0, 2.0, 2.7530109693450695559],
+    [0.25, 0.194_571_616_707_423_62, 1.456_186_134_098_768_5],
+    [0.5, 0.679_046_225_730_647_9, 2.326_108_900_682_365],
+    [0.8, 1.450_955_383_468_002, 2.722_312_832_269_101],
+    [1.0, 2.0, 2.753_010_969_345_069_7],
 ];
 
 /// A 6U CubeSat with one panel, of which `panel` has the keys that differ.

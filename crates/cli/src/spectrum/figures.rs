@@ -113,7 +113,7 @@ fn waterfall(name: &str, wheels: &WheelSpectrum, (index, output): (usize, &Outpu
         }
         None => vec![over_speed("", colour::BLUE, rms)],
     };
-    let size = FigureAxis::decades(&format!("rms ({})", output.unit), "", all.into_iter());
+    let size = FigureAxis::decades(&format!("rms ({})", output.unit), "", all);
     let panels = vec![Panel::new(frequency, speed(), layers), Panel::new(speed(), size, curves)];
     Figure { title: format!("{name}: lines of the wheels in {}", output.output), panels, panel_height: 260 }
 }

@@ -12,6 +12,9 @@ use crate::say;
 /// Selection of a line under a harmonic of a wheel.
 type LineOf<'a> = &'a dyn Fn(&WheelLines) -> Option<SpectralLine>;
 
+/// Value of an index over windows.
+type IndexOf = fn(&WindowRms) -> Option<f64>;
+
 /// Prints the largest direct line and the largest alias of each output.
 pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
     let (factor, unit) = units.frequency();
@@ -78,7 +81,7 @@ pub fn table(report: &NoiseReport, wheels: &WheelSpectrum) -> NumberTable {
         columns.push(format!("{name}_rms"));
         lists.push(wheels.rms[index].iter().map(|rms| Some(*rms)).collect());
         let Some(over_speed) = wheels.windows.get(index) else { continue };
-        let indices: [(&str, fn(&WindowRms) -> Option<f64>); 7] = [
+        let indices: [(&str, IndexOf); 7] = [
             ("mpe", |of| Some(of.mpe)),
             ("rpe_uniform", |of| Some(of.rpe_uniform)),
             ("rpe_end", |of| Some(of.rpe_end)),
@@ -87,8 +90,7 @@ pub fn table(report: &NoiseReport, wheels: &WheelSpectrum) -> NumberTable {
             ("beyond_smear", |of| Some(of.beyond_smear)),
             ("pde", |of| of.pde),
         ];
-        let is_given =
-            |value: &fn(&WindowRms) -> Option<f64>| over_speed.iter().any(|of| value(of).is_some());
+        let is_given = |value: &IndexOf| over_speed.iter().any(|of| value(of).is_some());
         for (index, value) in indices.into_iter().filter(|(_, value)| is_given(value)) {
             columns.push(format!("{name}_{index}"));
             lists.push(over_speed.iter().map(value).collect());
