@@ -69,7 +69,7 @@ fn the_mode_is_the_first_of_a_uniform_cantilever() {
     }
 }
 
-/// The same panel written out has the same run, to rounding.
+/// A panel whose mode is written out has the same run, to rounding.
 #[test]
 fn a_plate_moves_as_its_mode_written_out() {
     let (mass, length, width) = (0.35_f64, 0.3, 0.2);

@@ -366,10 +366,6 @@ fn lines_of_wheels_have_indices_over_speed() {
     dir.run(&format!("{line} -o figures")).exits(0);
     let figure = String::from_utf8(dir.read("figures/wheel-run-up-waterfall_yaw.svg")).expect("text");
     assert!(figure.contains("RPE uniform, 0.02 s"));
-    // Without a window, nothing is added.
-    let plain =
-        dir.run("spectrum wheel-run-up.toml --signal yaw --speeds 46.45:92.9:3 --json").exits(0).json();
-    assert!(plain["wheels"].get("windows").is_none());
 }
 
 /// The pointing errors of a log are those of the mean axes of this body, and not the angles at its sensor, which modes turn.

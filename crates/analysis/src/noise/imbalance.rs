@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::lines::{LineLoop, OutputLines, SineLoad};
-use super::report::WindowRms;
 use super::speed_grid::{ResonantSpeed, resonant_speeds};
+use super::window_rms::WindowRms;
 use super::windows::Window;
 use flexsc_scenario::Scenario;
 

@@ -30,6 +30,7 @@ mod schedule;
 mod source;
 mod speed_grid;
 mod welch;
+mod window_rms;
 mod windows;
 
 pub use density::{OutputDensity, cumulative_rms};
@@ -37,7 +38,8 @@ pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};
 pub use output_samples::OutputSamples;
-pub use report::{NoiseReport, NoiseRequest, OutputNoise, WindowRms};
+pub use report::{NoiseReport, NoiseRequest, OutputNoise};
 pub use sample_times::{SamplePlace, SampleSets, SampleTimes};
 pub use welch::NarrowestPeak;
+pub use window_rms::WindowRms;
 pub use windows::{Window, WindowVariances, WindowWeights};

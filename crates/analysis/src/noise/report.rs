@@ -5,9 +5,10 @@ use serde::Serialize;
 
 use super::density::cumulative_rms;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
-use super::lines::{LineLoop, SpectralLine};
+use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
-use super::windows::{Window, WindowVariances, WindowWeights};
+use super::window_rms::WindowRms;
+use super::windows::Window;
 use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
@@ -68,30 +69,6 @@ pub struct OutputNoise {
     /// Indices over windows, if a window is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<WindowRms>,
-}
-
-/// Rms of an output over windows, in the unit of the output: of noise over those that begin at a sample of the law, of the
-/// lines of wheels over those that begin at any time.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct WindowRms {
-    /// Length of the window (s).
-    pub window_s: f64,
-    /// Time from the start of a window to that of the next (s).
-    pub separation_s: Option<f64>,
-    /// Mean over the window: mean performance error, displacement of an exposure.
-    pub mpe: f64,
-    /// Output less the mean, at any time of the window: relative performance error, jitter of an exposure with its smear.
-    pub rpe_uniform: f64,
-    /// Output less the mean, at the end of the window.
-    pub rpe_end: f64,
-    /// Output less the mean, in the middle of the window.
-    pub rpe_middle: f64,
-    /// Straight line through the output, about its mean: smear of an exposure.
-    pub smear: f64,
-    /// Rest beyond mean and straight line.
-    pub beyond_smear: f64,
-    /// Difference of the means over two windows: performance drift or reproducibility error; none without a separation.
-    pub pde: Option<f64>,
 }
 
 impl NoiseReport {
@@ -205,44 +182,4 @@ fn wheel_spectrum(
         return Err(NoiseError::Request(why.to_owned()));
     };
     Ok(Some(found))
-}
-
-impl WindowRms {
-    /// Returns the rms over windows of sines whose phases are unrelated.
-    pub fn of_lines(lines: impl Iterator<Item = SpectralLine>, window: Window) -> Self {
-        let mut sum = WindowVariances::default();
-        for SpectralLine { frequency_rad_s, amplitude } in lines {
-            let square = 0.5 * amplitude * amplitude;
-            let weights = WindowWeights::new(frequency_rad_s, window);
-            sum.total += square;
-            sum.mpe += square * weights.mpe;
-            sum.rpe_uniform += square * weights.rpe_uniform;
-            sum.rpe_end += square * weights.rpe_end;
-            sum.rpe_middle += square * weights.rpe_middle;
-            sum.smear += square * weights.smear;
-            sum.pde += square * weights.pde;
-        }
-        Self::of_variances(&[sum], window)
-    }
-
-    /// Returns the rms of an output over windows, from all sources together.
-    fn new(noisy: &NoisyLoop, output: usize, window: Window) -> Result<Self, String> {
-        Ok(Self::of_variances(&noisy.window_variances(output, window)?, window))
-    }
-
-    /// Returns the rms over windows of several sources together.
-    fn of_variances(each: &[WindowVariances], window: Window) -> Self {
-        let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());
-        Self {
-            window_s: window.length,
-            separation_s: window.separation,
-            mpe: rms(|index| index.mpe),
-            rpe_uniform: rms(|index| index.rpe_uniform),
-            rpe_end: rms(|index| index.rpe_end),
-            rpe_middle: rms(|index| index.rpe_middle),
-            smear: rms(|index| index.smear),
-            beyond_smear: rms(WindowVariances::beyond_smear),
-            pde: window.separation.map(|_| rms(|index| index.pde)),
-        }
-    }
 }

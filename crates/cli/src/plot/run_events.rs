@@ -9,7 +9,6 @@ use flexsc_core::record::{Column, Columns, Log};
 
 use super::columns::{labels, rows, topics};
 use super::motion::{MotionData, MotionRecorder};
-use super::sky;
 use crate::error::CliError;
 
 /// Run of a log.
@@ -137,7 +136,7 @@ impl RunEvents {
             objective,
             steps,
             modes,
-            blinded: sky::blinded(&blinding, end),
+            blinded: blinded(&blinding, end),
         })
     }
 
@@ -205,4 +204,25 @@ fn switchings(columns: &Columns) -> Vec<SwitchingEvent> {
         SwitchingEvent { time, state, timeout: cause == "timeout", torque, angle, rate }
     };
     numbers.zip(words).map(switching).collect()
+}
+
+/// Returns the intervals in which any star tracker is blinded (s), from the rows of `/blinding`.
+fn blinded(blinding: &Columns, end: f64) -> Vec<[f64; 2]> {
+    let mut intervals = Vec::new();
+    let (mut count, mut since) = (0_usize, 0.0);
+    for ([time], onset) in rows(blinding, ["time_s"]).zip(labels(blinding, "onset")) {
+        if onset == "begins" {
+            since = if count == 0 { time } else { since };
+            count += 1;
+        } else {
+            count = count.saturating_sub(1);
+            if count == 0 {
+                intervals.push([since, time]);
+            }
+        }
+    }
+    if count > 0 {
+        intervals.push([since, end]);
+    }
+    intervals
 }

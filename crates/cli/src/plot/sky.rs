@@ -1,9 +1,8 @@
 //! Bands of eclipses and of blinded star trackers in every figure over time.
 
-use flexsc_core::record::{Columns, Light, Orbit};
+use flexsc_core::record::{Light, Orbit};
 use flexsc_figure::{Figure, Layer, LayerShape, Panel, Point, RGBColor, Scale, colour};
 
-use super::columns::{labels, rows};
 use super::cycle_data::CycleData;
 use super::run_events::RunEvents;
 use super::time;
@@ -66,25 +65,4 @@ fn eclipses(cycles: &CycleData, end: f64) -> Vec<[f64; 2]> {
     }
     eclipses.extend(since.map(|from| [from, end]));
     eclipses
-}
-
-/// Returns the intervals in which any star tracker is blinded (s), from the rows of `/blinding`.
-pub fn blinded(blinding: &Columns, end: f64) -> Vec<[f64; 2]> {
-    let mut intervals = Vec::new();
-    let (mut count, mut since) = (0_usize, 0.0);
-    for ([time], onset) in rows(blinding, ["time_s"]).zip(labels(blinding, "onset")) {
-        if onset == "begins" {
-            since = if count == 0 { time } else { since };
-            count += 1;
-        } else {
-            count = count.saturating_sub(1);
-            if count == 0 {
-                intervals.push([since, time]);
-            }
-        }
-    }
-    if count > 0 {
-        intervals.push([since, end]);
-    }
-    intervals
 }

@@ -60,7 +60,7 @@ pub struct UniformPlate {
     pub damping: NonNegative,
 }
 
-/// What a scenario says of a plate: its axis, or its size and first frequency.
+/// Plate as a scenario describes it: by its axis, or by its size and first frequency.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Plate {
