@@ -261,9 +261,10 @@ fn drawn_over(
     let is_three_axis = story.scenario.axis_count() == 3;
     let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
     let mut rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();
-    // Every figure shows the eclipses.
+    // Every figure shows the eclipses; a run that is repeated has them anyway.
     let is_orbit = |source: &RowSource| source.topic == Orbit::TOPIC.name;
-    if (orbit::SPEC.is_in)(&story) && !rows.is_empty() && !rows.iter().any(is_orbit) {
+    let has_orbit = log.topics().iter().any(|topic| topic == Orbit::TOPIC.name);
+    if has_orbit && !rows.is_empty() && !rows.iter().any(is_orbit) {
         rows.extend(orbit::SPEC.rows);
     }
     let cycles = if is_three_axis && !rows.is_empty() {
