@@ -197,6 +197,7 @@ __all__ = [
     "Turn",
     "TwoLineOrbit",
     "Uniform",
+    "UniformPlate",
     "Unloading",
     "Unloads",
     "UnscentedKalman",
@@ -393,8 +394,9 @@ class Appendage(Part):
         drive: Drive that turns it about an axis through its root during a run; default: none.
         hinge: Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`;
             default: none.
-        plate: For a thin plate in the plane of its own x and y: the axis along which it extends; the first
-            moments then follow from the participations in rotation.
+        plate: For a thin plate in the plane of its own x and y: the axis along which it extends, from which
+            first moments follow with the participations in rotation; or size and first frequency of a
+            uniform panel, in place of `modes`, `centre` and `inertia`.
         points: Named points of the appendage, measured from its root in its own axes; a name is unique in
             the spacecraft.
         modes: Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of
@@ -404,6 +406,8 @@ class Appendage(Part):
             required where the file has none, as all but those of 42.
         keep: Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first;
             default: all.
+        frequency_factor: Factor on its natural frequencies, whichever way they are given; damping ratios
+            and shapes stay. Default: 1.
         thermal: Thermal bending in sunlight; default: none.
         units: Units of finite-element results, except for 42, whose files are in SI units; default: metres
             and kilograms.
@@ -429,9 +433,10 @@ class Appendage(Part):
     """Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default:
     none.
     """
-    plate: Literal["x", "y"] | None = None
-    """For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments
-    then follow from the participations in rotation.
+    plate: Literal["x", "y"] | UniformPlate | None = None
+    """For a thin plate in the plane of its own x and y: the axis along which it extends, from which first
+    moments follow with the participations in rotation; or size and first frequency of a uniform panel,
+    in place of `modes`, `centre` and `inertia`.
     """
     points: Sequence[NamedPoint] | None = None
     """Named points of the appendage, measured from its root in its own axes; a name is unique in the
@@ -449,6 +454,10 @@ class Appendage(Part):
     keep: int | None = None
     """Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first; default:
     all.
+    """
+    frequency_factor: float | None = None
+    """Factor on its natural frequencies, whichever way they are given; damping ratios and shapes stay.
+    Default: 1.
     """
     thermal: Thermal | None = None
     """Thermal bending in sunlight; default: none."""
@@ -2347,6 +2356,9 @@ class Manoeuvre(Part):
         start_rate: Rate before the manoeuvre (rad/s), equal to the body's rate at the start. Default: 0.0.
         end_rate: Rate after the manoeuvre (rad/s). Default: 0.0.
         shaper: Shaper with which the command is convolved; it uses part of the duration.
+        load: Distribution of the torque over the body, in any unit, as only the ratios matter: `{ hub,
+            sections }` of panels, `{ rigid, modes }` of a planar body, coordinates of matrices by name or
+            in order; default: a torque on the hub. The actuator acts there during the whole run.
         model: Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys
             of the body plans for the body as written in the scenario: the plan does not depend on the drawn
             values.
@@ -2368,6 +2380,11 @@ class Manoeuvre(Part):
     """Rate after the manoeuvre (rad/s). Default: 0.0."""
     shaper: ShaperKind | None = None
     """Shaper with which the command is convolved; it uses part of the duration."""
+    load: Vector | Mapping[str, float | Vector] | None = None
+    """Distribution of the torque over the body, in any unit, as only the ratios matter: `{ hub, sections }`
+    of panels, `{ rigid, modes }` of a planar body, coordinates of matrices by name or in order; default:
+    a torque on the hub. The actuator acts there during the whole run.
+    """
     model: Planar | None = None
     """Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the
     body plans for the body as written in the scenario: the plan does not depend on the drawn values.
@@ -2467,6 +2484,8 @@ class Mode(Part):
     Args:
         frequency: Natural frequency w (rad/s).
         gain: Modal gain k: modal acceleration per unit of rigid acceleration.
+        hub_gain: Modal gain of a torque on the hub, if the commanded torque acts elsewhere: it determines
+            the energy of the mode; default: `gain`.
         damping: Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an
             `[estimator.envelope]`. Default: 0.0.
         displacement: Displacement at the start (rad). Default: 0.0.
@@ -2477,6 +2496,10 @@ class Mode(Part):
     """Natural frequency w (rad/s)."""
     gain: float
     """Modal gain k: modal acceleration per unit of rigid acceleration."""
+    hub_gain: float | None = None
+    """Modal gain of a torque on the hub, if the commanded torque acts elsewhere: it determines the energy
+    of the mode; default: `gain`.
+    """
     damping: float | None = None
     """Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an
     `[estimator.envelope]`. Default: 0.0.
@@ -3636,6 +3659,7 @@ class Spacecraft(Part):
             takes both defaults.
         whole_damping: Whether runs keep the full damping matrix of the free modes, as linear tools always
             do; default: if its off-diagonal terms are not negligible.
+        frequency_factor: Factor on the natural frequencies of all appendages; default: 1.
         points: Named points of the hub, at which jets and sensors are mounted; default: one at O, named
             `hub`.
     """
@@ -3672,6 +3696,8 @@ class Spacecraft(Part):
     """Whether runs keep the full damping matrix of the free modes, as linear tools always do; default: if
     its off-diagonal terms are not negligible.
     """
+    frequency_factor: float | None = None
+    """Factor on the natural frequencies of all appendages; default: 1."""
     points: Sequence[NamedPoint] | None = None
     """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""
 
@@ -4286,6 +4312,31 @@ class Uniform(Part, kw_only=False):
     _tag: ClassVar[str | None] = "uniform"
 
     value: Vector
+
+
+class UniformPlate(Part):
+    """A uniform rectangular panel, clamped at the middle of one edge, in its first bending mode: that of a
+    cantilever. Its mass is that of the appendage.
+
+    Args:
+        length: Length from the root to the tip (m).
+        width: Width (m).
+        frequency: First natural frequency with the root held (rad/s).
+        along: Axis along which it extends from the root; it bends out of the plane of x and y. Default:
+            "y".
+        damping: Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0.
+    """
+
+    length: float
+    """Length from the root to the tip (m)."""
+    width: float
+    """Width (m)."""
+    frequency: float
+    """First natural frequency with the root held (rad/s)."""
+    along: Literal["x", "y"] | None = None
+    """Axis along which it extends from the root; it bends out of the plane of x and y. Default: "y"."""
+    damping: float | None = None
+    """Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0."""
 
 
 class Unloading(Part):
