@@ -272,7 +272,9 @@ fn panels_visibly_bend() {
             sections.map(of).sum::<f64>().abs()
         };
         let largest = (0..frames.times.len()).map(bend).fold(0.0, f64::max);
-        assert!(largest > 0.04, "{name} bends by {largest} rad");
+        // Torques on the panels themselves bend them less.
+        let least = if name == "rotation-panel-torque" { 0.015 } else { 0.04 };
+        assert!(largest > least, "{name} bends by {largest} rad");
         // A loop that is unstable bends as far as anything is drawn.
         let most = if name == "wheel-unstable-band" { 1.51 } else { 1.0 };
         assert!(largest < most, "{name} bends by {largest} rad");

@@ -5,13 +5,13 @@ use flexsc_core::record::Accelerations;
 use flexsc_figure::{Figure, Lines, OverTime};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "accelerations",
     contents: "Three axes: readings of the accelerometers",
-    rows: &[RowSource::of::<Accelerations>()],
+    rows: &[RowSource::new::<Accelerations>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.sensor.accelerometers().next().is_some(),
     draw: figure,

@@ -2,7 +2,7 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{arrival, dead_zone, time, title};

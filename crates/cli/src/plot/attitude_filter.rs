@@ -8,7 +8,7 @@ use super::cycle_data::CycleData;
 use super::pointing::{decades, norm};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
-use super::{consistency, time, title};
+use super::{assessed_mean, time, title};
 
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
@@ -52,7 +52,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lengths = decades(story, "norm", layers);
     panels.push(Panel { x: lengths.x.unnamed(), ..lengths });
     let nees: Vec<Point> = cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, row.nees)).collect();
-    let mean = consistency::mean(story, &nees);
+    let mean = assessed_mean::mean(story, &nees);
     let level = |height: f64| [(0.0, height), (story.end, height)];
     let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
     let mut layers = vec![

@@ -7,15 +7,15 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, c
 
 use super::cycle_data::RowSource;
 use super::estimate::filters_one_axis;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
-use super::{attitude_filter, filter_lock, time, title};
+use super::{assessed_mean, attitude_filter, filter_lock, time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "consistency",
     contents: "Consistency of a filter: NIS and NEES with 95 % bands; of an attitude filter, errors and NEES",
-    rows: &[RowSource::of::<AttitudeEstimate>()],
+    rows: &[RowSource::new::<AttitudeEstimate>()],
     motion: MotionPart::All,
     is_in: |story| attitude_filter::applies_to(story) || filters_one_axis(story),
     draw: draw,
@@ -72,7 +72,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
                 line,
             ),
         ]);
-        layers.extend(mean(story, &values));
+        layers.extend(assessed_mean::mean(story, &values));
         Panel::new(time(0.0..story.end), y, layers)
     };
     // Innovations of a consistent filter are independent from sample to sample. Errors are not: within a window they
@@ -81,21 +81,6 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let nees = panel("NEES / states", |e| e.nees, states.max(1), 1, false);
     let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
-}
-
-/// Returns a line at the mean of the values over the interval that the metrics assess; `None` without values.
-pub fn mean(story: &RunEvents, values: &[Point]) -> Option<Layer> {
-    let [from, to] = story.scenario.estimator.as_ref()?.assess();
-    let to = to.min(story.end);
-    let inside = || values.iter().filter(|(time, value)| (from..=to).contains(time) && value.is_finite());
-    let mean = inside().map(|point| point.1).sum::<f64>() / inside().count() as f64;
-    let name = if from > 0.0 || to < story.end {
-        format!("mean {mean:.2} from {from} to {to} s")
-    } else {
-        format!("mean {mean:.2}")
-    };
-    let line = vec![(from, mean), (to, mean)];
-    mean.is_finite().then(|| Layer::new(&name, colour::VERMILLION, LayerShape::Dashes, line))
 }
 
 /// Returns the moving averages over `window` samples, each at its last sample. Samples without a value are skipped.

@@ -31,7 +31,7 @@ pub struct RowSource {
 
 impl RowSource {
     /// Returns the topic of a type of rows.
-    pub const fn of<R: TopicRow + LogRow>() -> Self {
+    pub const fn new<R: TopicRow + LogRow>() -> Self {
         Self { topic: R::TOPIC.name, read: Self::read::<R> }
     }
 

@@ -6,14 +6,14 @@ use flexsc_core::record::Vibrations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::cycle_data::{CycleData, RowSource};
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "deflection",
     contents: "Three axes: deflection of each point of the structure that modes move",
-    rows: &[RowSource::of::<Vibrations>()],
+    rows: &[RowSource::new::<Vibrations>()],
     motion: MotionPart::Nothing,
     is_in: |story| !points(story).is_empty(),
     draw: |run| figure(run.story, run.cycles),

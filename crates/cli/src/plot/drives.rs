@@ -5,13 +5,13 @@ use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, Lines, OverTime, Point};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "drives",
     contents: "Rotating appendages: drive angles and natural frequencies",
-    rows: &[RowSource::of::<DrivesMotion>()],
+    rows: &[RowSource::new::<DrivesMotion>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.articulation().is_some(),
     draw: figure,

@@ -3,7 +3,7 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::{RunEvents, WindowMean};
 use super::{swings, time, title};

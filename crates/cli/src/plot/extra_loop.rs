@@ -4,7 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::control::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{filter_lock, time, title};

@@ -1,56 +1,15 @@
-//! The figures that logs and campaigns have: the name of each, what it needs, and how it is drawn.
+//! The figures that logs and campaigns have, in the order in which they are listed.
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use flexsc_figure::Figure;
 
-use super::cycle_data::{CycleData, RowSource};
-use super::motion::MotionData;
+use super::figure_spec::FigureSpec;
 use super::run_events::RunEvents;
 use super::{
     accelerations, angle, consistency, deflection, drives, envelope, estimate, extra_loop, flywheel,
     frequency, gain, gimbals, hinges, line_of_sight, magnetorquers, modes, orbit, outputs, phase_plane,
     pointing, three_axis, torque, torques,
 };
-
-/// Declaration of a figure.
-pub struct FigureSpec {
-    /// Name as `--what` accepts it.
-    pub name: &'static str,
-    /// Contents, as `--help` lists them.
-    pub contents: &'static str,
-    /// Rows of a three-axis run that the figure shows.
-    pub rows: &'static [RowSource],
-    /// Part of the motion of a one-axis run that the figure shows.
-    pub motion: MotionPart,
-    /// Returns true if a log has the data of the figure.
-    pub is_in: fn(&RunEvents) -> bool,
-    /// Draws the figure of a log.
-    pub draw: fn(&RunData<'_>) -> Figure,
-}
-
-/// Part of the motion of a run.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum MotionPart {
-    /// None: the figure shows events and steps of the adaptation alone.
-    Nothing,
-    /// The whole run without a switching law; with one, its switchings suffice.
-    Unswitched,
-    /// The whole run without a switching law; with one, its start and its end.
-    Ends,
-    /// The whole run.
-    All,
-}
-
-/// Rows of a run for its figures.
-pub struct RunData<'a> {
-    /// Scenario, switchings and steps of the adaptation.
-    pub story: &'a RunEvents,
-    /// Motion about one axis.
-    pub motion: &'a MotionData,
-    /// Rows of three axes.
-    pub cycles: &'a CycleData,
-}
 
 /// The figures of logs, in the order in which they are listed and drawn.
 const OF_LOGS: [&FigureSpec; 28] = [

@@ -5,7 +5,7 @@ use flexsc_core::record::{Bearings, Pointing, Wheels};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
 use super::{time, title, wheels};
@@ -13,7 +13,7 @@ use super::{time, title, wheels};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "wheel",
     contents: "Speed and momentum of the flywheel, or speed and torque of each wheel, with limits",
-    rows: &[RowSource::of::<Wheels>(), RowSource::of::<Bearings>(), RowSource::of::<Pointing>()],
+    rows: &[RowSource::new::<Wheels>(), RowSource::new::<Bearings>(), RowSource::new::<Pointing>()],
     motion: MotionPart::All,
     is_in: |story| {
         rotor(story).is_some() && story.scenario.axis_count() == 1 || wheels::wheels(story).is_some()

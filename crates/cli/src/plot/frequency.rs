@@ -6,7 +6,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, c
 
 use super::cycle_data::RowSource;
 use super::estimate::filters_one_axis;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
 use super::{filter_lock, identified_frequencies, time, title};
@@ -14,7 +14,7 @@ use super::{filter_lock, identified_frequencies, time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "frequency",
     contents: "Frequency of the dominant mode, or of those that an attitude filter identifies, estimated and true",
-    rows: &[RowSource::of::<ElasticEstimates>()],
+    rows: &[RowSource::new::<ElasticEstimates>()],
     motion: MotionPart::All,
     is_in: |story| identified_frequencies::applies_to(story) || filters_one_axis(story),
     draw: draw,

@@ -3,7 +3,7 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::envelope::means;
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::{RunEvents, WindowMean};
 use super::{time, title};
 

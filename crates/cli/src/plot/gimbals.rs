@@ -6,13 +6,13 @@ use flexsc_core::record::{ControlMomentGyro, ControlMomentGyros};
 use flexsc_figure::{Figure, Lines, OverTime};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "gimbals",
     contents: "Control moment gyros: gimbal angles and rates, singularity measure, momentum",
-    rows: &[RowSource::of::<ControlMomentGyros>()],
+    rows: &[RowSource::new::<ControlMomentGyros>()],
     motion: MotionPart::Nothing,
     is_in: |story| !story.scenario.study.gimbals.is_empty(),
     draw: figure,

@@ -4,13 +4,13 @@ use flexsc_core::record::{HingeMotion, Hinges};
 use flexsc_figure::{Figure, Lines, OverTime};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "hinges",
     contents: "Appendages on hinges: their angles and rates",
-    rows: &[RowSource::of::<Hinges>()],
+    rows: &[RowSource::new::<Hinges>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.hinges() > 0,
     draw: figure,

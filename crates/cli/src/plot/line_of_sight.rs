@@ -4,13 +4,13 @@ use flexsc_core::record::{LineOfSightAxis, LineOfSightSample};
 use flexsc_figure::{Figure, Layer, LayerShape, Lines, OverTime, RGBColor, colour};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "line-of-sight",
     contents: "Three axes: error of each line of sight, and displacement of its point",
-    rows: &[RowSource::of::<LineOfSightSample>()],
+    rows: &[RowSource::new::<LineOfSightSample>()],
     motion: MotionPart::Nothing,
     is_in: |story| !story.scenario.line_of_sight.is_empty(),
     draw: figure,

@@ -5,14 +5,14 @@ use flexsc_core::record::{Magnetorquers, Rates, Wheels};
 use flexsc_figure::{Figure, Lines, OverTime};
 
 use super::cycle_data::RowSource;
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::pointing::norm;
 use super::title;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "magnetorquers",
     contents: "Three axes: magnetic moments, and the momentum of the wheels or the rate",
-    rows: &[RowSource::of::<Magnetorquers>(), RowSource::of::<Wheels>(), RowSource::of::<Rates>()],
+    rows: &[RowSource::new::<Magnetorquers>(), RowSource::new::<Wheels>(), RowSource::new::<Rates>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.actuator.magnetorquers().is_some(),
     draw: figure,

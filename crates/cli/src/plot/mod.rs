@@ -2,6 +2,7 @@
 
 mod accelerations;
 mod angle;
+mod assessed_mean;
 mod attitude_filter;
 mod campaign;
 mod columns;
@@ -16,6 +17,7 @@ mod extra_loop;
 mod failures;
 mod figure_kind;
 mod figure_name;
+mod figure_spec;
 mod filter_lock;
 mod flywheel;
 mod frequency;
@@ -61,9 +63,9 @@ use crate::quantity::in_unit;
 pub use campaign::{column_figures, directory_figures};
 use cycle_data::{CycleData, RowSource};
 pub use figure_kind::FigureKind;
-use figure_kind::{FigureSpec, MotionPart, RunData};
 pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
+use figure_spec::{FigureSpec, MotionPart, RunData};
 use motion::MotionData;
 use run_events::RunEvents;
 pub use title::readable;

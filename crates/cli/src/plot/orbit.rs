@@ -4,14 +4,14 @@ use flexsc_core::record::{Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::cycle_data::{CycleData, RowSource};
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "orbit",
     contents: "Three axes in orbit: magnetic field, nadir and Sun in body axes, and the eclipse",
-    rows: &[RowSource::of::<Orbit>()],
+    rows: &[RowSource::new::<Orbit>()],
     motion: MotionPart::Nothing,
     is_in: applies_to,
     draw: |run| figure(run.story, run.cycles),

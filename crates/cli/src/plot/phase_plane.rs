@@ -3,7 +3,7 @@
 use flexsc_core::control::law::{Relay, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::{RunEvents, SwitchingEvent};
 use super::title;

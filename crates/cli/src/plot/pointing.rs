@@ -4,7 +4,7 @@ use flexsc_core::record::Pointing;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::cycle_data::{CycleData, RowSource};
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
@@ -12,7 +12,7 @@ use super::{time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "pointing",
     contents: "Three axes: pointing error, with its goal band and dead zone",
-    rows: &[RowSource::of::<Pointing>()],
+    rows: &[RowSource::new::<Pointing>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.axis_count() == 3,
     draw: |run| figure(run.story, run.cycles),

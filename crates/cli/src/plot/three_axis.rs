@@ -6,7 +6,7 @@ use flexsc_core::record::{ChannelState, Energy, Jets, Position, Rates, TrackedMo
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::cycle_data::{CycleData, RowSource};
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::{time, title};
 
@@ -39,7 +39,7 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
 pub const RATES: FigureSpec = FigureSpec {
     name: "rates",
     contents: "Three axes: rates, rigid and at the gyro",
-    rows: &[RowSource::of::<Rates>()],
+    rows: &[RowSource::new::<Rates>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.axis_count() == 3,
     draw: |run| rates(run.story, run.cycles),
@@ -63,7 +63,7 @@ fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub const POSITION: FigureSpec = FigureSpec {
     name: "position",
     contents: "Three axes: position and velocity, where jets or forces move the spacecraft",
-    rows: &[RowSource::of::<Position>()],
+    rows: &[RowSource::new::<Position>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.translation.is_some(),
     draw: |run| position(run.story, run.cycles),
@@ -96,7 +96,7 @@ fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub const ENERGY: FigureSpec = FigureSpec {
     name: "energy",
     contents: "Three axes: energy of the elastic modes, and propellant",
-    rows: &[RowSource::of::<Energy>(), RowSource::of::<Jets>()],
+    rows: &[RowSource::new::<Energy>(), RowSource::new::<Jets>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.axis_count() == 3,
     draw: |run| energy(run.story, run.cycles),
@@ -142,7 +142,7 @@ fn fires(panel: &Panel) -> bool {
 pub const JETS: FigureSpec = FigureSpec {
     name: "jets",
     contents: "Three axes: firing times of the jets",
-    rows: &[RowSource::of::<Jets>()],
+    rows: &[RowSource::new::<Jets>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.fires(),
     draw: |run| jets(run.story, run.cycles),
@@ -188,7 +188,7 @@ fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub const TRACKING: FigureSpec = FigureSpec {
     name: "tracking",
     contents: "Three axes: natural frequencies estimated by adaptive observers, and the true ones",
-    rows: &[RowSource::of::<Tracking>()],
+    rows: &[RowSource::new::<Tracking>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.study.adaptive.is_some() && story.scenario.axis_count() == 3,
     draw: |run| tracking(run.story, run.cycles),
@@ -236,7 +236,7 @@ fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub const DAMPING: FigureSpec = FigureSpec {
     name: "damping",
     contents: "Three axes: elastic rates for active damping, its thresholds and pulses",
-    rows: &[RowSource::of::<Tracking>()],
+    rows: &[RowSource::new::<Tracking>()],
     motion: MotionPart::Nothing,
     is_in: |story| {
         let authorities = &story.scenario.study.authorities;

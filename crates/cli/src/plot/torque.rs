@@ -2,7 +2,7 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice, steps};
 
-use super::figure_kind::{FigureSpec, MotionPart, RunData};
+use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::run_events::RunEvents;
 use super::{manoeuvre_torque, time, title};
 

@@ -6,7 +6,7 @@ use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::cycle_data::{CycleData, RowSource};
-use super::figure_kind::{FigureSpec, MotionPart};
+use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
 use super::{time, title};
@@ -14,7 +14,7 @@ use super::{time, title};
 pub const SPEC: FigureSpec = FigureSpec {
     name: "torques",
     contents: "Three axes: torques demanded by the law, given by the actuators, and of disturbances",
-    rows: &[RowSource::of::<Torques>()],
+    rows: &[RowSource::new::<Torques>()],
     motion: MotionPart::Nothing,
     is_in: applies_to,
     draw: |run| figure(run.story, run.cycles),

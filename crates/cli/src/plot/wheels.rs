@@ -8,7 +8,7 @@ use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record;
 use flexsc_figure::{Figure, Lines, OverTime};
 
-use super::figure_kind::RunData;
+use super::figure_spec::RunData;
 use super::run_events::RunEvents;
 use super::title;
 
