@@ -25,7 +25,7 @@ pub struct OverTime {
 pub struct Lines {
     layers: Vec<Layer>,
     limit: Option<(String, f64)>,
-    lines: usize,
+    line_count: usize,
     width: f64,
     is_from_zero: bool,
 }
@@ -70,7 +70,7 @@ impl OverTime {
 
 impl Default for Lines {
     fn default() -> Self {
-        Self { layers: Vec::new(), limit: None, lines: 0, width: 1.2, is_from_zero: false }
+        Self { layers: Vec::new(), limit: None, line_count: 0, width: 1.2, is_from_zero: false }
     }
 }
 
@@ -103,8 +103,8 @@ impl Lines {
     /// Adds a line in the next colour.
     #[must_use]
     pub fn line(mut self, name: &str, points: Vec<Point>) -> Self {
-        let colour = COLOURS[self.lines % COLOURS.len()];
-        self.lines += 1;
+        let colour = COLOURS[self.line_count % COLOURS.len()];
+        self.line_count += 1;
         let shape = LayerShape::Line(self.width);
         self.layer(Layer::new(name, colour, shape, points))
     }

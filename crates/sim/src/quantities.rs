@@ -341,9 +341,9 @@ mod tests {
         let toml = "duration = 1.0\n[law.open]\n[body.spatial]\ninertia = [[3, 0, 0], [0, 2, 0], [0, 0, 2]]\n\
                     rate = [1e-5, -1e-5, 2e-5]\npoints = [{ name = \"hub\" }]\n\
                     modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]";
-        let scenario = Scenario::parse("toy.toml", toml).unwrap();
+        let scenario = Scenario::parse("toy.toml", toml).expect("a scenario");
         let mut simulation = Simulation::new(&scenario, 0);
-        simulation.open(&mut ()).unwrap();
+        simulation.open(&mut ()).expect("a start");
         let run = simulation.read_view();
         let fields = run.fields_in(&[TOY], &scenario, true);
         let [toy] = &fields[..] else { panic!("{fields:?}") };

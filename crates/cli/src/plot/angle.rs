@@ -13,7 +13,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     rows: &[],
     motion: MotionPart::Ends,
     is_in: |story| story.scenario.axis_count() == 1,
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

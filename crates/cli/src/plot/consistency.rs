@@ -18,7 +18,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     rows: &[RowSource::new::<AttitudeEstimate>()],
     motion: MotionPart::All,
     is_in: |story| attitude_filter::applies_to(story) || filters_one_axis(story),
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

@@ -18,7 +18,10 @@ use crate::error::CliError;
 
 /// Rows of a run, each with its time: of a full log, or all of a repeated run, which also has the values of each cycle.
 #[derive(Default)]
-pub struct CycleData(Vec<(f64, Report)>);
+pub struct CycleData(TimedReports);
+
+/// Rows of a run, each with its time (s).
+type TimedReports = Vec<(f64, Report)>;
 
 /// Topic whose rows a figure shows.
 #[derive(Copy, Clone)]
@@ -26,7 +29,7 @@ pub struct RowSource {
     /// Name of the topic.
     pub topic: &'static str,
     /// Reads the rows of a log's table; `None` for rows of another form.
-    read: fn(&Columns) -> Option<Vec<(f64, Report)>>,
+    read: fn(&Columns) -> Option<TimedReports>,
 }
 
 impl RowSource {
@@ -35,7 +38,7 @@ impl RowSource {
         Self { topic: R::TOPIC.name, read: Self::read::<R> }
     }
 
-    fn read<R: TopicRow + LogRow>(columns: &Columns) -> Option<Vec<(f64, Report)>> {
+    fn read<R: TopicRow + LogRow>(columns: &Columns) -> Option<TimedReports> {
         let report = |(time, row): (f64, R)| {
             let mut report = Report::new();
             report.add(row);

@@ -14,7 +14,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     rows: &[],
     motion: MotionPart::Ends,
     is_in: has_envelope,
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

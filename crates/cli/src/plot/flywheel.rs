@@ -18,7 +18,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     is_in: |story| {
         rotor(story).is_some() && story.scenario.axis_count() == 1 || wheels::wheels(story).is_some()
     },
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

@@ -17,7 +17,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     rows: &[RowSource::new::<ElasticEstimates>()],
     motion: MotionPart::All,
     is_in: |story| identified_frequencies::applies_to(story) || filters_one_axis(story),
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

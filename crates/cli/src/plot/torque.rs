@@ -12,7 +12,7 @@ pub const SPEC: FigureSpec = FigureSpec {
     rows: &[],
     motion: MotionPart::Unswitched,
     is_in: |story| story.scenario.axis_count() == 1,
-    draw: draw,
+    draw,
 };
 
 fn draw(run: &RunData<'_>) -> Figure {

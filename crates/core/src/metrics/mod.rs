@@ -29,6 +29,8 @@ use flexsc_scenario::metric_descriptions;
 
 pub use flexsc_scenario::metric_descriptions::{ALL, is_event_list, list_element};
 
+// All of them: each metric is declared once.
+#[allow(clippy::wildcard_imports)]
 use flexsc_scenario::metric_descriptions::*;
 
 pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};

@@ -198,7 +198,7 @@ impl UncoupledSegment {
         self.visible
     }
 
-    /// Returns true if [`Self::derivative_bounds`] is valid: no waveform acts.
+    /// Returns true if the bounds of the derivatives are valid: no waveform acts.
     pub fn has_bounds(&self) -> bool {
         self.forced.is_none()
     }
