@@ -184,14 +184,14 @@ fn lines_have_the_indices_of_sines_over_windows() {
     let line = |frequency_rad_s: f64, amplitude: f64| SpectralLine { frequency_rad_s, amplitude };
     let mut squares = [0.0; 7];
     for (frequency, expected) in golden {
-        let found = values(WindowRms::of_lines([line(frequency, 2.0)].into_iter(), window));
+        let found = values(WindowRms::from_lines([line(frequency, 2.0)].into_iter(), window));
         for ((found, expected), square) in found.into_iter().zip(expected).zip(&mut squares) {
             agree("index", found, 2.0 * expected, 1e-11);
             *square += expected * expected;
         }
     }
     let all = golden.map(|(frequency, _)| line(frequency, 1.0));
-    for (found, square) in values(WindowRms::of_lines(all.into_iter(), window)).into_iter().zip(squares) {
+    for (found, square) in values(WindowRms::from_lines(all.into_iter(), window)).into_iter().zip(squares) {
         agree("all", found, square.sqrt(), 1e-11);
     }
 }

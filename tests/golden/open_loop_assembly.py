@@ -21,7 +21,7 @@ from flexsc import Linear, Scenario, Signal
 from flexsc import _native as engine
 from scipy.linalg import expm
 
-Matrix = npt.NDArray[np.float64]
+Array = npt.NDArray[np.float64]
 AXES = ("roll", "pitch", "yaw")
 # Times are whole numbers of femtoseconds, as in a run.
 _TICKS = 1e15
@@ -157,7 +157,7 @@ def _gain(name: str, actuators: Any, count: int) -> float:
     return gains[0]
 
 
-def _acting(plant: Linear, order: int, count: int, period: float, delay: float) -> tuple[Matrix, Matrix]:
+def _acting(plant: Linear, order: int, count: int, period: float, delay: float) -> tuple[Array, Array]:
     """The mean of each input over the coming period, by the states of a sampled plant and by its inputs."""
     late, part = whole_and_part(period, delay)
     by_state, by_input = np.zeros((count, len(plant.a))), np.zeros((count, count))
@@ -194,10 +194,10 @@ def _differs(name: str, keys: Mapping[str, Any], period: float) -> bool:
 class Block:
     """x[k+1] = a x + b u, y = c x + d u, and the names of its states."""
 
-    a: Matrix
-    b: Matrix
-    c: Matrix
-    d: Matrix
+    a: Array
+    b: Array
+    c: Array
+    d: Array
     states: list[Signal]
 
     def then(self, after: Block) -> Block:
@@ -218,7 +218,7 @@ class Block:
         return cls(a, b, c, d, [state for block in blocks for state in block.states])
 
     @classmethod
-    def gain(cls, d: Matrix) -> Block:
+    def gain(cls, d: Array) -> Block:
         """A block without states."""
         return cls(np.zeros((0, 0)), np.zeros((0, d.shape[1])), np.zeros((len(d), 0)), d, [])
 
@@ -332,7 +332,7 @@ def _state_space(own: Mapping[str, Any], period: float, prefix: str, outputs: in
     return Block(a, wide[0], c, wide[1], [Signal(f"{prefix}law{k}", "") for k in range(order)])
 
 
-def estimator(observers: Sequence[Mapping[str, Any]], prefixes: Sequence[str]) -> tuple[Block, Matrix]:
+def estimator(observers: Sequence[Mapping[str, Any]], prefixes: Sequence[str]) -> tuple[Block, Array]:
     """Return Kalman filters with their steady gains, from measured angles and rates to those that laws read,
     and what a torque about each axis, held over a period, adds to their states.
 
@@ -362,13 +362,13 @@ def estimator(observers: Sequence[Mapping[str, Any]], prefixes: Sequence[str]) -
 
 
 def _at_samples(
-    a: Matrix,
-    b: Matrix,
-    c: Matrix,
-    d: Matrix,
+    a: Array,
+    b: Array,
+    c: Array,
+    d: Array,
     h: float,
     of: str,
-) -> tuple[Matrix, ...]:
+) -> tuple[Array, ...]:
     """Matrices as the law `state_space` samples them."""
     order = len(a)
     if of == "samples" or order == 0:
@@ -380,7 +380,7 @@ def _at_samples(
     return inverse @ (np.eye(order) + 0.5 * h * a), inverse @ b * h, c, d + c @ b * (0.5 * h)
 
 
-def _diagonal(blocks: Sequence[Matrix]) -> Matrix:
+def _diagonal(blocks: Sequence[Array]) -> Array:
     whole = np.zeros((sum(len(block) for block in blocks), sum(block.shape[1] for block in blocks)))
     row = column = 0
     for block in blocks:
@@ -392,8 +392,8 @@ def _diagonal(blocks: Sequence[Matrix]) -> Matrix:
 class Sampled(NamedTuple):
     """x[k+1] = a x[k] + b u[k], whose last states are the inputs of `waiting` samples, the latest first."""
 
-    a: Matrix
-    b: Matrix
+    a: Array
+    b: Array
     waiting: int
 
 
@@ -405,7 +405,7 @@ def whole_and_part(period: float, delay: float) -> tuple[int, float]:
     return late, part if part > 1e-9 * period else 0.0
 
 
-def sampled(a: Matrix, b: Matrix, period: float, delay: float) -> Sampled:
+def sampled(a: Array, b: Array, period: float, delay: float) -> Sampled:
     """Return x' = a x + b u at samples `period` (s) apart, with inputs that act `delay` (s) late."""
     order, count = b.shape
     late, part = whole_and_part(period, delay)
@@ -433,7 +433,7 @@ def sampled(a: Matrix, b: Matrix, period: float, delay: float) -> Sampled:
     return Sampled(big, into, waiting)
 
 
-def held(a: Matrix, b: Matrix, h: float) -> tuple[Matrix, Matrix]:
+def held(a: Array, b: Array, h: float) -> tuple[Array, Array]:
     """Return the motion over a time (s): of the state, and by inputs that are held."""
     order, count = b.shape
     whole = np.zeros((order + count, order + count))
@@ -449,8 +449,8 @@ class _Sensor:
     period: int
     latency: int
     integrates: bool
-    angle: Matrix
-    rate: Matrix
+    angle: Array
+    rate: Array
 
     @classmethod
     def from_parts(cls, parts: Mapping[str, Any], order: int) -> _Sensor:
@@ -472,7 +472,7 @@ class _Filter:
         # Exposures that may still correct it, the newest first, and what they show beyond what is expected.
         count = (self.sensor.latency + self.gyro.period) // self.sensor.period + 2
         self.exposed = [-(k + 1) * self.sensor.period for k in range(count)]
-        self.blocks: list[Matrix] = []
+        self.blocks: list[Array] = []
 
     def states(self) -> list[Signal]:
         """Names and units."""
@@ -485,11 +485,11 @@ class _Filter:
         ]
         return [Signal(name.format(axis), unit) for name, unit in named for axis in AXES]
 
-    def start(self, rows: Matrix) -> None:
+    def start(self, rows: Array) -> None:
         """Begin with these rows."""
         self.angle, self.bias, self.rate, self.mount, *self.beyond = rows.reshape(-1, 3, rows.shape[1])
 
-    def rows(self) -> list[Matrix]:
+    def rows(self) -> list[Array]:
         """What is known now."""
         return [self.angle, self.bias, self.rate, self.mount, *self.beyond]
 
@@ -499,7 +499,7 @@ class _Filter:
         exposed = range(self.exposed[-1], whole, sensor)
         return {*range(0, whole, gyro), *exposed, *(self._taken(each) for each in exposed)}
 
-    def act(self, now: int, x: Matrix) -> None:
+    def act(self, now: int, x: Array) -> None:
         """Do what is done at a time (ticks), at which the body's states are x."""
         reads = now % self.gyro.period == 0
         if reads:
@@ -510,7 +510,7 @@ class _Filter:
             self.beyond = [shown - self.angle if reads else shown, *self.beyond[:-1]]
         self._take(now, [each for each in self.exposed if each + self.sensor.latency == now])
 
-    def estimates(self, now: int) -> tuple[Matrix, Matrix]:
+    def estimates(self, now: int) -> tuple[Array, Array]:
         """Angle and rate that a law reads."""
         rate = self.rate - self.bias
         return self.angle + (now % self.gyro.period) / _TICKS * rate, rate
@@ -522,7 +522,7 @@ class _Filter:
     def _taken(self, exposed: int) -> int:
         return max(exposed + self.sensor.latency, self._covered(exposed))
 
-    def _read(self, now: int, x: Matrix) -> None:
+    def _read(self, now: int, x: Array) -> None:
         period = self.gyro.period / _TICKS
         if self.gyro.integrates:
             mount = self.gyro.angle @ x
@@ -591,8 +591,8 @@ def attitude_loop(
     filtered.start(known)
     acting, *given = pushed.reshape(-1, 3, rows.shape[1])
     laws, acts = range(0, whole, step), range(late % step, whole, step)
-    flows: dict[int, Matrix] = {}
-    commands: list[Matrix] = []
+    flows: dict[int, Array] = {}
+    commands: list[Array] = []
     instants = sorted(at for at in {*filtered.events(whole), *laws, *acts, whole} if 0 <= at <= whole)
     for now, after in pairwise(instants):
         filtered.act(now, x)
@@ -628,7 +628,7 @@ def attitude_loop(
     )
 
 
-def _that_matter(a: Matrix, c: Matrix) -> list[int]:
+def _that_matter(a: Array, c: Array) -> list[int]:
     """The states on which something depends: some are overwritten before they are read."""
     kept = list(range(len(a)))
     while True:

@@ -45,7 +45,7 @@ impl StateSpaceModel {
     ///
     /// # Errors
     /// A body that is no linear system: its key, and the reason.
-    pub fn of_body(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
+    pub fn from_body(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
         Ok(LinearModel::from_scenario(scenario, time)?.into())
     }
 
@@ -54,13 +54,13 @@ impl StateSpaceModel {
     ///
     /// # Errors
     /// A body that is no linear system, or actuators with different delays: the key, and the reason.
-    pub fn of_sampled_body(
+    pub fn from_sampled_body(
         scenario: &Scenario,
         time: f64,
         period: f64,
         delay: Option<f64>,
     ) -> Result<Self, ConfigError> {
-        let Self { matrices, mut states, inputs, outputs, .. } = Self::of_body(scenario, time)?;
+        let Self { matrices, mut states, inputs, outputs, .. } = Self::from_body(scenario, time)?;
         let delay = delay.map_or_else(|| common_delay(scenario), Ok)?;
         let sampled = SampledSystem::new(&matrices.a, &matrices.b, period, delay);
         states.extend(sampled.waiting_inputs(&inputs));
@@ -73,7 +73,11 @@ impl StateSpaceModel {
     ///
     /// # Errors
     /// See [`OpenLoop::from_scenario`].
-    pub fn of_loop(scenario: &Scenario, opened: LoopBreak, delay: Option<f64>) -> Result<Self, ConfigError> {
+    pub fn from_loop(
+        scenario: &Scenario,
+        opened: LoopBreak,
+        delay: Option<f64>,
+    ) -> Result<Self, ConfigError> {
         let cut = match delay {
             None => OpenLoop::from_scenario(scenario, opened)?,
             Some(delay) => OpenLoop::with_delay(scenario, opened, delay)?,

@@ -25,7 +25,7 @@ pub use contour::{Ring, ScalarField};
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
 pub use origin::is_figure;
-pub use over_time::{Lines, OverTime};
+pub use over_time::{OverTime, PanelLines};
 pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use style::Style;

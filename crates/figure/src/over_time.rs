@@ -22,7 +22,7 @@ pub struct OverTime {
 }
 
 /// Contents of a panel over time: its vertical axis covers all of them.
-pub struct Lines {
+pub struct PanelLines {
     layers: Vec<Layer>,
     limit: Option<(String, f64)>,
     line_count: usize,
@@ -38,8 +38,8 @@ impl OverTime {
 
     /// Adds a panel; nothing if it has no layers.
     #[must_use]
-    pub fn panel(mut self, name: &str, unit: &'static str, lines: Lines) -> Self {
-        let Lines { layers: own, limit, is_from_zero, .. } = lines;
+    pub fn panel(mut self, name: &str, unit: &'static str, lines: PanelLines) -> Self {
+        let PanelLines { layers: own, limit, is_from_zero, .. } = lines;
         if own.is_empty() {
             return self;
         }
@@ -68,13 +68,13 @@ impl OverTime {
     }
 }
 
-impl Default for Lines {
+impl Default for PanelLines {
     fn default() -> Self {
         Self { layers: Vec::new(), limit: None, line_count: 0, width: 1.2, is_from_zero: false }
     }
 }
 
-impl Lines {
+impl PanelLines {
     /// Adds dashed lines at a limit and at its negative below the other layers, if there is one.
     #[must_use]
     pub fn limits(self, name: &str, limit: Option<f64>) -> Self {

@@ -50,14 +50,14 @@ pub fn linearise<'py>(
         }
         (Some(opened), None) => {
             checked_times(1.0, delay)?;
-            StateSpaceModel::of_loop(inner, opened, delay)
+            StateSpaceModel::from_loop(inner, opened, delay)
         }
         (None, Some(period)) => {
             checked_times(period, delay)?;
-            StateSpaceModel::of_sampled_body(inner, at, period, delay)
+            StateSpaceModel::from_sampled_body(inner, at, period, delay)
         }
         (None, None) if delay.is_some() => return Err(PyValueError::new_err("delay needs a period")),
-        (None, None) => StateSpaceModel::of_body(inner, at),
+        (None, None) => StateSpaceModel::from_body(inner, at),
     };
     let StateSpaceModel { matrices: TransferMatrices { a, b, c, d }, states, inputs, outputs, period } =
         model.map_err(|fault| scenario.key_error(fault))?;

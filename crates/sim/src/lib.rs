@@ -4,7 +4,6 @@
 //! Each part of a run has a file of its own and reaches another part only through the arguments of its methods. Between
 //! two instants every input is constant or a waveform, and the motion is exact.
 
-mod asked_run;
 mod batch_hooks;
 mod blinding;
 mod clock;
@@ -20,6 +19,7 @@ mod objective;
 mod operation;
 mod plant;
 mod quantities;
+mod quantity_reader;
 mod recorder;
 mod relay_kernel;
 pub mod relay_setup;

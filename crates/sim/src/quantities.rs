@@ -10,8 +10,8 @@ use flexsc_control::quantity::{Meaning, QuantityDescription, QuantityShape};
 use flexsc_control::sensor::SensorKind;
 use flexsc_control::state_estimate::EstimateNeeds;
 
-use super::asked_run::{AskedRun, give};
 use super::plant::{FlowQuantities, ThreeAxisQuantities};
+use super::quantity_reader::{QuantityReader, give};
 use super::run_view::RunView;
 use flexsc_scenario::Scenario;
 
@@ -86,7 +86,7 @@ impl QuantityField {
 }
 
 /// Function that gives the values of a quantity one after another, and returns `None` if the run does not have it.
-type Read = fn(&AskedRun<'_>, &mut dyn FnMut(f64)) -> Option<()>;
+type Read = fn(&QuantityReader<'_>, &mut dyn FnMut(f64)) -> Option<()>;
 
 /// Shape of a quantity, on one axis and on three.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -176,7 +176,7 @@ quantities! {
         give(out, run.plant.truth().orientation.error_from(&run.guidance.origin(run.now)))
     };
     True "angle", Of("rad"), Axes, ANGLES => |run, out| run.one_axis().and_then(|_| give(out, [run.plant.truth().sensor_angles()[0]]));
-    True "rate", Of("rad/s"), Axes, RATES => |run, out| give(out, run.of_axes(run.plant.truth().rate));
+    True "rate", Of("rad/s"), Axes, RATES => |run, out| give(out, run.about_axes(run.plant.truth().rate));
     True "rigid_angle", Of("rad"), Axes, logged(&["attitude/rigid_rad"], &[]) => |run, out| give(out, [run.one_axis()?.body().state.rigid_angle]);
     True "rigid_rate", Of("rad/s"), Axes, logged(&["rate/rigid_rad_s"], &["rates/axes/rigid_rad_s"]) => |run, out| match run.plant.quantities() {
         FlowQuantities::OneAxis(motion) => give(out, [motion.body().state.rigid_rate]),
@@ -272,7 +272,7 @@ impl RunView<'_> {
     }
 
     fn fields_in(&self, table: &[Declared], scenario: &Scenario, is_observed: bool) -> Vec<QuantityField> {
-        let (axes, run) = (self.estimation.axis_count(), AskedRun::new(*self));
+        let (axes, run) = (self.estimation.axis_count(), QuantityReader::new(*self));
         let field = |row: &Declared| {
             let mut count = 0;
             (row.read)(&run, &mut |_| count += 1)?;
@@ -302,7 +302,7 @@ impl RunView<'_> {
 
     /// Writes the observation into a vector.
     pub fn write_observation(&self, row: &mut [f64]) {
-        let (run, mut place) = (AskedRun::new(*self), 0);
+        let (run, mut place) = (QuantityReader::new(*self), 0);
         for declared in QUANTITIES.iter().filter(|declared| declared.group.is_observed()) {
             (declared.read)(&run, &mut |value| {
                 row[place] = value;
@@ -313,7 +313,7 @@ impl RunView<'_> {
 
     /// Returns the values of fields.
     pub fn values(&self, fields: &[QuantityField]) -> Vec<f64> {
-        let (run, mut values) = (AskedRun::new(*self), Vec::new());
+        let (run, mut values) = (QuantityReader::new(*self), Vec::new());
         for field in fields {
             (field.read)(&run, &mut |value| values.push(value));
         }
@@ -333,7 +333,7 @@ mod tests {
         extent: Extent::Axes,
         meaning: text("twice the rate"),
         given: |_| true,
-        read: |run, out| give(out, run.of_axes(run.plant.truth().rate).map(|rate| 2.0 * rate)),
+        read: |run, out| give(out, run.about_axes(run.plant.truth().rate).map(|rate| 2.0 * rate)),
     };
 
     #[test]

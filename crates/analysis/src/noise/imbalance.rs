@@ -69,7 +69,7 @@ impl WheelSpectrum {
         let index = |output: usize| {
             let at = |own: &[WheelLines]| {
                 let lines = own.iter().flat_map(|lines| lines.outputs[output].all());
-                WindowRms::of_lines(lines.copied(), window)
+                WindowRms::from_lines(lines.copied(), window)
             };
             self.lines.chunks(each).map(at).collect()
         };

@@ -32,7 +32,7 @@ pub struct WindowRms {
 
 impl WindowRms {
     /// Returns the rms over windows of sines whose phases are unrelated.
-    pub fn of_lines(lines: impl Iterator<Item = SpectralLine>, window: Window) -> Self {
+    pub fn from_lines(lines: impl Iterator<Item = SpectralLine>, window: Window) -> Self {
         let mut sum = WindowVariances::default();
         for SpectralLine { frequency_rad_s, amplitude } in lines {
             let square = 0.5 * amplitude * amplitude;
@@ -45,7 +45,7 @@ impl WindowRms {
             sum.smear += square * weights.smear;
             sum.pde += square * weights.pde;
         }
-        Self::of_variances(&[sum], window)
+        Self::from_variances(&[sum], window)
     }
 
     /// Returns the rms of an output over windows, from all sources together.
@@ -53,11 +53,11 @@ impl WindowRms {
     /// # Errors
     /// See [`NoisyLoop::window_variances`].
     pub fn new(noisy: &NoisyLoop, output: usize, window: Window) -> Result<Self, String> {
-        Ok(Self::of_variances(&noisy.window_variances(output, window)?, window))
+        Ok(Self::from_variances(&noisy.window_variances(output, window)?, window))
     }
 
     /// Returns the rms over windows of several sources together.
-    fn of_variances(each: &[WindowVariances], window: Window) -> Self {
+    fn from_variances(each: &[WindowVariances], window: Window) -> Self {
         let rms = |value: fn(&WindowVariances) -> f64| f64::sqrt(each.iter().map(value).sum());
         Self {
             window_s: window.length,

@@ -2,7 +2,7 @@
 
 use flexsc_core::control::sensor::Accelerometer;
 use flexsc_core::record::Accelerations;
-use flexsc_figure::{Figure, Lines, OverTime};
+use flexsc_figure::{Figure, OverTime, PanelLines};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -28,7 +28,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
             (name, cycles.line_where(of))
         };
         let axes = if own { 3 } else { accelerometer.along.len() };
-        let lines = Lines::default().width(0.8).named((0..axes).map(line));
+        let lines = PanelLines::default().width(0.8).named((0..axes).map(line));
         whole.panel(&scenario.study.sensor_points[index], "m/s²", lines)
     };
     scenario.sensor.accelerometers().fold(whole, panel).figure()

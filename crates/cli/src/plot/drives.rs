@@ -2,7 +2,7 @@
 //! highest.
 
 use flexsc_core::record::DrivesMotion;
-use flexsc_figure::{Figure, Lines, OverTime, Point};
+use flexsc_figure::{Figure, OverTime, PanelLines, Point};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -38,8 +38,8 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         (_, constant) => format!("drives and natural frequencies ({constant} constant ones left out)"),
     };
     OverTime::new(title(story, &subject), story.end, 240)
-        .panel("angle", "rad", Lines::default().numbered("drive", (0..drives).map(angle)))
-        .panel("frequency over its highest", "", Lines::default().named(frequencies))
+        .panel("angle", "rad", PanelLines::default().numbered("drive", (0..drives).map(angle)))
+        .panel("frequency over its highest", "", PanelLines::default().named(frequencies))
         .figure()
 }
 

@@ -1,5 +1,7 @@
 //! The figures that logs and campaigns have, in the order in which they are listed.
 
+use std::sync::LazyLock;
+
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
@@ -12,7 +14,7 @@ use super::{
 };
 
 /// The figures of logs, in the order in which they are listed and drawn.
-const OF_LOGS: [&FigureSpec; 28] = [
+const LOG_FIGURES: [&FigureSpec; 28] = [
     &phase_plane::SPEC,
     &torque::SPEC,
     &angle::SPEC,
@@ -62,34 +64,16 @@ pub enum CampaignFigure {
 #[derive(Copy, Clone)]
 pub enum FigureKind {
     /// Figure of a log.
-    OfLog(&'static FigureSpec),
+    Log(&'static FigureSpec),
     /// Figure of a campaign.
-    OfCampaign(CampaignFigure),
+    Campaign(CampaignFigure),
 }
 
 /// All kinds, in the order in which they are listed.
-static KINDS: [FigureKind; OF_LOGS.len() + OF_CAMPAIGNS.len()] = {
-    let mut kinds = [FigureKind::OfLog(OF_LOGS[0]); OF_LOGS.len() + OF_CAMPAIGNS.len()];
-    let mut index = 1;
-    while index < kinds.len() {
-        kinds[index] = if index < OF_LOGS.len() {
-            FigureKind::OfLog(OF_LOGS[index])
-        } else {
-            FigureKind::OfCampaign(OF_CAMPAIGNS[index - OF_LOGS.len()])
-        };
-        index += 1;
-    }
-    kinds
-};
-
-/// The figures of campaigns, in the order in which they are listed.
-const OF_CAMPAIGNS: [CampaignFigure; 5] = [
-    CampaignFigure::Distribution,
-    CampaignFigure::Scatter,
-    CampaignFigure::Fan,
-    CampaignFigure::Curve,
-    CampaignFigure::Region,
-];
+static KINDS: LazyLock<Vec<FigureKind>> = LazyLock::new(|| {
+    let of_campaigns = CampaignFigure::value_variants().iter().copied().map(FigureKind::Campaign);
+    LOG_FIGURES.into_iter().map(FigureKind::Log).chain(of_campaigns).collect()
+});
 
 impl ValueEnum for FigureKind {
     fn value_variants<'a>() -> &'a [Self] {
@@ -98,8 +82,8 @@ impl ValueEnum for FigureKind {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         match self {
-            Self::OfLog(spec) => Some(PossibleValue::new(spec.name).help(spec.contents)),
-            Self::OfCampaign(figure) => figure.to_possible_value(),
+            Self::Log(spec) => Some(PossibleValue::new(spec.name).help(spec.contents)),
+            Self::Campaign(figure) => figure.to_possible_value(),
         }
     }
 }
@@ -121,12 +105,12 @@ impl std::fmt::Debug for FigureKind {
 impl FigureKind {
     /// Returns the figures that a log has.
     pub fn all_in(story: &RunEvents) -> Vec<Self> {
-        OF_LOGS.into_iter().filter(|spec| (spec.is_in)(story)).map(Self::OfLog).collect()
+        LOG_FIGURES.into_iter().filter(|spec| (spec.is_in)(story)).map(Self::Log).collect()
     }
 
     /// Returns the declaration of the figure of a log.
-    pub fn of_log(self) -> Option<&'static FigureSpec> {
-        if let Self::OfLog(spec) = self { Some(spec) } else { None }
+    pub fn log_spec(self) -> Option<&'static FigureSpec> {
+        if let Self::Log(spec) = self { Some(spec) } else { None }
     }
 
     /// Returns the name of the figure as `--what` accepts it.

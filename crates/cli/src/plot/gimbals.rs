@@ -3,7 +3,7 @@
 
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::{ControlMomentGyro, ControlMomentGyros};
-use flexsc_figure::{Figure, Lines, OverTime};
+use flexsc_figure::{Figure, OverTime, PanelLines};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -30,14 +30,15 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
             [row.momentum_x_nm_s, row.momentum_y_nm_s, row.momentum_z_nm_s][axis]
         })
     };
-    let angles = Lines::default().numbered("gimbal", each(|gyro| gyro.angle_rad));
-    let rates = Lines::default().limits("limits", limit).numbered("gimbal", each(|gyro| gyro.rate_rad_s));
+    let angles = PanelLines::default().numbered("gimbal", each(|gyro| gyro.angle_rad));
+    let rates =
+        PanelLines::default().limits("limits", limit).numbered("gimbal", each(|gyro| gyro.rate_rad_s));
     let measure =
-        Lines::default().from_zero().line("", cycles.line(|row: &ControlMomentGyros| row.singularity));
+        PanelLines::default().from_zero().line("", cycles.line(|row: &ControlMomentGyros| row.singularity));
     OverTime::new(title(story, "control moment gyros"), story.end, 180)
         .panel("gimbal angle", "rad", angles)
         .panel("gimbal rate", "rad/s", rates)
         .panel("singularity measure", "", measure)
-        .panel("momentum", "N m s", Lines::default().vector(momentum))
+        .panel("momentum", "N m s", PanelLines::default().vector(momentum))
         .figure()
 }

@@ -1,7 +1,7 @@
 //! Figure `hinges` of a spacecraft whose appendages swing on hinges: angles and rates of the hinges.
 
 use flexsc_core::record::{HingeMotion, Hinges};
-use flexsc_figure::{Figure, Lines, OverTime};
+use flexsc_figure::{Figure, OverTime, PanelLines};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -19,7 +19,7 @@ pub const SPEC: FigureSpec = FigureSpec {
 fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let each = |of: fn(&HingeMotion) -> f64| {
         let hinges = 0..cycles.first::<Hinges>().map_or(0, |row| row.hinges.len());
-        Lines::default()
+        PanelLines::default()
             .numbered("hinge", hinges.map(|hinge| cycles.line(|row: &Hinges| of(&row.hinges[hinge]))))
     };
     OverTime::new(title(story, "hinges"), story.end, 240)

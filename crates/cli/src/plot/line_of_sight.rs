@@ -1,7 +1,7 @@
 //! Figure `line-of-sight` of a three-axis body: the error of each line of sight, and the displacement of its point.
 
 use flexsc_core::record::{LineOfSightAxis, LineOfSightSample};
-use flexsc_figure::{Figure, Layer, LayerShape, Lines, OverTime, RGBColor, colour};
+use flexsc_figure::{Figure, Layer, LayerShape, OverTime, PanelLines, RGBColor, colour};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -30,7 +30,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
                 Layer::new(names[axis], COLOURS[axis], LayerShape::Line(0.8), cycles.line_where(of))
             };
             let moving = |layer: &Layer| layer.points.iter().any(|(_, value)| *value != 0.0);
-            (0..3).map(layer).filter(moving).fold(Lines::default(), Lines::layer)
+            (0..3).map(layer).filter(moving).fold(PanelLines::default(), PanelLines::layer)
         };
         let errors = lines(["about x", "about y", "about z"], |axis| axis.error_rad);
         let displacements = lines(["along x", "along y", "along z"], |axis| axis.displacement_m);

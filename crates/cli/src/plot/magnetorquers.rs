@@ -2,7 +2,7 @@
 //! rate of the body.
 
 use flexsc_core::record::{Magnetorquers, Rates, Wheels};
-use flexsc_figure::{Figure, Lines, OverTime};
+use flexsc_figure::{Figure, OverTime, PanelLines};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -29,7 +29,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         ("rate", "rad/s", cycles.rates(|rigid, _| norm(rigid)))
     };
     OverTime::new(title(story, "magnetorquers"), story.end, 200)
-        .panel("moment", "A m²", Lines::default().limits("largest", largest).vector(moment))
-        .panel(name, unit, Lines::default().from_zero().line("", kept))
+        .panel("moment", "A m²", PanelLines::default().limits("largest", largest).vector(moment))
+        .panel(name, unit, PanelLines::default().from_zero().line("", kept))
         .figure()
 }

@@ -259,7 +259,7 @@ fn drawn_over(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
         ))
     })?;
-    let chosen: Vec<&FigureSpec> = chosen.into_iter().filter_map(FigureKind::of_log).collect();
+    let chosen: Vec<&FigureSpec> = chosen.into_iter().filter_map(FigureKind::log_spec).collect();
     let is_three_axis = story.scenario.axis_count() == 3;
     let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
     let mut rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();

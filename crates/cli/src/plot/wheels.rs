@@ -6,7 +6,7 @@ use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record;
-use flexsc_figure::{Figure, Lines, OverTime};
+use flexsc_figure::{Figure, OverTime, PanelLines};
 
 use super::figure_spec::RunData;
 use super::run_events::RunEvents;
@@ -26,7 +26,7 @@ pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let count = cycles.first::<record::Wheels>().map_or(0, |row| row.wheels.len());
     let each = |limit: Option<f64>, value_of: fn(&record::Wheel) -> f64| {
         let line = |wheel: usize| cycles.line(|row: &record::Wheels| value_of(&row.wheels[wheel]));
-        Lines::default().limits("limits", limit).numbered("wheel", (0..count).map(line))
+        PanelLines::default().limits("limits", limit).numbered("wheel", (0..count).map(line))
     };
     let figure = OverTime::new(title(story, "wheels"), story.end, 200)
         .panel("speed", "rad/s", each(speed, |wheel| wheel.speed_rad_s))
@@ -38,7 +38,7 @@ pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let errors =
         AXES.iter().enumerate().map(|(axis, name)| ((*name).to_owned(), cycles.errors(|error| error[axis])));
     figure
-        .panel("friction", "N m", Lines::default().numbered("wheel", (0..count).map(friction)))
-        .panel("error", "rad", Lines::default().named(errors))
+        .panel("friction", "N m", PanelLines::default().numbered("wheel", (0..count).map(friction)))
+        .panel("error", "rad", PanelLines::default().named(errors))
         .figure()
 }

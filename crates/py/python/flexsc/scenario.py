@@ -4315,8 +4315,8 @@ class Uniform(Part, kw_only=False):
 
 
 class UniformPlate(Part):
-    """A uniform rectangular panel, clamped at the middle of one edge, in its first bending mode: that of a
-    cantilever. Its mass is that of the appendage.
+    """A uniform rectangular panel of the mass of its appendage, clamped at the middle of one edge, in the
+    first bending mode of a cantilever.
 
     Args:
         length: Length from the root to the tip (m).

@@ -79,7 +79,7 @@ analyses! {
     ;
     "bounds" => loops::bounds,
     "loop_parts" => loops::loop_parts,
-    "metrics" => tables::metric_meanings,
+    "metrics" => tables::metric_descriptions,
     "rigid_cycles" => tables::rigid_cycles,
     "schema" => tables::schema,
     "topics" => tables::topics,

@@ -62,7 +62,7 @@ pub fn schema(_: &Subject<'_, '_>) -> PyResult<Answer> {
 }
 
 /// Meanings of the metrics: of all, or as a scenario has them, whose body without inertia gives some other units.
-pub fn metric_meanings(on: &Subject<'_, '_>) -> PyResult<Answer> {
+pub fn metric_descriptions(on: &Subject<'_, '_>) -> PyResult<Answer> {
     let inner = on.scenario.map(|scenario| &scenario.inner);
     let meanings =
         metrics::ALL.iter().filter_map(|m| Some((m.name.to_owned(), metrics::meaning(m.name, inner)?)));

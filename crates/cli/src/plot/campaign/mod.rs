@@ -44,7 +44,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         let path = directory.display();
         return Err(CliError::Arguments(format!("--what: {topic} is for logs, and {path} is a directory")));
     }
-    let fans = if asked.is_empty() || asked.contains(&FigureKind::OfCampaign(CampaignFigure::Fan)) {
+    let fans = if asked.is_empty() || asked.contains(&FigureKind::Campaign(CampaignFigure::Fan)) {
         fan::logs(directory, &files, tables.is_empty() || !asked.is_empty())?
     } else {
         BTreeMap::new()
@@ -58,7 +58,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         )));
     }
     let mut available: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
-    available.extend((!fans.is_empty()).then_some(FigureKind::OfCampaign(CampaignFigure::Fan)));
+    available.extend((!fans.is_empty()).then_some(FigureKind::Campaign(CampaignFigure::Fan)));
     let all = select(&asked, &available).map_err(|(missing, there)| {
         let path = directory.display();
         CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
@@ -117,12 +117,12 @@ pub fn directory_figures(
     let mut tables = table::read(directory, &files, metric)?;
     tables.extend(parts::read(directory, &files, metric)?);
     let mut figures = Vec::new();
-    if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::OfCampaign(CampaignFigure::Fan)) {
+    if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::Campaign(CampaignFigure::Fan)) {
         for runs in &tables {
             figures.extend(run_figures(runs, kinds, metric, directory)?);
         }
     }
-    if kinds.is_empty() || kinds.contains(&FigureKind::OfCampaign(CampaignFigure::Fan)) {
+    if kinds.is_empty() || kinds.contains(&FigureKind::Campaign(CampaignFigure::Fan)) {
         for (name, paths) in fan::logs(directory, &files, false)? {
             figures.push((format!("{name}-fan"), fan::figure(&name, &paths)?));
         }
@@ -165,10 +165,10 @@ fn files(directory: &Path) -> Result<Vec<String>, CliError> {
 fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
     let swept = runs.swept().len();
     [
-        (FigureKind::OfCampaign(CampaignFigure::Curve), swept == 1),
-        (FigureKind::OfCampaign(CampaignFigure::Region), swept == 2),
-        (FigureKind::OfCampaign(CampaignFigure::Distribution), true),
-        (FigureKind::OfCampaign(CampaignFigure::Scatter), !scatter::keys(runs).is_empty()),
+        (FigureKind::Campaign(CampaignFigure::Curve), swept == 1),
+        (FigureKind::Campaign(CampaignFigure::Region), swept == 2),
+        (FigureKind::Campaign(CampaignFigure::Distribution), true),
+        (FigureKind::Campaign(CampaignFigure::Scatter), !scatter::keys(runs).is_empty()),
     ]
     .into_iter()
     .filter_map(|(kind, is)| is.then_some(kind))
@@ -178,11 +178,11 @@ fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
 /// Returns the kinds of figures that are drawn if none is named.
 fn natural(runs: &CampaignRuns) -> Vec<FigureKind> {
     let wanted = match runs.swept().len() {
-        1 => vec![FigureKind::OfCampaign(CampaignFigure::Curve)],
-        2 => vec![FigureKind::OfCampaign(CampaignFigure::Region)],
+        1 => vec![FigureKind::Campaign(CampaignFigure::Curve)],
+        2 => vec![FigureKind::Campaign(CampaignFigure::Region)],
         _ => vec![
-            FigureKind::OfCampaign(CampaignFigure::Distribution),
-            FigureKind::OfCampaign(CampaignFigure::Scatter),
+            FigureKind::Campaign(CampaignFigure::Distribution),
+            FigureKind::Campaign(CampaignFigure::Scatter),
         ],
     };
     let drawable = drawable(runs);
@@ -232,14 +232,12 @@ fn drawn(kind: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Ve
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };
     match kind {
-        FigureKind::OfCampaign(CampaignFigure::Distribution) => {
+        FigureKind::Campaign(CampaignFigure::Distribution) => {
             each(&|metric| Some(distribution::figure(runs, metric)))
         }
-        FigureKind::OfCampaign(CampaignFigure::Scatter) => {
-            each(&|metric| Some(scatter::figure(runs, metric)))
-        }
-        FigureKind::OfCampaign(CampaignFigure::Region) => each(&|metric| region::figure(runs, metric)),
-        FigureKind::OfCampaign(CampaignFigure::Curve) => {
+        FigureKind::Campaign(CampaignFigure::Scatter) => each(&|metric| Some(scatter::figure(runs, metric))),
+        FigureKind::Campaign(CampaignFigure::Region) => each(&|metric| region::figure(runs, metric)),
+        FigureKind::Campaign(CampaignFigure::Curve) => {
             let key = runs.swept().into_iter().next().filter(|_| !metrics.is_empty());
             let curve = key.map(|key| curve::figure(runs, metrics, key));
             curve.map(|figure| (format!("{}-{}", runs.name, kind.name()), figure)).into_iter().collect()

@@ -40,9 +40,8 @@ pub enum PlateAxis {
     Y,
 }
 
-/// A uniform rectangular panel, clamped at the middle of one edge, in its first bending mode: that of a cantilever.
-///
-/// Its mass is that of the appendage.
+/// A uniform rectangular panel of the mass of its appendage, clamped at the middle of one edge, in the first bending mode of
+/// a cantilever.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UniformPlate {

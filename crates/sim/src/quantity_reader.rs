@@ -1,4 +1,4 @@
-//! Run that is asked for its quantities: the parts of the values that several rows of the table share.
+//! Reader of the quantities of a run: what several rows of the table read.
 
 use std::cell::OnceCell;
 use std::ops::Deref;
@@ -17,8 +17,8 @@ pub fn give(out: &mut dyn FnMut(f64), values: impl IntoIterator<Item = f64>) -> 
     Some(())
 }
 
-/// Run that is asked, with what its laws would read at this instant.
-pub struct AskedRun<'a> {
+/// Run at an instant, with what its laws would read then.
+pub struct QuantityReader<'a> {
     run: RunView<'a>,
     law_inputs: OnceCell<LawInputs>,
 }
@@ -29,7 +29,7 @@ struct LawInputs {
     setpoints: Vec<Setpoint>,
 }
 
-impl<'a> Deref for AskedRun<'a> {
+impl<'a> Deref for QuantityReader<'a> {
     type Target = RunView<'a>;
 
     fn deref(&self) -> &RunView<'a> {
@@ -37,8 +37,8 @@ impl<'a> Deref for AskedRun<'a> {
     }
 }
 
-impl<'a> AskedRun<'a> {
-    /// Creates the run at its current instant.
+impl<'a> QuantityReader<'a> {
+    /// Creates the reader of a run at its current instant.
     pub const fn new(run: RunView<'a>) -> Self {
         Self { run, law_inputs: OnceCell::new() }
     }
@@ -59,7 +59,7 @@ impl<'a> AskedRun<'a> {
     }
 
     /// Iterates over the values about the axes of the body.
-    pub fn of_axes(&self, values: [f64; 3]) -> impl Iterator<Item = f64> + use<> {
+    pub fn about_axes(&self, values: [f64; 3]) -> impl Iterator<Item = f64> + use<> {
         values.into_iter().take(self.axes())
     }
 
@@ -88,9 +88,9 @@ impl<'a> AskedRun<'a> {
 
     fn true_motion(&self, part: usize, out: &mut dyn FnMut(f64)) -> Option<()> {
         if part == 1 {
-            return give(out, self.of_axes(self.plant.truth().rate));
+            return give(out, self.about_axes(self.plant.truth().rate));
         }
-        give(out, self.of_axes(self.plant.sensed_angles(&self.guidance.origin(self.now))))
+        give(out, self.about_axes(self.plant.sensed_angles(&self.guidance.origin(self.now))))
     }
 
     /// Gives a part of the estimates predicted to this instant.
