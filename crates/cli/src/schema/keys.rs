@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
 
+use flexsc_core::formats::document::nearest;
 use serde_json::{Value as Json, json};
 
 /// Number of keys from which on a table stands in one place only, and other tables refer to it.
@@ -96,14 +97,16 @@ impl SchemaKeys {
         for name in path.split('.').filter(|name| !name.is_empty()) {
             let children = self.children(place);
             let Some(child) = children.iter().find(|child| child.name == name) else {
-                let known: Vec<String> = children.iter().map(|child| format!("`{}`", child.name)).collect();
+                let names: Vec<&str> = children.iter().map(|child| child.name).collect();
+                let known: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
                 let of = if above.is_empty() { "a scenario".to_owned() } else { format!("`{above}`") };
                 let known = if known.is_empty() {
                     "it is no table".to_owned()
                 } else {
                     format!("expected {}", known.join(", "))
                 };
-                return Err(format!("{of} has no key `{name}`: {known}"));
+                let meant = nearest(name, &names).map(|meant| format!("\n\nhint: did you mean `{meant}`?"));
+                return Err(format!("{of} has no key `{name}`: {known}{}", meant.unwrap_or_default()));
             };
             place = child.value;
             meaning = child.variant.unwrap_or_else(|| self.described(child.value));
@@ -125,8 +128,8 @@ impl SchemaKeys {
         let name = joined(within, child.name);
         let mut meaning = plain(child.variant.unwrap_or_else(|| self.described(child.value)));
         let unit = take_unit(&mut meaning);
-        meaning += &self.choices(&node);
-        meaning += &accepted(&node);
+        meaning += &self.choices(&node, &meaning);
+        meaning += &self.accepted(&node);
         let inner = self.children(child.value);
         let path =
             self.type_name(child.value).and_then(|name| self.paths.get(name)).map_or("", String::as_str);
@@ -247,17 +250,37 @@ impl SchemaKeys {
         }
     }
 
-    /// Returns the values of a choice between words, each with its meaning, as sentences after that of the key.
-    fn choices(&self, node: &Node) -> String {
+    /// Returns the range of a number, and whether three numbers may stand for one, as sentences.
+    fn accepted(&self, node: &Node) -> String {
+        let Some(part) = node.parts.last() else { return String::new() };
+        let bound = |keyword: &str| part[keyword].as_f64().filter(|bound| bound.abs() < 1e12);
+        let range = match (bound("minimum"), bound("maximum")) {
+            (Some(low), Some(high)) => format!(" From {} to {}.", rounded(low), rounded(high)),
+            _ => String::new(),
+        };
+        let is_three = |choice: &&Json| choice["minItems"] == 3 && choice["maxItems"] == 3;
+        let is_one =
+            |choice: &Json| self.node(choice).parts.last().is_some_and(|part| part["type"] == "number");
+        let is_each =
+            choices(part, "anyOf").any(|choice| is_three(&choice)) && choices(part, "anyOf").any(is_one);
+        range + if is_each { " One number, or three." } else { "" }
+    }
+
+    /// Returns the values of a choice between words that the meaning of the key does not name, each with its own meaning, as
+    /// sentences after that of the key.
+    fn choices(&self, node: &Node, meaning: &str) -> String {
         let Some(part) = node.parts.last() else { return String::new() };
         if part["items"].is_object() {
-            return self.choices(&self.node(&part["items"]));
+            return self.choices(&self.node(&part["items"]), meaning);
         }
         let values = choices(part, "oneOf").chain(choices(part, "anyOf"));
         let mut text = String::new();
         for value in values {
             if let Some(word) = value["const"].as_str() {
                 let means = plain(description(value));
+                if means.is_empty() && meaning.contains(&format!("`\"{word}\"`")) {
+                    continue;
+                }
                 let means =
                     if means.is_empty() { String::new() } else { format!(": {}", uncapitalised(&means)) };
                 let means = means.trim_end_matches('.');
@@ -265,7 +288,8 @@ impl SchemaKeys {
                     .expect("memory");
             }
         }
-        for word in part["enum"].as_array().into_iter().flatten().filter_map(Json::as_str) {
+        let words = part["enum"].as_array().into_iter().flatten().filter_map(Json::as_str);
+        for word in words.filter(|word| !meaning.contains(&format!("`\"{word}\"`"))) {
             write!(text, "{} `\"{word}\"`", if text.is_empty() { "" } else { "," }).expect("memory");
         }
         if text.is_empty() { text } else { text + "." }
@@ -353,20 +377,6 @@ fn is_unit(text: &str) -> bool {
     !symbols.is_empty() && text.chars().all(is_other) && symbols.iter().all(|symbol| SYMBOLS.contains(symbol))
 }
 
-/// Returns the range of a number, and whether three numbers may stand for one, as sentences.
-fn accepted(node: &Node) -> String {
-    let Some(part) = node.parts.last() else { return String::new() };
-    let bound = |keyword: &str| part[keyword].as_f64().filter(|bound| bound.abs() < 1e12);
-    let range = match (bound("minimum"), bound("maximum")) {
-        (Some(low), Some(high)) => format!(" From {} to {}.", rounded(low), rounded(high)),
-        _ => String::new(),
-    };
-    let is_three = |choice: &&Json| choice["minItems"] == 3 && choice["maxItems"] == 3;
-    let is_each =
-        choices(part, "anyOf").count() == 2 && choices(part, "anyOf").any(|choice| is_three(&choice));
-    range + if is_each { " One number, or three." } else { "" }
-}
-
 /// Returns a bound with at most four decimals, or as a power of ten.
 fn rounded(bound: f64) -> String {
     let is_plain = bound == 0.0 || (1e-3..1e4).contains(&bound.abs());
@@ -429,6 +439,15 @@ mod tests {
     }
 
     #[test]
+    fn words_that_a_meaning_names_are_not_repeated() {
+        let craft = table("spacecraft");
+        let meaning =
+            |name: &str| craft.keys.iter().find(|key| key.name == name).map(|key| key.meaning.as_str());
+        assert!(meaning("rate").is_some_and(|text| text.ends_with("rates of the hub.")), "{}", craft.text());
+        assert_eq!(meaning("attitude").map(|text| text.matches("target\"").count()), Some(1));
+    }
+
+    #[test]
     fn kinds_choices_and_arrays_are_listed() {
         let kinds: Vec<String> = table("sensor").keys.into_iter().map(|key| key.name).collect();
         assert!(
@@ -461,6 +480,7 @@ mod tests {
             "{}",
             wrong("sensor.giro")
         );
+        assert!(wrong("sensr").ends_with("hint: did you mean `sensor`?"), "{}", wrong("sensr"));
         assert_eq!(wrong("duration.x"), "`duration` has no key `x`: it is no table");
     }
 
