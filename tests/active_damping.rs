@@ -339,9 +339,11 @@ fn modes_can_be_given() {
 #[test]
 fn figures_show_what_was_identified_and_damped() {
     let dir = Dir::with(&["iss-ringdown"]);
-    dir.run("simulate iss-ringdown.toml --set duration=60")
-        .exits(0)
-        .says(&["Hz (estimated / true)", "active damping in"]);
+    dir.run("simulate iss-ringdown.toml --set duration=60 --all").exits(0).says(&[
+        "Hz (identified / true)",
+        "active damping   in",
+        "6 identified",
+    ]);
     dir.run("plot iss-ringdown.mcap --format svg -o figures").exits(0);
     let figures = ["damping", "deflection", "energy", "jets", "pointing", "rates", "tracking"];
     assert_eq!(dir.names("figures"), figures.map(|what| format!("iss-ringdown-{what}.svg")));

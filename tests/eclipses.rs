@@ -173,10 +173,8 @@ fn shadows_and_drifts_that_do_not_fit_are_refused() {
 #[test]
 fn a_satellite_enters_the_shadow_without_a_thermal_snap() {
     let dir = Dir::with(&["eclipse-snap"]);
-    dir.run("simulate eclipse-snap.toml")
-        .exits(0)
-        .says(&["goal           met", "requirement    met: eclipse"]);
+    dir.run("simulate eclipse-snap.toml").exits(0).says(&["1 of 1 requirement met", "✓ eclipse"]);
     dir.run("simulate eclipse-snap.toml --set environment.shadow=cylinder --force")
         .exits(3)
-        .says(&["requirement    missed: eclipse"]);
+        .says(&["MISSED: 1 of 1 requirement", "✗ eclipse"]);
 }

@@ -237,7 +237,7 @@ fn a_dated_satellite_flies_a_campaign() {
 #[test]
 fn a_camera_follows_a_ground_site() {
     let dir = Dir::with(&["ground-pass"]);
-    dir.run("simulate ground-pass.toml").exits(0).says(&["goal           met", "requirement    met: pass"]);
+    dir.run("simulate ground-pass.toml").exits(0).says(&["1 of 1 requirement met", "✓ pass"]);
     let text = dir.text("ground-pass.toml");
     let refused = |from: &str, to: &str, key: &str, why: &str| {
         assert!(text.contains(from), "{from}");

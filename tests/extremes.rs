@@ -122,7 +122,7 @@ fn values_without_end_are_answered_or_refused() {
         "`actuator.wheels.friction.coulomb` must be at most 10 times the torque of the motor",
         "got 1000",
     ]);
-    dir.run_bounded(&format!("{friction}.breakaway=1000")).exits(0).says(&["4 stops"]);
+    dir.run_bounded(&format!("{friction}.breakaway=1000 --all")).exits(0).says(&["4 stops"]);
     // A wheel that its bearing stops within 40 ms: the steps resolve that.
     let short = "--set duration=40 --set estimator.attitude.assess=[0,30]";
     dir.run_bounded(&format!("{friction}.viscous=1 {short}")).exits(0);

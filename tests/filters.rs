@@ -283,7 +283,7 @@ fn a_filter_that_is_read_does_not_watch_only() {
     // An estimator that no law reads does not change the run, and the summary says so.
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]").to_toml());
-    dir.run("simulate loop.toml --log none --set duration=3").exits(0).says(&["not used by the law"]);
+    dir.run("simulate loop.toml --log none --set duration=3 --all").exits(0).says(&["not used by the law"]);
     let mut alone: toml::Table = looped("extended_kalman]").to_toml().parse().expect("TOML");
     alone.remove("estimator");
     let alone = metrics(Scenario::parse("alone", &alone.to_string()).expect("valid"));
@@ -323,7 +323,11 @@ fn gyro_sharpens_the_estimate() {
 fn estimates_are_in_a_full_log() {
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]\nprior = 'drawn'").to_toml());
-    dir.run("simulate loop.toml --log full --set duration=3").exits(0).says(&["frequency error", "stable"]);
+    dir.run("simulate loop.toml --log full --set duration=3").exits(0).says(&[
+        "frequency",
+        "estimate off by",
+        "stable",
+    ]);
     dir.run("simulate loop.toml --log none --set duration=3 --set estimator.extended_kalman.assess=[30,120]")
         .exits(0)
         .says(&["not assessed"]);

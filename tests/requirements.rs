@@ -118,13 +118,14 @@ fn a_missed_requirement_ends_with_3_and_is_beside_no_plain_goal() {
     dir.write("good.toml", text("\"1 min\""));
     dir.write("bad.toml", text("0.1"));
     dir.run("simulate good.toml --log none").exits(0).says(&[
-        "goal           met: ",
-        "requirement    met: settling",
-        "at most 60 s",
+        "hold   1 of 1 requirement met",
+        "✓ settling",
+        "at most 1 min",
     ]);
     dir.run("simulate bad.toml --log none").exits(3).says(&[
-        "goal           met (but 1 of 1 requirement is not): ",
-        "requirement    missed: settling",
+        "hold   MISSED: 1 of 1 requirement",
+        "✗ settling",
+        "× limit",
         "1 of 1 requirement not met; hold: settling is missed",
     ]);
     let object = dir.run("simulate bad.toml --log none --json").exits(3).json();
@@ -145,13 +146,13 @@ fn a_campaign_has_verdicts_with_intervals_and_confidence() {
     // 1 - 0.8^10 = 0.893 is below the confidence; 11 runs give 0.914.
     let few = "simulate study.toml --runs 10 --table csv -o few --metrics itae";
     dir.run(few).exits(3).says(&[
-        "undecided: error",
-        "10 of 10 met (100 %, 95 % interval 72 to 100)",
-        "confidence 89.26 %, 11 runs needed for 90 %",
+        "undecided: 10 of 10 runs meet the requirement, 100 % (72 to 100 %)",
+        "?  error",
+        "confidence 89.3 %, 11 runs needed for 90 %",
     ]);
     dir.run("simulate study.toml --runs 11 -o enough")
         .exits(0)
-        .says(&["requirement    met: error", "confidence 91.41 %, at least 90 %"]);
+        .says(&["✓  error", "error: met at 80 % of the runs; confidence 91.4 %, at least 90 %"]);
     for (table, verdict) in [("few/requirements.csv", "undecided"), ("enough/requirements.csv", "met")] {
         let text = dir.text(table);
         let mut lines = text.lines();
@@ -182,11 +183,9 @@ fn mixed_levels_of_a_campaign_count_all_values() {
     let cells: Vec<&str> = text.lines().nth(1).expect("a row").split(',').collect();
     let share: f64 = cells[7].parse().expect("a share");
     assert!(cells[2].is_empty() && share > 0.05 && share < 0.95, "{text}");
-    for (level, code, word) in [(share - 1e-6, 0, "met"), (share + 1e-6, 3, "missed")] {
+    for (level, code, mark) in [(share - 1e-6, 0, "✓  error"), (share + 1e-6, 3, "✗  error")] {
         dir.write("hold.toml", requirement(level));
-        dir.run("simulate hold.toml --runs 6")
-            .exits(code)
-            .says(&[&format!("requirement    {word}: error within")]);
+        dir.run("simulate hold.toml --runs 6").exits(code).says(&["error: within its limit for ", mark]);
     }
 }
 

@@ -45,9 +45,13 @@ fn object(dir: &Dir) -> Json {
 fn a_target_that_a_full_wheel_loses_is_a_warning() {
     let dir = Dir::holding("a.toml", format!("duration = 500.0\n{LAW}{BODY}{WHEELS}{}", turn(100.0)));
     let said = dir.run("simulate a.toml").exits(0).err;
-    let warning = "  warning        the target is lost: wheel 3 at its momentum limit for ";
-    let (_, line) = said.split_once(warning).unwrap_or_else(|| panic!("{said}"));
-    assert!(line.contains(" s from 105") && line.contains("error up to 27.2"), "{line}");
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (_, line) =
+        said.split_once("! the target is lost, error up to 27.2").unwrap_or_else(|| panic!("{said}"));
+    assert!(
+        line.contains("wheel 3 at its momentum limit for ") && line.contains(" s, first at 105 s"),
+        "{line}"
+    );
     let object = object(&dir);
     let metrics = &object["metrics"];
     assert_eq!(metrics["target_losses"], 1);
@@ -62,11 +66,10 @@ fn a_target_that_a_full_wheel_loses_is_a_warning() {
     is_near(numbers(metrics, "wheel_momentum_limit_times_s")[0], time, 1e-9);
     let share = metrics["wheel_momentum_limit_share"].as_f64().expect("a share");
     is_near(share, time / 500.0, 1e-3);
-    assert!(
-        object["warnings"][0]
-            .as_str()
-            .is_some_and(|text| line.starts_with(text.split(" for ").nth(1).expect("a time")))
-    );
+    let warning = &object["answer"]["warnings"][0];
+    assert_eq!((&warning["kind"], &object["warnings"][0]), (&"target_lost".into(), &warning["text"]));
+    assert!(warning["text"].as_str().is_some_and(|text| said.contains(text)), "{warning}");
+    assert_eq!(object["answer"]["events"][0]["part"], "wheel 3 at its momentum limit");
     dir.run("export a.mcap --topic /log")
         .exits(0)
         .prints(&["the target is lost: wheel 3 at its momentum limit"]);
@@ -78,10 +81,10 @@ fn visits_of_a_mode_are_one_warning() {
     let object = object(&dir);
     let warnings = object["warnings"].as_array().expect("warnings");
     let text = warnings[0].as_str().expect("a text");
-    let head = "mode turn loses its target in 2 of 2 visits: wheel 3 at its momentum limit for ";
-    assert!(text.starts_with(head) && text.contains(" s from 305"), "{text}");
+    let head = "turn: target lost in 2 of 2 visits, error up to ";
+    assert!(text.starts_with(head) && text.contains(" s, first at 305 s"), "{text}");
     assert_eq!(
-        warnings.iter().filter(|text| text.as_str().is_some_and(|text| text.contains("lose"))).count(),
+        warnings.iter().filter(|text| text.as_str().is_some_and(|text| text.contains("lost"))).count(),
         1
     );
     let metrics = &object["metrics"];
@@ -118,12 +121,15 @@ fn a_ground_pass_that_a_wheel_loses_is_said() {
     let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("imbalance")).collect();
     let balanced = lines.join("\n");
     let dir = Dir::holding("a.toml", balanced);
-    let said = dir.run("simulate a.toml --log none").err;
-    let warning =
-        "mode pass loses its target in 1 of 1 visits: wheel 3 at its speed limit for 127 s from 12618";
+    let said = dir.run("simulate a.toml --log none").err.split_whitespace().collect::<Vec<_>>().join(" ");
+    let warning = "! pass: target lost in 1 of 1 visits, error up to 9.28 deg, before it 0.0510; \
+                   wheel 3 at its speed limit for 127 s, first at 12 618 s";
     assert!(said.contains(warning), "{said}");
-    assert!(said.contains("error up to 9.281 deg, before 1") && said.matches("lose").count() == 1, "{said}");
-    assert!(!said.contains("  goal  "), "{said}");
+    assert!(
+        said.contains("but mode pass loses its target") && said.matches("target lost").count() == 1,
+        "{said}"
+    );
+    assert!(!said.contains("goal"), "{said}");
 }
 
 /// Jets of 0.03 N m give 0.5 mrad/s², half of what the slew needs: the reference leads by half of the rest times the square of the

@@ -17,10 +17,11 @@ use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
+use flexsc_core::answer::Answer;
 use flexsc_core::campaign::{
     Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
-use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::Units;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
 use flexsc_core::requirement_verdict::{self, RequirementRuns, RequirementVerdict};
@@ -28,11 +29,11 @@ use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
+use crate::answer::AnswerArgs;
 use crate::error::CliError;
-use crate::human::Units;
 use crate::results::print_lines;
 use crate::runs_table::RunsTable;
-use crate::{files, requirements, run_warnings, say, stop, summary};
+use crate::{files, requirements, say, stop};
 use campaign_record::CampaignRecord;
 pub use campaign_record::SCENARIO;
 pub use options::{CampaignOptions, TableFormat};
@@ -94,8 +95,8 @@ pub struct CampaignJob<'a> {
     pub jobs: Option<u16>,
     /// True if each run is printed as JSON.
     pub json: bool,
-    /// Units of the summary of a single run.
-    pub units: Units,
+    /// Options of the answer.
+    pub answer: AnswerArgs,
     /// Address of the scheduler whose workers make the runs, if any.
     pub scheduler: Option<&'a str>,
     /// True if runs are simulated without a log: many of them are then simulated together in batches.
@@ -126,13 +127,12 @@ pub fn run(
     if !job.json {
         let (name, took) = (&campaign.scenario().name, began.elapsed().as_secs_f64());
         if let Some(only) = &reported.only {
-            summary::print_summary(campaign.scenario(), only, took, job.units);
+            job.answer.print(&job.answer.answer(campaign.scenario(), only, None), took, None);
+            if let Some(path) = &reported.table {
+                say!("  table {}", path.display());
+            }
         } else {
-            say!("{name}   {}, {took:.2} s", counted(runs, "run"));
-            reported.say(job.units);
-        }
-        if let Some(path) = &reported.table {
-            say!("  table          {}", path.display());
+            reported.say(name, Some(took), &job.answer);
         }
     }
     match reported.failed {
@@ -308,7 +308,7 @@ impl CampaignPrinter<'_> {
             let RunOutcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(self.campaign, *number, drawn, metrics.as_ref())])?;
         }
-        self.requirements.add(outcome.metrics.as_ref().ok());
+        self.requirements.add(outcome.number, outcome.metrics.as_ref().ok());
         match outcome.metrics {
             Ok(metrics) => {
                 self.all.add(&metrics);
@@ -349,9 +349,9 @@ pub fn object(
             if !verdicts.is_empty() {
                 object["requirements"] = requirements::json(&verdicts);
             }
-            let warnings = run_warnings::warnings(campaign.scenario(), metrics, Units::Engineering);
-            if !warnings.is_empty() {
-                object["warnings"] = json!(warnings);
+            let own = Answer::new(campaign.scenario(), metrics, None, Units::default());
+            if !own.warnings.is_empty() {
+                object["warnings"] = own.warnings.iter().map(|warning| json!(warning.text)).collect();
             }
         }
         Err(error) => object["error"] = json!(error.to_string()),

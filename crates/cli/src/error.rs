@@ -82,6 +82,9 @@ pub enum CliError {
     /// Requirements that are not met.
     #[error("{0}")]
     Requirements(String),
+    /// Run whose motion diverges.
+    #[error("{0}")]
+    Diverged(String),
     /// Campaign with missing runs.
     #[error("{0}")]
     Incomplete(String),

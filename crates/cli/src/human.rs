@@ -14,6 +14,15 @@ pub enum Units {
     Si,
 }
 
+impl From<Units> for flexsc_core::formats::reader_units::Units {
+    fn from(units: Units) -> Self {
+        match units {
+            Units::Engineering => Self::Engineering,
+            Units::Si => Self::Si,
+        }
+    }
+}
+
 /// The option of verbs that print quantities for people.
 #[derive(clap::Args, Copy, Clone, Default)]
 #[group(skip)]

@@ -1,5 +1,6 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
+mod answer;
 mod bound;
 mod budget;
 mod campaign;
@@ -44,7 +45,6 @@ mod reproduce;
 mod requirements;
 mod result_files;
 mod results;
-mod run_warnings;
 mod runs_table;
 mod sampled_loop;
 mod scenario;
@@ -54,7 +54,6 @@ mod simulate;
 mod spectrum;
 mod stop;
 mod success_rate;
-mod summary;
 mod sweep;
 mod terminal;
 mod top;
@@ -83,7 +82,6 @@ use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 pub use human::Units;
-pub use run_warnings::warnings;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft
 #[derive(Parser)]

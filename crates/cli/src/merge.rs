@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use flexsc_core::campaign::{Directory, Merge};
 use flexsc_core::formats::count::counted;
 
+use crate::answer::AnswerArgs;
 use crate::campaign::{TableFormat, file, part_files};
 use crate::error::CliError;
-use crate::human::Units;
 use crate::out::Out;
 use crate::{files, say, stop};
 
@@ -73,7 +73,7 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
             let remaining: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
             let reported = part_files::summary(&into, &merge.manifest().runs())?;
             say!("{}: {}, {remaining} missing", path.display(), counted(reported.runs, "run"));
-            reported.say(Units::default());
+            reported.say(&merge.work().campaign.scenario().name, None, &AnswerArgs::default());
             if !missing.is_empty() {
                 return Err(incomplete(
                     &missing,

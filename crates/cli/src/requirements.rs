@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::Write;
 use std::path::Path;
 
+use flexsc_core::answer::Answer;
 use flexsc_core::formats::count::counted;
 use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
 use serde_json::Value as Json;
@@ -22,7 +23,7 @@ pub fn print(verdicts: &[RequirementVerdict], units: Units) {
 
 /// Returns the verdict in words.
 fn text(verdict: &RequirementVerdict, units: Units) -> String {
-    let RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence } = verdict;
+    let RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence, .. } = verdict;
     let limit = units.quantity(requirement.limit, requirement.unit);
     let name = &requirement.name;
     let found = if value.is_finite() {
@@ -111,6 +112,16 @@ pub fn write_table(path: &Path, verdicts: &[RequirementVerdict]) -> Result<(), C
     files::write_within(&[(path.to_owned(), bytes)])
 }
 
+/// Fails if the answer of any scenario misses a requirement.
+pub fn validate_answers(answers: &[(String, Answer)]) -> Result<(), CliError> {
+    let all = answers.iter().map(|(_, answer)| answer.requirements.len()).sum();
+    let missed = |(scenario, answer): &(String, Answer)| -> Vec<String> {
+        let missed = answer.requirements.iter().filter(|own| !own.met);
+        missed.map(|own| format!("{scenario}: {} is missed", own.name)).collect()
+    };
+    unmet(answers.iter().flat_map(missed).collect(), all)
+}
+
 /// Fails if a requirement of any scenario is not met.
 pub fn validate<'a>(
     scenarios: impl IntoIterator<Item = (&'a str, &'a [RequirementVerdict])>,
@@ -124,6 +135,11 @@ pub fn validate<'a>(
             format!("{scenario}: {} is {}", verdict.requirement.name, verdict.decision.word())
         }));
     }
+    self::unmet(unmet, all)
+}
+
+/// Fails with the requirements that are not met, if there are any.
+fn unmet(unmet: Vec<String>, all: usize) -> Result<(), CliError> {
     if unmet.is_empty() {
         return Ok(());
     }

@@ -8,22 +8,25 @@ use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
+use flexsc_core::answer::{Answer, RunObserver};
 use flexsc_core::campaign::{Campaign, CampaignRun, Design, Directory};
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, RecordError};
-use flexsc_core::requirement_verdict::{self, RequirementVerdict};
+use flexsc_core::requirement_verdict::RequirementVerdict;
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
+use serde_json::json;
+
+use crate::answer::AnswerArgs;
 use crate::campaign::logs::{self, LogDetail, simulate_to_log};
 use crate::campaign::{self, CampaignOptions, TableFormat, part_files};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::UnitsArgs;
 use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, stop_flag};
-use crate::{files, out, requirements, say, scenario, summary};
+use crate::{files, out, requirements, say, scenario};
 
 #[derive(clap::Args)]
 pub struct SimulateArgs {
@@ -62,7 +65,7 @@ pub struct SimulateArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    units: UnitsArgs,
+    answer: AnswerArgs,
     #[command(flatten)]
     options: CampaignOptions,
     #[command(flatten)]
@@ -160,19 +163,22 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
     args.make_room(&place)?;
     let prefixed = campaigns.len() > 1;
     let mut failures = Vec::new();
-    let mut judged = Vec::new();
+    let (mut answers, mut judged) = (Vec::new(), Vec::new());
     for campaign in campaigns {
+        let name = campaign.scenario().name.clone();
         let done = match &args.runs {
             None => {
-                let log = (place.log(&campaign.scenario().name), args.detail(LogDetail::Events));
+                let log = (place.log(&name), args.detail(LogDetail::Events));
                 single(&campaign, &scenario_run(&campaign), args, log)
+                    .map(|answer| answers.push((name, answer)))
             }
-            Some(runs) => several(&campaign, (args, &place), runs, (prefixed, &selection)),
+            Some(runs) => several(&campaign, (args, &place), runs, (prefixed, &selection))
+                .map(|verdicts| judged.push((name, verdicts))),
         };
         match done {
             // The other scenarios are still run.
             Err(failure @ (CliError::Run { .. } | CliError::Runs { .. })) => failures.push(failure),
-            done => judged.push((campaign.scenario().name.clone(), done?)),
+            done => done?,
         }
     }
     let last = failures.pop();
@@ -180,6 +186,7 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
         failure.print();
     }
     last.map_or(Ok(()), Err)?;
+    args.answer.validate(&answers)?;
     requirements::validate(judged.iter().map(|(name, verdicts)| (name.as_str(), &verdicts[..])))
 }
 
@@ -212,8 +219,8 @@ impl SimulateArgs {
         let place = self.place()?;
         self.make_room(&place)?;
         let log = place.log(&format!("{}-{row}", run.scenario.name));
-        let verdicts = single(&work.campaign, &run, self, (log, detail))?;
-        requirements::validate([(run.scenario.name.as_str(), &verdicts[..])])
+        let answer = single(&work.campaign, &run, self, (log, detail))?;
+        self.answer.validate(&[(run.scenario.name.clone(), answer)])
     }
 
     /// Returns the level of detail of the log, with a default.
@@ -285,7 +292,7 @@ fn several(
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        units: args.units.units,
+        answer: args.answer,
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };
@@ -297,20 +304,21 @@ pub fn scenario_run(campaign: &Campaign) -> CampaignRun {
     CampaignRun::new(campaign.scenario().clone(), 0)
 }
 
-/// Simulates a single run, with its log.
+/// Simulates a single run, with its log, and returns its answer.
 fn single(
     campaign: &Campaign,
     run: &CampaignRun,
     args: &SimulateArgs,
     (path, detail): (PathBuf, Option<Detail>),
-) -> Result<Vec<RequirementVerdict>, CliError> {
+) -> Result<Answer, CliError> {
     let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
     let mut live = args.live.serve(run)?;
     let began = WallInstant::now();
     // A live run has no bar, since the user types commands on that line.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
-    let record = (stop_flag(), (&mut progress, &mut live));
+    let mut observer = RunObserver::new(&run.scenario);
+    let record = (stop_flag(), (&mut observer, (&mut progress, &mut live)));
     let result = match detail {
         None => Campaign::simulate(run, record).map(|metrics| (metrics, None)),
         Some(detail) => simulate_to_log(run, &path, (detail, args.force), record)
@@ -327,18 +335,18 @@ fn single(
         }
         source => CliError::Run { name: name.clone(), source },
     })?;
+    let answer = args.answer.answer_of(&run.scenario, &metrics, observer);
     if args.json {
-        print_lines(&[campaign::object(campaign, run.number, &run.drawn, Ok(&metrics))])?;
+        let mut object = campaign::object(campaign, run.number, &run.drawn, Ok(&metrics));
+        object["answer"] = json!(answer);
+        print_lines(&[object])?;
     } else {
-        summary::print_summary(&run.scenario, &metrics, took, args.units.units);
-        if let Some(bytes) = bytes {
-            say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
-        }
+        args.answer.print(&answer, took, bytes.map(|bytes| (&*path, bytes)));
     }
     if let Some(live) = live {
         live.finish(&metrics);
     }
-    Ok(requirement_verdict::run_verdicts(&run.scenario, &metrics))
+    Ok(answer)
 }
 
 fn interrupted(log: Option<Detail>, path: &Path) -> String {

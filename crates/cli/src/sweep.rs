@@ -14,6 +14,7 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::is_number;
 use flexsc_core::record::Detail;
 
+use crate::answer::AnswerArgs;
 use crate::campaign::logs::{self, LogDetail};
 use crate::campaign::{CampaignOptions, TableFormat};
 use crate::confirm_cost::CostConfirmation;
@@ -237,7 +238,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        units: args.units.units,
+        answer: AnswerArgs::of_units(args.units),
         scheduler,
         plain: detail.is_none(),
     };

@@ -29,6 +29,8 @@ pub struct RequirementVerdict {
     pub runs_met: u64,
     /// Confidence of a level below 1 of the ensemble.
     pub confidence: Option<Confidence>,
+    /// Run with the largest value, or the first one without a value: its number, and the value.
+    pub worst: (u64, f64),
 }
 
 /// Decision on a requirement.
@@ -68,7 +70,8 @@ pub struct Confidence {
 #[derive(Clone, Debug, Default)]
 pub struct RequirementRuns {
     requirements: Vec<AssessedRequirement>,
-    runs: u64,
+    /// Numbers of the runs.
+    runs: Vec<u64>,
     /// Values and shares of each requirement, one of each run.
     values: Vec<Vec<f64>>,
     shares: Vec<Vec<f64>>,
@@ -79,7 +82,7 @@ impl RequirementRuns {
     pub fn new(scenario: &Scenario) -> Self {
         let requirements = scenario.study.requirements.clone();
         let empty = vec![Vec::new(); requirements.len()];
-        Self { requirements, runs: 0, values: empty.clone(), shares: empty }
+        Self { requirements, runs: Vec::new(), values: empty.clone(), shares: empty }
     }
 
     /// Returns true if the scenario has no requirement.
@@ -87,16 +90,16 @@ impl RequirementRuns {
         self.requirements.is_empty()
     }
 
-    /// Adds a run by its metrics; one that failed has none.
-    pub fn add(&mut self, metrics: Option<&Metrics>) {
+    /// Adds a run of this number by its metrics; one that failed has none.
+    pub fn add(&mut self, run: u64, metrics: Option<&Metrics>) {
         let list =
             |name: &str| metrics.and_then(|run| run.get(name)).map_or_else(Vec::new, MetricValue::numbers);
-        self.add_values(&list("requirement_values"), &list("requirement_shares"));
+        self.add_values(run, &list("requirement_values"), &list("requirement_shares"));
     }
 
-    /// Adds a run by the lists of its values and shares.
-    pub fn add_values(&mut self, values: &[f64], shares: &[f64]) {
-        self.runs += 1;
+    /// Adds a run of this number by the lists of its values and shares.
+    pub fn add_values(&mut self, run: u64, values: &[f64], shares: &[f64]) {
+        self.runs.push(run);
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
         let each = self.values.iter_mut().zip(&mut self.shares);
         for (index, (of_values, of_shares)) in each.enumerate() {
@@ -107,11 +110,12 @@ impl RequirementRuns {
 
     /// Returns the verdicts, in the order of the requirements; none without a run.
     pub fn finish(self) -> Vec<RequirementVerdict> {
-        if self.runs == 0 {
+        if self.runs.is_empty() {
             return Vec::new();
         }
         let each = self.requirements.into_iter().zip(self.values.into_iter().zip(self.shares));
-        each.map(|(requirement, (values, shares))| verdict(requirement, values, &shares)).collect()
+        let runs = &self.runs;
+        each.map(|(requirement, (values, shares))| verdict(requirement, runs, (values, &shares))).collect()
     }
 }
 
@@ -145,15 +149,26 @@ pub fn validate_metrics(scenario: &Scenario) -> Result<(), ConfigError> {
 pub fn run_verdicts(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVerdict> {
     let mut runs = RequirementRuns::new(scenario);
     runs.requirements.iter_mut().for_each(|requirement| requirement.confidence = None);
-    runs.add(Some(metrics));
+    runs.add(0, Some(metrics));
     runs.finish()
 }
 
-fn verdict(requirement: AssessedRequirement, mut values: Vec<f64>, shares: &[f64]) -> RequirementVerdict {
+fn verdict(
+    requirement: AssessedRequirement,
+    numbers: &[u64],
+    (mut values, shares): (Vec<f64>, &[f64]),
+) -> RequirementVerdict {
     let (limit, level) = (requirement.limit, requirement.level);
     let runs = values.len() as u64;
     let runs_met = values.iter().filter(|value| **value <= limit).count() as u64;
     let share = shares.iter().sum::<f64>() / runs as f64;
+    let mut worst = (0, f64::NEG_INFINITY);
+    for (number, value) in numbers.iter().zip(&values) {
+        // A run without a value is the worst.
+        if *value > worst.1 || value.is_nan() && !f64::is_nan(worst.1) {
+            worst = (*number, *value);
+        }
+    }
     // A run without a value is beyond every limit.
     values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = f64::INFINITY);
     values.sort_by(f64::total_cmp);
@@ -181,7 +196,7 @@ fn verdict(requirement: AssessedRequirement, mut values: Vec<f64>, shares: &[f64
         (false, _) => Decision::Missed,
     };
     let value = if value.is_finite() { value } else { f64::NAN };
-    RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence }
+    RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence, worst }
 }
 
 impl RequirementVerdict {
@@ -192,7 +207,7 @@ impl RequirementVerdict {
 
     /// Returns the verdict as JSON, with null for NaN.
     pub fn to_json(&self) -> Json {
-        let Self { requirement, decision, value, share, runs, runs_met, confidence } = self;
+        let Self { requirement, decision, value, share, runs, runs_met, confidence, .. } = self;
         json!({
             "name": requirement.name,
             "verdict": decision.word(),

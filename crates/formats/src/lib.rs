@@ -8,4 +8,5 @@ pub mod document;
 pub mod ephemeris;
 pub mod harmonic_table;
 pub mod read_files;
+pub mod reader_units;
 pub mod structure;

@@ -6,6 +6,7 @@
 )]
 
 mod analysis;
+mod answer;
 mod arrow;
 mod aside;
 mod campaign;
@@ -32,8 +33,11 @@ use std::path::PathBuf;
 
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
+use flexsc_core::answer::RunObserver;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::formats::document::ConfigError;
+use flexsc_core::formats::reader_units::Units;
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::requirement_verdict::validate_metrics;
 use flexsc_core::spacecraft::body::BodyAxes;
@@ -43,6 +47,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::json;
 
+use answer::RunAnswer;
 use aside::aside;
 use commands::Commands;
 use error::{allowed, scenario_error, simulation_error};
@@ -51,6 +56,8 @@ use error::{allowed, scenario_error, simulation_error};
 mod _native {
     #[pymodule_export]
     use super::analysis::{analysis, persistence, plan_torque};
+    #[pymodule_export]
+    use super::answer::RunAnswer;
     #[pymodule_export]
     use super::arrow::{arrow_schema, arrow_stream};
     #[pymodule_export]
@@ -259,22 +266,28 @@ fn simulate<'py>(
     log: &str,
     yes: bool,
     stepped: Option<&Commands>,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, Vec<String>)> {
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, RunAnswer)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
     let Commands { commands, until } = Commands::from_stepped(stepped);
     let is_own = scenario.inner.has_custom_parts();
-    let (metrics, trace) = aside(py, move |stop| {
-        let metrics = parts::known_thread(is_own, || commands.simulate(&run, until, (&mut trace, stop)));
-        (metrics, trace)
+    let (mut observer, began) = (RunObserver::new(&scenario.inner), std::time::Instant::now());
+    let (metrics, trace, observed) = aside(py, move |stop| {
+        let record = (&mut observer, (&mut trace, stop));
+        let metrics = parts::known_thread(is_own, || commands.simulate(&run, until, record));
+        (metrics, trace, Some(observer.finish()).filter(|_| until == Instant::END))
     })?;
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
     let topics = PyDict::new(py);
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
         topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
-    let warnings = flexsc_cli::warnings(&scenario.inner, &metrics, flexsc_cli::Units::Engineering);
-    Ok((columns::metrics_to_dict(py, &metrics)?, topics, warnings))
+    let answer = flexsc_core::answer::Answer::new(&scenario.inner, &metrics, observed, Units::Engineering);
+    Ok((
+        columns::metrics_to_dict(py, &metrics)?,
+        topics,
+        RunAnswer::made(answer, began.elapsed().as_secs_f64()),
+    ))
 }
 
 /// Names and texts of the shipped scenarios.

@@ -15,6 +15,8 @@ pub struct AssessedRequirement {
     pub unit: &'static str,
     /// Largest accepted value, in the unit.
     pub limit: f64,
+    /// Limit as it was written, if with a unit, such as `0.1 deg`.
+    pub written_limit: Option<String>,
     /// Probability at which the value is at most the limit.
     pub level: f64,
     /// Interpretation of the level.

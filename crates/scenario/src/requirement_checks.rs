@@ -8,7 +8,7 @@ use flexsc_spacecraft::body::BodyModel;
 use super::assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
 };
-use super::requirement::{ErrorAxis, Interpretation, PointingIndex, Requirement};
+use super::requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement};
 use super::spec::ScenarioSpec;
 use crate::metric_descriptions;
 
@@ -41,6 +41,7 @@ pub fn assessed(
         source: RequirementSource::Metric(POINTING_METRIC.to_owned(), None),
         unit: "rad",
         limit: most.get(),
+        written_limit: None,
         level: 1.0,
         interpretation: Interpretation::Ensemble,
         confidence: None,
@@ -120,6 +121,10 @@ impl Context<'_> {
             source,
             unit,
             limit,
+            written_limit: match &requirement.limit {
+                Limit::Text(text) => Some(text.clone()),
+                Limit::Number(_) => None,
+            },
             level,
             interpretation,
             confidence: requirement.confidence.map(flexsc_numerics::quantity::Fraction::get),

@@ -166,7 +166,7 @@ impl CampaignSetup {
                 number,
                 why: error.to_string(),
             })?;
-            runs.add(Some(&metrics));
+            runs.add(number, Some(&metrics));
             Ok(())
         })?;
         let all = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));

@@ -220,8 +220,8 @@ fn verdicts(directory: &Directory) -> Result<Vec<RequirementVerdict>, CliError> 
     for part in directory.parts().map_err(failure)? {
         let columns = directory.columns_of(&part, &names).map_err(failure)?;
         let [ColumnCells::Lists(values), ColumnCells::Lists(shares)] = &columns[..] else { continue };
-        for (values, shares) in values.iter().zip(shares) {
-            runs.add_values(values.as_deref().unwrap_or(&[]), shares.as_deref().unwrap_or(&[]));
+        for (run, (values, shares)) in part.zip(values.iter().zip(shares)) {
+            runs.add_values(run, values.as_deref().unwrap_or(&[]), shares.as_deref().unwrap_or(&[]));
         }
     }
     Ok(runs.finish())

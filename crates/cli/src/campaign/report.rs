@@ -3,17 +3,21 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::answer::real_time;
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::{Units, percent, percent_beside};
 use flexsc_core::metrics::{Metrics, goal};
-use flexsc_core::requirement_verdict::RequirementVerdict;
-use flexsc_core::statistics::{QUANTILES, Statistics};
+use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
+use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
 
 use super::points::Points;
+use crate::answer::AnswerArgs;
 use crate::error::CliError;
-use crate::human::Units;
-use crate::number::short;
-use crate::success_rate::success_rate;
-use crate::{files, requirements, say};
+use crate::{files, say};
+
+/// Names of the metrics that say whether a run meets its goal, and all requirements.
+const GOAL: &str = goal::NAMES[0];
+const REQUIREMENT: &str = goal::NAMES[1];
 
 /// Results of a campaign.
 pub struct CampaignReport {
@@ -59,33 +63,214 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 }
 
 impl CampaignReport {
-    /// Prints the points of a sweep, or the verdicts and the statistics of another campaign.
-    pub fn say(&self, units: Units) {
+    /// Prints the points of a sweep, or the verdict, the requirements and the statistics of another campaign, which took
+    /// some real time (s).
+    pub fn say(&self, name: &str, took: Option<f64>, args: &AnswerArgs) {
+        let runs = counted(self.runs, "run");
+        let took = took.map_or_else(String::new, |took| format!(" in {}", real_time(took)));
+        let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
+        if let (Some(points), true) = (&self.points, self.runs > 0) {
+            say!("{name}   {runs}{took}\n{}", points.text().trim_end());
+            table.into_iter().for_each(|table| say!("  {table}"));
+            return;
+        }
+        let verdict = self.verdict();
+        say!("{}", args.style(&format!("{name}   {verdict}   {runs}{took}")));
         if self.runs == 0 {
             return;
         }
-        if let Some(points) = &self.points {
-            say!("{}", points.text().trim_end());
-            return;
+        let rows = self.requirement_rows(args);
+        if !rows.is_empty() {
+            let text: Vec<String> = rows.iter().map(|row| format!("  {row}")).collect();
+            say!("\n{}", args.style(&text.join("\n")));
         }
-        requirements::print(&self.requirements, units);
-        let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name.as_str());
-        for s in self.statistics.iter().filter(is_verdict).filter(|s| s.runs > 0) {
-            say!("  {:32}{}", s.name, success_rate(s.runs as u64, s.mean));
-        }
-        let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
-        say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
-        // An element of a list that is 0 in all runs does not apply, as the time at a limit in a mode that reaches none.
-        let is_idle = |s: &&Statistics| s.name.ends_with(']') && s.mean == 0.0 && s.quantiles == [0.0; 5];
-        for s in self.statistics.iter().filter(|s| s.runs > 0 && !is_verdict(s) && !is_idle(s)) {
-            let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
-            say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
+        // Without a requirement, the statistics are what is asked for.
+        let shown: Vec<&Statistics> = self.shown_statistics(args.all).collect();
+        if args.all || self.requirements.is_empty() {
+            say!("\n{}", args.style(&statistics_table(&shown, args.units.units.into())));
         }
         for s in self.statistics.iter().filter(|s| s.infinite > 0) {
-            let runs = counted(self.runs, "run");
             say!("  {}: too large for a number in {} of {runs}, left out", s.name, s.infinite);
         }
+        let printed = if args.all || self.requirements.is_empty() { shown.len() } else { 0 };
+        let hidden = self.shown_statistics(true).count() - printed;
+        let more = (hidden > 0).then(|| format!("{} more: --all", counted(hidden, "metric")));
+        let last: Vec<String> = table.into_iter().chain(more).collect();
+        if !last.is_empty() {
+            say!("  {}", last.join("     "));
+        }
     }
+
+    /// Returns the statistics that are printed: those of metrics that have a value, but for verdicts, idle elements and,
+    /// unless `all` are wanted, late elements of long lists.
+    fn shown_statistics(&self, all: bool) -> impl Iterator<Item = &Statistics> {
+        let is_verdict =
+            |s: &Statistics| goal::NAMES.contains(&s.name.as_str()) || s.name.starts_with("requirement_");
+        // An element of a list that is 0 in all runs does not apply, as the time at a limit in a mode that reaches none.
+        let is_idle = |s: &Statistics| s.name.ends_with(']') && s.mean == 0.0 && s.quantiles == [0.0; 5];
+        let is_late = move |s: &Statistics| {
+            let element =
+                s.name.split_once('[').and_then(|(_, rest)| rest.trim_end_matches(']').parse().ok());
+            !all && element.is_some_and(|element: usize| element >= MOST_ELEMENTS)
+        };
+        self.statistics.iter().filter(move |s| s.runs > 0 && !is_verdict(s) && !is_idle(s) && !is_late(s))
+    }
+
+    /// Returns the verdict in words: how many runs meet all requirements, or the goal.
+    fn verdict(&self) -> String {
+        let share = |name: &str, what: &str| {
+            let own = self.statistics.iter().find(|s| s.name == name && s.runs > 0)?;
+            let met = (own.mean * own.runs as f64).round() as u64;
+            let share = met as f64 / self.runs as f64;
+            let (low, high) = wilson(met, self.runs as u64);
+            let runs = counted(self.runs, "run");
+            Some(format!(
+                "{met} of {runs} meet {what}, {} ({:.0} to {:.0} %)",
+                percent(share),
+                100.0 * low,
+                100.0 * high
+            ))
+        };
+        let what = match self.requirements.len() {
+            0 => return share(GOAL, "the goal").unwrap_or_else(|| "no requirement".to_owned()),
+            1 => "the requirement".to_owned(),
+            all => format!("all {all} requirements"),
+        };
+        let has = |decision: Decision| self.requirements.iter().any(|own| own.decision == decision);
+        let head = match (has(Decision::Missed), has(Decision::Undecided)) {
+            (true, _) => "MISSED: ",
+            (false, true) => "undecided: ",
+            (false, false) => "",
+        };
+        format!("{head}{}", share(REQUIREMENT, &what).unwrap_or_default())
+    }
+
+    /// Returns the lines of the requirements, and how the worst run of the first is repeated.
+    fn requirement_rows(&self, args: &AnswerArgs) -> Vec<String> {
+        if self.requirements.is_empty() {
+            return Vec::new();
+        }
+        let heads = ["", "requirement", "limit", "median", "95 %", "worst", "met"].map(str::to_owned);
+        let mut rows = vec![heads.to_vec()];
+        let mut notes = Vec::new();
+        for (index, verdict) in self.requirements.iter().enumerate() {
+            let RequirementVerdict { requirement, decision, runs, runs_met, worst: (run, worst), .. } =
+                verdict;
+            let units: Units = args.units.units.into();
+            let unit =
+                units.as_written(requirement.written_limit.as_deref(), requirement.limit, requirement.unit);
+            let own = self.statistics.iter().find(|s| s.name == format!("requirement_values[{index}]"));
+            let quantiles = MEDIAN_AND_P95
+                .map(|place| own.map_or_else(String::new, |own| unit.number(own.quantiles[place])));
+            let [median, p95] = quantiles;
+            let mark = match decision {
+                Decision::Met => "✓",
+                Decision::Undecided => "?",
+                Decision::Missed => "✗",
+            };
+            let worst = match worst.is_nan() {
+                true => "no value".to_owned(),
+                false => unit.beside(*worst, requirement.limit),
+            };
+            rows.push(vec![
+                mark.to_owned(),
+                requirement.name.clone(),
+                format!("at most {}", unit.limit(requirement.limit, requirement.written_limit.as_deref())),
+                median,
+                p95,
+                format!("{worst}, run {run}"),
+                format!("{runs_met} of {runs}"),
+            ]);
+            notes.extend(confidence_note(verdict));
+        }
+        let mut lines = left_aligned(&rows);
+        lines.extend(notes);
+        if let (Some(path), Some(missed)) =
+            (&self.table, self.requirements.iter().find(|own| own.decision == Decision::Missed))
+            && path.is_dir()
+        {
+            let (path, run) = (path.display(), missed.worst.0);
+            lines.push(format!("repeat the worst: flexsc simulate --from {path} --row {run} -o run-{run}"));
+        }
+        lines
+    }
+}
+
+/// Index of the median and of the 95 % quantile among the quantiles.
+const MEDIAN_AND_P95: [usize; 2] = [2, 4];
+
+/// Number of elements of a list that are printed.
+const MOST_ELEMENTS: usize = 8;
+
+/// Returns a line on the level of the ensemble or on the share of all values, if the requirement has one.
+fn confidence_note(verdict: &RequirementVerdict) -> Option<String> {
+    let RequirementVerdict { requirement, decision, value, share, confidence, .. } = verdict;
+    let name = &requirement.name;
+    let least = percent(requirement.level);
+    if !value.is_finite() && share.is_finite() {
+        return Some(format!(
+            "{name}: within its limit for {} of all values, at least {least}",
+            percent_beside(*share, requirement.level)
+        ));
+    }
+    let shown = confidence.as_ref()?;
+    let mut text = format!(
+        "{name}: {} at {least} of the runs; confidence {}",
+        decision.word(),
+        percent_beside(shown.reached, shown.wanted.unwrap_or(1.0))
+    );
+    if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
+        let wanted_part = percent(wanted);
+        text += &if shown.reached >= wanted {
+            format!(", at least {wanted_part}")
+        } else if *decision == Decision::Missed {
+            // More runs are no remedy.
+            format!(", below {wanted_part}")
+        } else {
+            format!(", {} needed for {wanted_part}", counted(needed, "run"))
+        };
+    }
+    Some(text)
+}
+
+/// Returns the statistics as a table, each row in a unit that fits it.
+fn statistics_table(shown: &[&Statistics], units: Units) -> String {
+    let mut heads: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
+    heads.extend(QUANTILES.map(|q| format!("{:.0} %", 100.0 * q)));
+    let mut rows = vec![heads];
+    for s in shown {
+        let numbers: Vec<f64> = [s.mean, s.sd].into_iter().chain(s.quantiles).collect();
+        let largest = numbers
+            .iter()
+            .filter(|number| number.is_finite())
+            .fold(0.0, |most: f64, own| most.max(own.abs()));
+        let unit = units.fitting(largest, s.unit);
+        let mut row = vec![s.name.clone(), unit.name.to_string(), s.runs.to_string()];
+        row.extend(
+            numbers.iter().map(|value| if value.is_nan() { "-".to_owned() } else { unit.number(*value) }),
+        );
+        rows.push(row);
+    }
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
+            if column < 2 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Returns rows as columns that are aligned to the left.
+fn left_aligned(rows: &[Vec<String>]) -> Vec<String> {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
 }
 
 /// Returns a verdict as one word.

@@ -228,18 +228,17 @@ fn drawn(directory: &Path) -> Vec<String> {
 /// Returns the text of a run without what differs from one computer to the next: the time that it took, and the line of
 /// its file.
 fn without_times(text: &str, file: &str) -> String {
-    let is_time = |part: &str| {
-        let number = part.trim().split(' ').next().unwrap_or_default();
-        let unit = part.trim().rsplit(' ').next().unwrap_or_default();
-        number.parse::<f64>().is_ok() && ["ms", "s", "min", "h", "µs", "us"].contains(&unit)
+    let is_time = |text: &str| {
+        let (number, unit) = text.split_once(' ').unwrap_or_default();
+        number.parse::<f64>().is_ok() && ["ms", "s", "min", "h"].contains(&unit)
     };
     let mut lines: Vec<String> =
         text.lines().filter(|line| !line.contains(file)).map(ToOwned::to_owned).collect();
-    if let Some(first) = lines.first_mut()
-        && let Some((before, last)) = first.rsplit_once(',')
-        && is_time(last)
-    {
-        *first = before.to_owned();
+    // A long verdict has its time in the next line.
+    for line in lines.iter_mut().take(2) {
+        if let Some((before, _)) = line.rsplit_once(" in ").filter(|(_, last)| is_time(last)) {
+            *line = before.trim_end().to_owned();
+        }
     }
     lines.join("\n")
 }
@@ -250,9 +249,14 @@ mod tests {
 
     #[test]
     fn times_are_left_out() {
-        let text = "a   300 s, 8 modes, 74.4 ms\n  pointing  7 arcsec\n  log  /tmp/x/run.mcap (13 kB)";
-        assert_eq!(without_times(text, "run.mcap"), "a   300 s, 8 modes\n  pointing  7 arcsec");
-        assert_eq!(without_times("b   8 runs, 0.51 s", "x"), "b   8 runs");
-        assert_eq!(without_times("c, met", "x"), "c, met");
+        let text = "a   1 of 1 requirement met   300 s simulated in 74 ms\n\n  pointing  7 arcsec\n  log /tmp/x/run.mcap, 13 kB";
+        let kept = "a   1 of 1 requirement met   300 s simulated\n\n  pointing  7 arcsec";
+        assert_eq!(without_times(text, "run.mcap"), kept);
+        assert_eq!(
+            without_times("b   met\n    300 s simulated in 0.51 s", "x"),
+            "b   met\n    300 s simulated"
+        );
+        assert_eq!(without_times("c   8 runs in 5 min", "x"), "c   8 runs");
+        assert_eq!(without_times("d   missed in all", "x"), "d   missed in all");
     }
 }

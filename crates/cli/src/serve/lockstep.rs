@@ -1,5 +1,6 @@
 //! Run of a scenario in lockstep: at each cycle the client gets the sensors, and its commands act from that instant on.
 
+use flexsc_core::answer::{Observed, RunObserver};
 use flexsc_core::campaign::{CampaignRun, CommandLog};
 use flexsc_core::metrics::{Metrics, MetricsCollector};
 use flexsc_core::numerics::time::Span;
@@ -14,6 +15,8 @@ use crate::stop::stop_flag;
 pub struct Served {
     /// Metrics of a complete run; none otherwise.
     pub metrics: Metrics,
+    /// What an observer saw of the run.
+    pub observed: Observed,
     /// Number of cycles that the client answered.
     pub cycles: u64,
     /// Reason why the run ended before its duration; `None` if it is complete.
@@ -66,7 +69,8 @@ pub fn serve(
 ) -> Result<Served, RecordError> {
     let (simulation, commands) = (Simulation::new(&run.scenario, run.noise_run), CommandLog::default());
     let mut lockstep = Lockstep { simulation, commands, session, period, cycles: 0 };
-    let mut record = (MetricsCollector::new(&run.scenario), (log.as_mut(), scene));
+    let observers = (MetricsCollector::new(&run.scenario), RunObserver::new(&run.scenario));
+    let mut record = (observers, (log.as_mut(), scene));
     let stopped = lockstep.step(&mut (&mut record, stop_flag())).err();
     // A run whose client is missing has ended at a cycle, where everything is done under the last commands.
     let stopped = match stopped {
@@ -88,14 +92,15 @@ pub fn serve(
         Some(StopReason::Simulation(_)) => RunEnd::Failed,
     };
     // As with `simulate`, a run that has not reached its end has no metrics.
-    let metrics = if stopped.is_none() { record.0.finish(&run.scenario) } else { Metrics::default() };
+    let (collector, observer) = record.0;
+    let metrics = if stopped.is_none() { collector.finish(&run.scenario) } else { Metrics::default() };
     lockstep.report_end(end);
     let Lockstep { commands, cycles, .. } = lockstep;
     let written = log.map(|mut log| {
         log.set_commands(commands.to_csv());
         log.finish(&metrics, end)
     });
-    Ok(Served { metrics, cycles, stopped, bytes: written.transpose()? })
+    Ok(Served { metrics, observed: observer.finish(), cycles, stopped, bytes: written.transpose()? })
 }
 
 impl Lockstep<'_> {

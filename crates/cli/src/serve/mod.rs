@@ -20,17 +20,17 @@ use clap::ValueEnum;
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::{Detail, ExistingLog, LogFile, RecordError, existing_log};
-use flexsc_core::{Scenario, Simulation, SimulationError, requirement_verdict};
+use flexsc_core::{Scenario, Simulation, SimulationError};
 use flexsc_view::scene::Scene;
 use flexsc_view::with_layout;
 
+use crate::answer::AnswerArgs;
 use crate::campaign::logs::LogDetail;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::UnitsArgs;
 use crate::out::Out;
 use crate::quantity::in_unit;
-use crate::{files, print, requirements, say, scenario, simulate, stop, summary};
+use crate::{files, print, say, scenario, simulate, stop};
 use layout::PacketLayout;
 use link::{Link, Transport};
 use lockstep::{Served, StopReason};
@@ -77,7 +77,7 @@ pub struct ServeArgs {
     #[arg(long)]
     describe: bool,
     #[command(flatten)]
-    units: UnitsArgs,
+    answer: AnswerArgs,
     #[command(flatten)]
     consent: CostConfirmation,
 }
@@ -161,23 +161,20 @@ pub fn run(args: &ServeArgs) -> Result<(), CliError> {
         source => CliError::Run { name: run.scenario.name.clone(), source: SimulationError::Record(source) },
     })?;
     let took = began.elapsed().as_secs_f64();
-    let Served { metrics, cycles, stopped, bytes } = served;
+    let Served { metrics, observed, cycles, stopped, bytes } = served;
     if let Some(reason) = stopped {
         return Err(ended(reason, &run, path.as_deref()));
     }
-    summary::print_summary(&run.scenario, &metrics, took, args.units.units);
+    let answer = args.answer.answer(&run.scenario, &metrics, Some(observed));
+    args.answer.print(&answer, took, path.as_deref().zip(bytes));
     let ratio = run.scenario.duration.seconds() / took;
     let counts = session.counts;
     say!(
-        "  lockstep       {cycles} cycles, {ratio:.0} times real time, {} packets repeated, {} ignored",
+        "  lockstep   {cycles} cycles, {ratio:.0} times real time, {} packets repeated, {} ignored",
         counts.repeated,
         counts.ignored
     );
-    if let (Some(bytes), Some(path)) = (bytes, &path) {
-        say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
-    }
-    let verdicts = requirement_verdict::run_verdicts(&run.scenario, &metrics);
-    requirements::validate([(run.scenario.name.as_str(), &verdicts[..])])
+    args.answer.validate(&[(run.scenario.name.clone(), answer)])
 }
 
 impl PaceKind {

@@ -37,7 +37,7 @@ pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedM
 
 pub use envelope::METRICS as OF_ENVELOPE;
 pub use index_record::IndexRecord;
-pub(crate) use requirements::metric_value;
+pub(crate) use requirements::{ErrorStream, metric_value};
 pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;

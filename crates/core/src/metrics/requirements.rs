@@ -36,11 +36,41 @@ enum ValueSource {
     Index(Box<IndexValues>),
 }
 
+/// Pointing index of the sampled error of a requirement.
+#[derive(Clone, Debug)]
+pub struct ErrorStream {
+    error: SampledError,
+    stream: IndexStream,
+}
+
+impl ErrorStream {
+    /// Creates a stream without samples.
+    pub fn new(error: &SampledError) -> Self {
+        Self { error: error.clone(), stream: IndexStream::new(error.index) }
+    }
+
+    /// Takes a sample of the error about the body's axes, and gives the values of the index that follow from it.
+    pub fn push(&mut self, error: Vector, take: impl FnMut(Vector)) {
+        let error = match self.error.axis {
+            None => error,
+            Some(ErrorAxis::X) => Vector::new(error.x, 0.0, 0.0),
+            Some(ErrorAxis::Y) => Vector::new(0.0, error.y, 0.0),
+            Some(ErrorAxis::Z) => Vector::new(0.0, 0.0, error.z),
+        };
+        self.stream.push(error, take);
+    }
+
+    /// Returns true if a sample of a line of sight is one of the error.
+    pub fn takes_line(&self, now: Instant, sample: &LineOfSightSample) -> bool {
+        let SampledQuantity::LineOfSight(line, _) = &self.error.quantity else { return false };
+        *line as u64 == sample.line && self.error.from <= now && now <= self.error.to
+    }
+}
+
 /// Values of a pointing index.
 #[derive(Clone, Debug)]
 struct IndexValues {
-    error: SampledError,
-    stream: IndexStream,
+    errors: ErrorStream,
     largest: LargestValues,
     /// Number of values within the limit.
     within: u64,
@@ -58,25 +88,18 @@ impl IndexValues {
             Interpretation::Temporal | Interpretation::Mixed => requirement.level,
         };
         Self {
-            stream: IndexStream::new(error.index),
+            errors: ErrorStream::new(error),
             largest: LargestValues::new(level, error.index.values(error.samples)),
             within: 0,
             all: None,
             is_component,
-            error: error.clone(),
         }
     }
 
     /// Takes a sample of the error about the body's axes.
     fn push(&mut self, error: Vector, limit: f64) {
-        let error = match self.error.axis {
-            None => error,
-            Some(ErrorAxis::X) => Vector::new(error.x, 0.0, 0.0),
-            Some(ErrorAxis::Y) => Vector::new(error.y, 0.0, 0.0),
-            Some(ErrorAxis::Z) => Vector::new(error.z, 0.0, 0.0),
-        };
-        let Self { stream, largest, within, all, is_component, .. } = self;
-        stream.push(error, |value| {
+        let Self { errors, largest, within, all, is_component } = self;
+        errors.push(error, |value| {
             let magnitude = value.norm();
             largest.add(magnitude);
             *within += u64::from(magnitude <= limit);
@@ -154,9 +177,9 @@ impl RequirementMetrics {
     /// Records a sample of a line of sight.
     pub fn observe_line(&mut self, now: Instant, sample: &LineOfSightSample) {
         for RequirementValues { source, limit, .. } in &mut self.0 {
-            let ValueSource::Index(values) = source else { continue };
-            let SampledQuantity::LineOfSight(line, _) = &values.error.quantity else { continue };
-            if *line as u64 == sample.line && values.error.from <= now && now <= values.error.to {
+            if let ValueSource::Index(values) = source
+                && values.errors.takes_line(now, sample)
+            {
                 values.push(Vector::from_iterator(sample.axes.iter().map(|axis| axis.error_rad)), *limit);
             }
         }

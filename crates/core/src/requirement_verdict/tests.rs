@@ -9,6 +9,7 @@ fn requirement(level: f64, interpretation: Interpretation, wanted: Option<f64>) 
         source: RequirementSource::Metric("pointing_rms_rad".to_owned(), None),
         unit: "rad",
         limit: 10.0,
+        written_limit: None,
         level,
         interpretation,
         confidence: wanted,
@@ -18,9 +19,9 @@ fn requirement(level: f64, interpretation: Interpretation, wanted: Option<f64>) 
 fn judged(requirement: AssessedRequirement, runs: &[(f64, f64)]) -> RequirementVerdict {
     let empty = vec![Vec::new()];
     let requirements = vec![requirement];
-    let mut all = RequirementRuns { requirements, runs: 0, values: empty.clone(), shares: empty };
-    for (value, share) in runs {
-        all.add_values(&[*value], &[*share]);
+    let mut all = RequirementRuns { requirements, runs: Vec::new(), values: empty.clone(), shares: empty };
+    for (number, (value, share)) in (7..).zip(runs) {
+        all.add_values(number, &[*value], &[*share]);
     }
     all.finish().remove(0)
 }
@@ -31,6 +32,7 @@ fn an_ensemble_is_judged_by_its_order_statistic() {
     // The largest is 10.5; the 19th is 9.975, by which 95 % of the runs are within the limit.
     let most = judged(requirement(0.95, Interpretation::Ensemble, None), &runs);
     assert_eq!((most.decision, most.value, most.runs_met), (Decision::Met, 0.525 * 19.0, 19));
+    assert_eq!(most.worst, (26, 10.5));
     // scipy.stats.binomtest(19, 20).proportion_ci(0.95, "wilson")
     let [low, high] = most.interval();
     assert!((low - 0.763_868_806_553_258).abs() < 1e-14 && (high - 0.991_118_551_199_204_7).abs() < 1e-14);

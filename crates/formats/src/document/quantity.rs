@@ -184,6 +184,16 @@ pub fn number_in(text: &str, wanted: &str) -> Result<f64, String> {
     }
 }
 
+/// Returns the unit of a number with a unit, such as `deg` of `0.1 deg`; `None` for other texts.
+pub fn unit_of_text(text: &str) -> Option<&str> {
+    split(text).map(|(_, unit)| unit)
+}
+
+/// Returns the size of a unit in another one, if both are known and measure the same.
+pub fn units_ratio(unit: &str, other: &str) -> Option<f64> {
+    Unit::parse(unit)?.per(Unit::parse(other)?)
+}
+
 /// Returns true if a text is a finite number, or one with a unit.
 pub fn is_number(text: &str) -> bool {
     text.trim().parse::<f64>().is_ok_and(f64::is_finite) || split(text).is_some()

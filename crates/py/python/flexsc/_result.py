@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
 from flexsc._analysis import analysis
+from flexsc._answer import Answer
 from flexsc._columns import Lookup, read_only
 from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
@@ -184,12 +185,11 @@ class Result(Topics, Exportable):
     (15, 's')
     """
 
-    warnings: tuple[str, ...]
-    """Warnings about the run, as `flexsc simulate` prints them: a target that is lost while an actuator is at
-    a limit, an end in saturation, an unstable loop.
+    answer: Answer
+    """What was asked, whether it is met, by how much, and when not: the first screen of `flexsc simulate`.
 
-    >>> run.warnings
-    ()
+    >>> run.answer.verdict
+    'not_asked'
     """
 
     def __init__(
@@ -199,14 +199,14 @@ class Result(Topics, Exportable):
         log: str,
         metrics: dict[str, Any],
         topics: dict[str, dict[str, npt.NDArray[Any]]],
+        answer: Answer,
         took: float = 0.0,
         stepped: engine.Commands | None = None,
         until: float = inf,
-        warnings: Sequence[str] = (),
     ) -> None:
         self.scenario = scenario
         self.run = run
-        self.warnings = tuple(warnings)
+        self.answer = answer
         self.metrics = Metrics(metrics, scenario)
         read_only(value for value in metrics.values() if hasattr(value, "flags"))
         self._log = log
@@ -216,6 +216,17 @@ class Result(Topics, Exportable):
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
         self._motion: engine.MotionSampler | None = None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Warnings about the run, as `flexsc simulate` prints them.
+
+        A target that is lost while an actuator is at a limit, an end in saturation, an unstable loop.
+
+        >>> run.warnings
+        ()
+        """
+        return tuple(warning["text"] for warning in self.answer.warnings)
 
     def _named(self, topics: dict[str, dict[str, npt.NDArray[Any]]]) -> dict[str, Topic]:
         about = {"scenario": self.scenario.name, "seed": str(self.scenario.seed), "run": str(self.run)}
@@ -386,5 +397,5 @@ class Result(Topics, Exportable):
         topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
         held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
         figure = _html.of_log(self._native_log(), self.scenario._native) if self._took < _html.SOON_S else ""
-        warned = _html.table(("warning",), [(text,) for text in self.warnings]) if self.warnings else ""
-        return _html.heading(self.scenario.name, about) + warned + figure + metrics + held
+        answer = self.answer._repr_html_()
+        return _html.heading(self.scenario.name, about) + answer + figure + metrics + held

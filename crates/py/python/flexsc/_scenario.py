@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from flexsc import _keys
 from flexsc import _native as engine
+from flexsc._answer import Answer
 from flexsc._missing import reading
 from flexsc._named import no_such
 from flexsc._numpy import np, npt
@@ -794,10 +795,10 @@ class Scenario:
     ) -> Result:
         """Simulate a run, or repeat one that was stepped."""
         began = time.perf_counter()
-        metrics, topics, warnings = engine.simulate(self._native, run, log, yes, stepped)
+        metrics, topics, answer = engine.simulate(self._native, run, log, yes, stepped)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, took, stepped, until, warnings)
+        return Result(self, run, log, metrics, final, Answer(answer), took, stepped, until)
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

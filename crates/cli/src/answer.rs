@@ -1,0 +1,148 @@
+//! First screen of a run: the answer, with the log and where to look next.
+
+use std::io::Write;
+use std::path::Path;
+
+use anstyle::{AnsiColor, Style};
+use flexsc_core::Scenario;
+use flexsc_core::answer::{Answer, Observed, RunObserver, ScreenOptions, ScreenStyle, Verdict};
+use flexsc_core::metrics::Metrics;
+
+use crate::error::CliError;
+use crate::human::UnitsArgs;
+use crate::requirements;
+use crate::say;
+
+/// Widest screen that is filled.
+const WIDTH: usize = 96;
+/// Narrowest screen that is respected.
+const NARROW: usize = 40;
+
+/// Options of verbs that answer for a run.
+#[derive(clap::Args, Copy, Clone, Default)]
+#[group(skip)]
+pub struct AnswerArgs {
+    #[command(flatten)]
+    pub units: UnitsArgs,
+    /// Print everything that is known of the run, not only the first screen
+    #[arg(long)]
+    pub all: bool,
+    /// Exit with 3 also if all requirements are met, but target, filter or loop is lost
+    #[arg(long)]
+    strict: bool,
+}
+
+impl AnswerArgs {
+    /// Returns the options of a verb that has only units.
+    pub fn of_units(units: UnitsArgs) -> Self {
+        Self { units, ..Self::default() }
+    }
+
+    /// Returns the answer of a run.
+    pub fn answer(&self, scenario: &Scenario, metrics: &Metrics, observed: Option<Observed>) -> Answer {
+        Answer::new(scenario, metrics, observed, self.units.units.into())
+    }
+
+    /// Returns the answer of a run that an observer has seen.
+    pub fn answer_of(&self, scenario: &Scenario, metrics: &Metrics, observer: RunObserver) -> Answer {
+        self.answer(scenario, metrics, Some(observer.finish()))
+    }
+
+    /// Returns a text with the characters that the locale has.
+    #[allow(clippy::unused_self, reason = "the options of the screen")]
+    pub fn style(&self, text: &str) -> String {
+        style().of(text)
+    }
+
+    /// Prints an answer, with its log and its size, if there is one.
+    pub fn print(&self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
+        let options =
+            ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() };
+        let screen = answer.screen(Some(took), options);
+        // Only terminals that support colours get them, and not if NO_COLOR is set.
+        let _ = writeln!(anstream::stderr(), "{}", coloured(&screen, answer));
+        let log = log.map(|(path, bytes)| {
+            let path = path.display();
+            format!("log {path}, {}     flexsc plot {path}", size(bytes))
+        });
+        let more = if self.all { None } else { Some("more: --all".to_owned()) };
+        let last: Vec<String> = log.into_iter().chain(more).collect();
+        if !last.is_empty() {
+            say!("  {}", last.join("     "));
+        }
+    }
+
+    /// Fails if the run has failed, a requirement is missed, or, if it is strict, a warning is grave.
+    pub fn validate(&self, answers: &[(String, Answer)]) -> Result<(), CliError> {
+        if let Some((name, answer)) = answers.iter().find(|(_, answer)| answer.verdict == Verdict::Failed) {
+            return Err(CliError::Diverged(format!("{name}: {}", without_failed(&answer.verdict_text))));
+        }
+        requirements::validate_answers(answers)?;
+        match answers.iter().find(|(_, answer)| self.strict && answer.verdict == Verdict::MetBut) {
+            Some((name, answer)) => Err(CliError::Requirements(format!("{name}: {}", answer.verdict_text))),
+            None => Ok(()),
+        }
+    }
+}
+
+fn without_failed(text: &str) -> &str {
+    text.trim_start_matches("FAILED: ")
+}
+
+/// Returns the width of the terminal within bounds.
+fn width() -> usize {
+    let columns = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    columns.unwrap_or(WIDTH).clamp(NARROW, WIDTH)
+}
+
+/// Returns plain characters for a locale that has no others.
+fn style() -> ScreenStyle {
+    let set = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG"));
+    let is_plain = locale.is_some_and(|locale| {
+        let locale = locale.to_lowercase();
+        !(locale.contains("utf-8") || locale.contains("utf8"))
+    });
+    if is_plain { ScreenStyle::Ascii } else { ScreenStyle::Unicode }
+}
+
+/// Returns a screen with its verdict and its marks in colours.
+fn coloured(screen: &str, answer: &Answer) -> String {
+    let paint = |text: &str, colour: AnsiColor| {
+        let style = Style::new().fg_color(Some(colour.into())).bold();
+        format!("{style}{text}{style:#}")
+    };
+    let colour = match answer.verdict {
+        Verdict::Failed | Verdict::Missed => Some(AnsiColor::Red),
+        Verdict::MetBut | Verdict::GoalMissed => Some(AnsiColor::Yellow),
+        Verdict::Met => Some(AnsiColor::Green),
+        Verdict::GoalMet | Verdict::NotAsked => None,
+    };
+    let mut lines: Vec<String> = screen.lines().map(str::to_owned).collect();
+    if let (Some(first), Some(colour)) = (lines.first_mut(), colour) {
+        *first = first.replacen(&answer.verdict_text, &paint(&answer.verdict_text, colour), 1);
+    }
+    let marks = [
+        ("✓", AnsiColor::Green),
+        ("✗", AnsiColor::Red),
+        ("!", AnsiColor::Yellow),
+        ("ok", AnsiColor::Green),
+        ("NO", AnsiColor::Red),
+    ];
+    for line in &mut lines {
+        if let Some((mark, colour)) = marks.iter().find(|(mark, _)| line.starts_with(&format!("  {mark} "))) {
+            *line = line.replacen(mark, &paint(mark, *colour), 1);
+        }
+    }
+    lines.join("\n")
+}
+
+/// Returns the size of a file: `9 kB`, `54 MB`.
+fn size(bytes: u64) -> String {
+    match bytes as f64 {
+        bytes if bytes < 1e6 => format!("{:.0} kB", (bytes / 1e3).max(1.0)),
+        bytes if bytes < 1e7 => format!("{:.1} MB", bytes / 1e6),
+        bytes if bytes < 1e9 => format!("{:.0} MB", bytes / 1e6),
+        bytes => format!("{:.1} GB", bytes / 1e9),
+    }
+}

@@ -1,0 +1,36 @@
+//! Events of a run: what began, when it ended, and in which mode of operation.
+
+use serde::Serialize;
+
+/// Kind of an event.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EventKind {
+    /// Stay in a mode of operation.
+    Mode,
+    /// Actuator at a limit, where the target is lost.
+    Saturation,
+    /// Star tracker blinded by a bright body.
+    Blinding,
+    /// Failure of a sensor or an actuator.
+    Failure,
+}
+
+/// Event of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Event {
+    /// Kind.
+    pub kind: EventKind,
+    /// Mode that begins, part that fails or is blinded, or actuator.
+    pub part: String,
+    /// Condition that began the mode, kind of failure, bright body, or limit; empty if there is none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub cause: String,
+    /// Name of the mode of operation in which it begins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode: Option<String>,
+    /// Start (s).
+    pub from_s: f64,
+    /// End (s); the end of the run if it lasts.
+    pub to_s: f64,
+}

@@ -1,0 +1,121 @@
+//! Answer of a run: what was asked, whether it is met, by how much and when not, made once from the metrics and from what
+//! an observer saw in every control cycle. Numbers are in SI units; beside them stand their texts in the reader's units, so
+//! that text, JSON, Python and reports say the same.
+
+mod error_statistics;
+mod event;
+mod lines;
+mod mode_row;
+mod one_axis_lines;
+mod requirement_answer;
+mod run_observer;
+mod screen;
+mod three_axis_lines;
+mod verdict;
+mod warning;
+
+use flexsc_formats::reader_units::Units;
+use flexsc_scenario::Scenario;
+use serde::Serialize;
+
+use crate::metrics::Metrics;
+use crate::requirement_verdict::{self, RequirementVerdict};
+
+pub use error_statistics::ErrorSummary;
+pub use event::{Event, EventKind};
+pub use lines::Line;
+pub use mode_row::ModeRow;
+pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
+pub use run_observer::{Observed, RunObserver};
+pub use screen::{ScreenOptions, ScreenStyle, real_time};
+pub use verdict::{GoalAnswer, Verdict};
+pub use warning::{Warning, WarningKind};
+
+use lines::RunData;
+
+/// Name and version of the structure.
+const SCHEMA: &str = "flexsc-answer-1";
+
+/// Answer of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// Name and version of the structure, which changes when a field changes its meaning.
+    pub schema: &'static str,
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Simulated time (s).
+    pub duration_s: f64,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// Verdict in words.
+    pub verdict_text: String,
+    /// Requirements, missed ones first, then by margin.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub requirements: Vec<RequirementAnswer>,
+    /// Goal, if the scenario gives its band.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<GoalAnswer>,
+    /// Warnings, the gravest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+    /// Modes of operation, in the order of the scenario.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_mode: Vec<ModeRow>,
+    /// Events, in the order of their starts.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub events: Vec<Event>,
+    /// What else is known, as lines of text.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lines: Vec<Line>,
+}
+
+impl Answer {
+    /// Returns the answer of a run that has ended, from its metrics and, if it was observed, from every control cycle.
+    pub fn new(scenario: &Scenario, metrics: &Metrics, observed: Option<Observed>, units: Units) -> Self {
+        let verdicts = requirement_verdict::run_verdicts(scenario, metrics);
+        let run = RunData { scenario, metrics, observed: observed.as_ref(), units };
+        let mut requirements: Vec<RequirementAnswer> = run.requirements(&verdicts);
+        let warnings = warning::warnings(&run, &requirements);
+        let goal = GoalAnswer::new(&run);
+        let diverges = warnings.iter().any(|warning| warning.kind == WarningKind::Diverges);
+        let (verdict, verdict_text) = if diverges {
+            (Verdict::Failed, format!("FAILED: the motion diverges within {}", run.duration_text()))
+        } else {
+            verdict::verdict(&requirements, goal.as_ref(), &warnings)
+        };
+        // Missed ones first, then by margin.
+        requirements.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
+        let (by_mode, lines) = if diverges { Default::default() } else { (run.by_mode(), run.lines()) };
+        let mut events = observed.as_ref().map_or_else(Vec::new, |observed| observed.events.clone());
+        events.extend(run.losses());
+        events.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        Self {
+            schema: SCHEMA,
+            scenario: scenario.name.clone(),
+            duration_s: scenario.duration.seconds(),
+            verdict,
+            verdict_text,
+            requirements,
+            goal,
+            warnings,
+            by_mode,
+            events,
+            lines,
+        }
+    }
+}
+
+impl RunData<'_> {
+    fn requirements(&self, verdicts: &[RequirementVerdict]) -> Vec<RequirementAnswer> {
+        let peaks = self.observed.map_or(&[][..], |observed| &observed.peaks);
+        let answer = |(index, verdict): (usize, &RequirementVerdict)| {
+            let peak = peaks.get(index).copied().flatten();
+            RequirementAnswer::new(self, (index, verdict), peak)
+        };
+        verdicts.iter().enumerate().map(answer).collect()
+    }
+
+    fn duration_text(&self) -> String {
+        flexsc_formats::reader_units::time(self.scenario.duration.seconds())
+    }
+}

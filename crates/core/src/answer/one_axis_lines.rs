@@ -1,0 +1,156 @@
+//! Lines on a run of a single-axis body.
+
+use std::f64::consts::TAU;
+
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_formats::reader_units::{number, percent, time};
+
+use super::lines::{Lines, RunData};
+use crate::metrics::MetricValue;
+
+/// Length of the late part at the end of a run (s), as defined by the metrics.
+const LATE: f64 = 5.0;
+/// Largest number of observed coordinates on a first screen.
+const MOST_OUTPUTS: usize = 2;
+
+impl RunData<'_> {
+    pub(super) fn one_axis_lines(&self, lines: &mut Lines) {
+        if self.scenario.law.is_switching() {
+            self.vibration(lines);
+            self.jets_about_one_axis(lines);
+            self.limit_cycle(lines);
+        } else {
+            self.rotation(lines);
+            self.filter(lines);
+            self.outputs(lines);
+        }
+    }
+
+    fn vibration(&self, lines: &mut Lines) {
+        let means = self.list("envelope_window_means_rad");
+        if let (Some(first), Some(last)) = (means.first(), means.last())
+            && *first > 0.0
+        {
+            let change = 100.0 * (last / first - 1.0);
+            let both = self.units.list(&[*first, *last], " -> ", "rad");
+            lines.main("vibration", format!("envelope {both} ({change:+.0} %, means of windows)"));
+        }
+    }
+
+    fn jets_about_one_axis(&self, lines: &mut Lines) {
+        let [switchings, right, left, duty] =
+            ["switchings", "pushes_right", "pushes_left", "duty"].map(|name| self.number(name));
+        let on = if duty.is_finite() {
+            format!(", strong torque for {} of the time", percent(duty))
+        } else {
+            String::new()
+        };
+        let pushes = if right == left {
+            format!("{} pushes each way", number(right))
+        } else {
+            format!("{} and {} pushes", number(right), number(left))
+        };
+        lines.main("law", format!("{} switchings, {pushes}{on}", number(switchings)));
+    }
+
+    fn limit_cycle(&self, lines: &mut Lines) {
+        let Some(MetricValue::Word(kind)) = self.metrics.get("cycle_kind") else { return };
+        let Some(period) = self.known("cycle_period_s") else {
+            return lines.main("limit cycle", format!("{kind}: the run is not periodic at its end"));
+        };
+        let multiplier = self
+            .known("cycle_multiplier_max")
+            .map_or_else(String::new, |largest| format!(", largest multiplier {}", number(largest)));
+        lines.main("limit cycle", format!("{kind}, period {}{multiplier}", time(period)));
+    }
+
+    /// Adds the manoeuvre's end, torques and errors.
+    fn rotation(&self, lines: &mut Lines) {
+        let (scenario, units) = (self.scenario, self.units);
+        if let Some(plan) = &scenario.plan {
+            let angle = units.quantity(plan.angle, "rad");
+            let text = format!(
+                "{angle} in {}; at its end {} and {} off, {} of vibration",
+                time(plan.time),
+                self.quantity("arrival_angle_error_rad", "rad"),
+                self.quantity("arrival_rate_error_rad_s", "rad/s"),
+                self.quantity("angle_residual_rad", "rad")
+            );
+            lines.main("manoeuvre", text);
+            let energy = if scenario.model.has_unit_inertia() { "J/(kg m²)" } else { "J" };
+            lines.other("", format!("residual energy {}", self.quantity("residual_energy_j", energy)));
+        }
+        let after = if scenario.plan.is_some() { " after the manoeuvre" } else { "" };
+        let late = if scenario.duration.seconds() > LATE {
+            format!(", {} over the last {}", self.quantity("angle_error_late_rad", "rad"), time(LATE))
+        } else {
+            String::new()
+        };
+        lines.main("error", format!("at most {}{after}{late}", self.quantity("angle_error_peak_rad", "rad")));
+        let (name, unit) = scenario.model.commanded_quantity();
+        let law_part = match self.number("peak_feedback_torque_nm") {
+            0.0 => String::new(),
+            peak => format!(", of the law {}", units.quantity(peak, unit)),
+        };
+        lines.main(name, format!("at most {}{law_part}", self.quantity("peak_torque_nm", unit)));
+        if let Some(settling) = self.known("settling_time_s") {
+            lines.other(
+                "settling",
+                format!("{} to the band of {}", time(settling), self.quantity("goal_band_rad", "rad")),
+            );
+        }
+        if let Some(radius) = self.known("spectral_radius") {
+            let verdict = if radius < 1.0 { "stable" } else { "unstable" };
+            lines.main("loop", format!("{verdict}, spectral radius {radius:.5}"));
+        }
+    }
+
+    /// Adds the observed coordinates.
+    fn outputs(&self, lines: &mut Lines) {
+        let after = if self.scenario.plan.is_some() { " after the manoeuvre" } else { "" };
+        for (index, output) in self.scenario.model.outputs().iter().enumerate() {
+            let quantity = |name: &str| {
+                let value = self.list(name).get(index).copied().unwrap_or(f64::NAN);
+                self.units.quantity(value, &output.unit)
+            };
+            let late = if self.scenario.duration.seconds() > LATE {
+                format!(", ±{} over the last {}", quantity("output_swings_late"), time(LATE))
+            } else {
+                String::new()
+            };
+            let text = format!(
+                "at most {}; swings by ±{}{after}{late}",
+                quantity("output_peaks"),
+                quantity("output_swings")
+            );
+            if index < MOST_OUTPUTS {
+                lines.main(&output.name, text)
+            } else {
+                lines.other(&output.name, text)
+            }
+        }
+    }
+
+    /// Adds the results of a Kalman filter.
+    fn filter(&self, lines: &mut Lines) {
+        if self.metrics.number("lock_lost").is_none() {
+            return;
+        }
+        if self.scenario.estimator.as_ref().is_some_and(EstimatorKind::is_assessed_only) {
+            lines.other("filter", "not used by the law");
+        }
+        let Some(consistency) = self.consistency() else {
+            return lines.main("filter", "not assessed: the run ends before `assess`");
+        };
+        let largest = self.number("frequency_error_max_rad_s");
+        // Known frequencies have no error.
+        if largest > 0.0 {
+            let [rms, largest] = [self.number("frequency_error_rms_rad_s"), largest].map(|error| error / TAU);
+            let unit = self.units.fitting(largest, "Hz");
+            let text =
+                format!("estimate off by {} rms, at most {}", unit.quantity(rms), unit.number(largest));
+            lines.main("frequency", text);
+        }
+        lines.other("filter", consistency);
+    }
+}

@@ -1,0 +1,160 @@
+//! Requirement in the answer: value, limit, margin, and the largest value with its instant, in the unit of the limit.
+
+use flexsc_formats::reader_units::{number, percent};
+use serde::Serialize;
+
+use super::lines::RunData;
+use super::run_observer::PeakValue;
+use crate::requirement_verdict::{Decision, RequirementVerdict};
+
+/// Margin above which only its bound is shown.
+const AMPLE: f64 = 0.99;
+
+/// Requirement of a run, and whether it is met.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementAnswer {
+    /// Identifier: R and the place in the scenario, from 1.
+    pub id: String,
+    /// Name.
+    pub name: String,
+    /// What is required, in words.
+    pub description: String,
+    /// SI unit of value, limit and largest value.
+    pub unit: &'static str,
+    /// Largest accepted value.
+    pub limit: f64,
+    /// Value that is compared with the limit; absent without one.
+    #[serde(skip_serializing_if = "is_none")]
+    pub value: f64,
+    /// (limit - value)/limit; absent without a value.
+    #[serde(skip_serializing_if = "is_none")]
+    pub margin: f64,
+    /// Whether the requirement is met.
+    pub met: bool,
+    /// Largest value in the time that counts, with its instant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest: Option<LargestValue>,
+    /// Numbers in the unit of the limit.
+    pub text: RequirementText,
+}
+
+/// Largest value of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LargestValue {
+    /// Value.
+    pub value: f64,
+    /// Time (s).
+    pub at_s: f64,
+    /// Name of the mode of operation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mode: Option<String>,
+}
+
+/// Texts of a requirement, in the unit of its limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RequirementText {
+    /// Unit.
+    pub unit: String,
+    /// Limit as it was written.
+    pub limit: String,
+    /// Value with its unit, on the value's side of the limit.
+    pub value: String,
+    /// Margin; absent without a value.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub margin: String,
+    /// Largest value with instant and mode; absent without one, or if it is the value.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub largest: String,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde calls")]
+fn is_none(value: &f64) -> bool {
+    !value.is_finite()
+}
+
+impl RequirementAnswer {
+    /// Returns the answer to a requirement with this place in the scenario.
+    pub(super) fn new(
+        run: &RunData<'_>,
+        (index, verdict): (usize, &RequirementVerdict),
+        peak: Option<PeakValue>,
+    ) -> Self {
+        let RequirementVerdict { requirement, decision, value, .. } = verdict;
+        let (limit, value) = (requirement.limit, *value);
+        let written = requirement.written_limit.as_deref();
+        let unit = run.units.as_written(written, limit, requirement.unit);
+        let mode = |index: usize| run.scenario.mode.get(index).map(|mode| mode.name.clone());
+        let largest = peak.filter(|peak| peak.value.is_finite());
+        let largest =
+            largest.map(|peak| LargestValue { value: peak.value, at_s: peak.at, mode: mode(peak.mode) });
+        let margin = (limit - value) / limit;
+        let with_unit = |number: String| match &*unit.name {
+            "" => number,
+            name => format!("{number} {name}"),
+        };
+        let text = RequirementText {
+            unit: unit.name.to_string(),
+            limit: unit.limit(limit, written),
+            value: if value.is_finite() {
+                with_unit(unit.beside(value, limit))
+            } else {
+                "no value".to_owned()
+            },
+            margin: margin_text(margin, value / limit),
+            largest: largest.as_ref().filter(|own| own.value != value || own.mode.is_some()).map_or_else(
+                String::new,
+                |own| {
+                    let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
+                    format!("{} at {} s{mode}", unit.quantity(own.value), number(own.at_s))
+                },
+            ),
+        };
+        Self {
+            id: format!("R{}", index + 1),
+            name: requirement.name.clone(),
+            description: requirement.description(),
+            unit: requirement.unit,
+            limit,
+            value,
+            margin,
+            met: *decision == Decision::Met,
+            largest,
+            text,
+        }
+    }
+}
+
+/// Returns a margin in whole per cent, or how many limits the value is; empty without a number.
+fn margin_text(margin: f64, multiple: f64) -> String {
+    if !margin.is_finite() {
+        return String::new();
+    }
+    if margin > AMPLE {
+        return "> 99 %".to_owned();
+    }
+    if margin < -1.0 {
+        return format!("{} × limit", number(multiple));
+    }
+    if margin > 0.0 { percent(margin) } else { percent(-margin).replacen("", "-", usize::from(margin < 0.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn margins_are_in_per_cent_or_multiples() {
+        let cases = [
+            (0.2795, "28 %"),
+            (0.995, "> 99 %"),
+            (0.0, "0 %"),
+            (-0.12, "-12 %"),
+            (-18.5, "19.5 × limit"),
+            (-1e-4, "-0.01 %"),
+            (f64::NAN, ""),
+        ];
+        for (margin, text) in cases {
+            assert_eq!(margin_text(margin, 1.0 - margin), text);
+        }
+    }
+}

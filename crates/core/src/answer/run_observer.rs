@@ -1,0 +1,290 @@
+//! Observer of a run for its answer: errors by mode of operation and by part of the run, largest values of requirements,
+//! wheel speeds and events, from every control cycle.
+
+use std::collections::BTreeMap;
+
+use flexsc_control::operation::OperatingMode;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{
+    BlindingEvent, FaultEvent, LineOfSightSample, ModeEvent, Onset, Record, RecordError, RequirementErrors,
+    Sample, ThreeAxisCycle, Wheels,
+};
+use flexsc_scenario::{RequirementSource, Scenario};
+
+use super::error_statistics::{ErrorStatistics, ErrorSummary};
+use super::event::{Event, EventKind};
+use crate::metrics::ErrorStream;
+
+/// Part of a run that is its end.
+const LATE: f64 = 0.9;
+/// Largest number of events that are listed.
+const MOST_EVENTS: usize = 10_000;
+
+/// Observer of a run.
+#[derive(Clone, Debug)]
+pub struct RunObserver {
+    modes: Vec<ModeObserved>,
+    /// Errors while the target moves from one attitude to another, afterwards, and in the last tenth of the run.
+    slews: ErrorStatistics,
+    settled: ErrorStatistics,
+    late: ErrorStatistics,
+    /// Start of the first slew and end of the last one (s), and number of slews.
+    slewing: Option<[f64; 2]>,
+    slew_count: u64,
+    requirements: Vec<Option<(ErrorStream, PeakValue)>>,
+    events: Vec<Event>,
+    /// Events that have begun, and not ended, by kind, part and cause.
+    open: BTreeMap<(EventKind, String, String), usize>,
+    names: Vec<String>,
+    mode: usize,
+    /// Last cycle: its instant, error (rad), mode, and whether the target moves.
+    last: Option<(Instant, f64, usize, bool)>,
+    late_from: f64,
+    end: Instant,
+}
+
+/// Largest value of the index of a requirement.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct PeakValue {
+    /// Value, in the unit of the requirement.
+    pub value: f64,
+    /// Time (s).
+    pub at: f64,
+    /// Index of the mode of operation; 0 without modes.
+    pub mode: usize,
+}
+
+/// Observations in a mode of operation.
+#[derive(Clone, Debug, Default)]
+pub struct ModeObserved {
+    /// True if the mode has a target; without modes always.
+    pub has_target: bool,
+    errors: ErrorStatistics,
+    /// Smallest and largest speed of a wheel (rad/s); NaN without wheels.
+    pub wheel_speed: [f64; 2],
+}
+
+impl ModeObserved {
+    /// Returns the statistics of the pointing error; `None` without a target.
+    pub fn errors(&self) -> Option<ErrorSummary> {
+        self.errors.finish().filter(|_| self.has_target)
+    }
+}
+
+/// What was observed of a run that has ended.
+#[derive(Clone, Debug)]
+pub struct Observed {
+    /// Each mode of operation, or the run without modes.
+    pub modes: Vec<ModeObserved>,
+    /// Errors while the target moves, if it does.
+    pub slews: Option<ErrorSummary>,
+    /// Errors after the first slew while the target does not move.
+    pub settled: Option<ErrorSummary>,
+    /// Errors in the last tenth of the run.
+    pub late: Option<ErrorSummary>,
+    /// Start of the first slew, and end of the last one (s).
+    pub slewing: Option<[f64; 2]>,
+    /// Number of slews.
+    pub slew_count: u64,
+    /// Largest value of each requirement on an error.
+    pub peaks: Vec<Option<PeakValue>>,
+    /// Events, in the order of their starts.
+    pub events: Vec<Event>,
+}
+
+impl RunObserver {
+    /// Creates an observer of a run of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let end = Instant::START + scenario.duration;
+        let observed =
+            |has_target: bool| ModeObserved { has_target, wheel_speed: [f64::NAN; 2], ..Default::default() };
+        let of_mode = |mode: &OperatingMode| observed(mode.target.is_some() || !scenario.has_mode_targets());
+        let modes: Vec<ModeObserved> = scenario.mode.iter().map(of_mode).collect();
+        let stream = |source: &RequirementSource| match source {
+            RequirementSource::Metric(..) => None,
+            RequirementSource::Error(error) => {
+                Some((ErrorStream::new(error), PeakValue { value: f64::NAN, at: f64::NAN, mode: 0 }))
+            }
+        };
+        Self {
+            modes: if modes.is_empty() { vec![observed(true)] } else { modes },
+            slews: ErrorStatistics::default(),
+            settled: ErrorStatistics::default(),
+            late: ErrorStatistics::default(),
+            slewing: None,
+            slew_count: 0,
+            requirements: scenario.study.requirements.iter().map(|own| stream(&own.source)).collect(),
+            events: Vec::new(),
+            open: BTreeMap::new(),
+            names: scenario.mode.iter().map(|mode| mode.name.clone()).collect(),
+            mode: 0,
+            last: None,
+            late_from: LATE * end.seconds(),
+            end,
+        }
+    }
+
+    /// Returns the observations of the run that has ended.
+    pub fn finish(mut self) -> Observed {
+        self.close_cycle(self.end);
+        let end = self.end.seconds();
+        for index in std::mem::take(&mut self.open).into_values() {
+            self.events[index].to_s = end;
+        }
+        let has_slews = self.slewing.is_some();
+        Observed {
+            slews: self.slews.finish(),
+            settled: self.settled.finish().filter(|_| has_slews),
+            late: self.late.finish(),
+            slewing: self.slewing,
+            slew_count: self.slew_count,
+            peaks: self.requirements.into_iter().map(|own| own.map(|(_, peak)| peak)).collect(),
+            events: self.events,
+            modes: self.modes,
+        }
+    }
+
+    /// Adds the error of the last cycle, which lasts until now.
+    fn close_cycle(&mut self, now: Instant) {
+        let Some((at, error, mode, slews)) = self.last.take() else { return };
+        let time = now.since(at).seconds();
+        if let Some(own) = self.modes.get_mut(mode).filter(|own| own.has_target) {
+            own.errors.add(at, error, time);
+        } else {
+            return;
+        }
+        if slews {
+            self.slews.add(at, error, time);
+        } else if self.slewing.is_some() {
+            self.settled.add(at, error, time);
+        }
+        if at.seconds() >= self.late_from {
+            self.late.add(at, error, time);
+        }
+    }
+
+    fn observe_cycle(&mut self, now: Instant, cycle: &ThreeAxisCycle) {
+        let was_slewing = self.last.is_some_and(|(.., slews)| slews);
+        self.close_cycle(now);
+        let square: f64 = cycle.error_rad.iter().map(|error| error * error).sum();
+        self.last = Some((now, square.sqrt(), cycle.visit.mode, cycle.slewing));
+        if cycle.slewing {
+            self.slew_count += u64::from(!was_slewing);
+            self.slewing.get_or_insert([now.seconds(); 2]);
+        }
+        if let (true, Some(slewing)) = (cycle.slewing || was_slewing, &mut self.slewing) {
+            slewing[1] = now.seconds();
+        }
+    }
+
+    fn observe_wheels(&mut self, wheels: &Wheels) {
+        let Some(own) = self.modes.get_mut(self.mode) else { return };
+        for speed in wheels.wheels.iter().map(|wheel| wheel.speed_rad_s.abs()) {
+            // A comparison with NaN takes the other number.
+            own.wheel_speed = [own.wheel_speed[0].min(speed), own.wheel_speed[1].max(speed)];
+        }
+    }
+
+    fn observe_mode(&mut self, event: &ModeEvent) {
+        self.mode = event.index as usize;
+        let before = std::mem::take(&mut self.open);
+        let (modes, others) = before.into_iter().partition(|((kind, ..), _)| *kind == EventKind::Mode);
+        self.open = others;
+        for index in BTreeMap::into_values(modes) {
+            self.events[index].to_s = event.time_s;
+        }
+        self.begin(EventKind::Mode, event.time_s, (&event.mode, &event.cause));
+    }
+
+    /// Notes the start of an event of a part, with what brings it about.
+    fn begin(&mut self, kind: EventKind, from: f64, (part, cause): (&str, &str)) {
+        if self.events.len() < MOST_EVENTS {
+            self.open.insert((kind, part.to_owned(), cause.to_owned()), self.events.len());
+            let mode = self.names.get(self.mode).cloned();
+            let event = Event {
+                kind,
+                part: part.to_owned(),
+                cause: cause.to_owned(),
+                mode,
+                from_s: from,
+                to_s: from,
+            };
+            self.events.push(event);
+        }
+    }
+
+    /// Notes the start or the end of an event.
+    fn observe_onset(&mut self, (kind, onset): (EventKind, Onset), time: f64, (part, cause): (&str, &str)) {
+        if onset == Onset::Begins {
+            self.begin(kind, time, (part, cause));
+        } else if let Some(index) = self.open.remove(&(kind, part.to_owned(), cause.to_owned())) {
+            self.events[index].to_s = time;
+        }
+    }
+
+    /// Takes a sample of the error of a requirement.
+    fn push(&mut self, now: Instant, requirement: usize, error: Vector) {
+        let mode = self.mode;
+        if let Some(Some((stream, peak))) = self.requirements.get_mut(requirement) {
+            stream.push(error, |value| {
+                let value = value.norm();
+                if value > peak.value || peak.value.is_nan() {
+                    *peak = PeakValue { value, at: now.seconds(), mode };
+                }
+            });
+        }
+    }
+
+    fn observe_line(&mut self, now: Instant, sample: &LineOfSightSample) {
+        for requirement in 0..self.requirements.len() {
+            if let Some(Some((stream, _))) = self.requirements.get(requirement)
+                && stream.takes_line(now, sample)
+            {
+                let error = Vector::from_iterator(sample.axes.iter().map(|axis| axis.error_rad));
+                self.push(now, requirement, error);
+            }
+        }
+    }
+}
+
+impl Record for RunObserver {
+    fn wants_estimates(&self, _: Instant) -> bool {
+        false
+    }
+
+    fn wants_journal(&self) -> bool {
+        false
+    }
+
+    fn wants_switchings(&self) -> bool {
+        false
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        if let Sample::Report(report) = sample {
+            report.get().into_iter().for_each(|cycle| self.observe_cycle(now, cycle));
+            report.get().into_iter().for_each(|wheels| self.observe_wheels(wheels));
+        }
+        if let Some(errors) = sample.get::<RequirementErrors>() {
+            errors.0.iter().for_each(|own| self.push(now, own.requirement, Vector::from(own.error)));
+        }
+        if let Sample::Row(row) = sample {
+            row.downcast().into_iter().for_each(|event| self.observe_mode(event));
+            row.downcast().into_iter().for_each(|sample| self.observe_line(now, sample));
+            if let Some(event) = row.downcast::<BlindingEvent>() {
+                let part = format!("sensor[{}]", event.sensor);
+                self.observe_onset((EventKind::Blinding, event.onset), event.time_s, (&part, &event.body));
+            }
+            if let Some(event) = row.downcast::<FaultEvent>() {
+                let of = if event.of.is_empty() {
+                    event.part.clone()
+                } else {
+                    format!("{} {}", event.part, event.of)
+                };
+                self.observe_onset((EventKind::Failure, event.onset), event.time_s, (&of, &event.fault));
+            }
+        }
+        Ok(())
+    }
+}

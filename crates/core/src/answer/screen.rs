@@ -1,0 +1,331 @@
+//! First screen of an answer: the verdict, requirements, warnings, then modes of operation or what else is known.
+
+use flexsc_formats::count::counted;
+use flexsc_formats::reader_units::{ReaderUnit, THIN_SPACE, Units, number, time};
+
+use super::Answer;
+use super::mode_row::ModeRow;
+use super::requirement_answer::RequirementAnswer;
+
+/// Characters for marks and spaces.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum ScreenStyle {
+    /// `✓`, `✗`, `!`, thin spaces within numbers.
+    #[default]
+    Unicode,
+    /// `ok`, `NO`, `!`, spaces within numbers.
+    Ascii,
+}
+
+impl ScreenStyle {
+    /// Returns a text with characters of the style.
+    pub fn of(self, text: &str) -> String {
+        match self {
+            Self::Unicode => text.to_owned(),
+            Self::Ascii => ascii(text),
+        }
+    }
+}
+
+/// What a screen shows, and how wide it is.
+#[derive(Copy, Clone, Debug)]
+pub struct ScreenOptions {
+    /// Largest number of characters of a line.
+    pub width: usize,
+    /// True for everything that is known, false for a first screen.
+    pub all: bool,
+    /// Characters.
+    pub style: ScreenStyle,
+    /// Units.
+    pub units: Units,
+}
+
+impl Default for ScreenOptions {
+    fn default() -> Self {
+        Self { width: WIDTH, all: false, style: ScreenStyle::default(), units: Units::default() }
+    }
+}
+
+/// Characters of a line.
+const WIDTH: usize = 96;
+/// Largest number of requirements, warnings and lines of a warning on a first screen.
+const MOST: [usize; 3] = [5, 3, 4];
+/// Largest number of lines of a first screen, without the last one that a program adds.
+const MOST_LINES: usize = 14;
+/// Largest number of modes of operation in a table on a first screen.
+const MOST_MODES: usize = 6;
+
+impl Answer {
+    /// Returns the answer as text; `took` is the real time that the run took (s).
+    pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
+        let mut blocks = vec![self.head(took, options), self.requirement_lines(options)];
+        blocks.push(self.warning_lines(options));
+        let known: usize = blocks.iter().map(|block| block.len() + usize::from(!block.is_empty())).sum();
+        let left = if options.all { usize::MAX } else { MOST_LINES.saturating_sub(known).max(2) };
+        if !self.by_mode.is_empty() {
+            blocks.push(self.mode_table(options));
+        }
+        if options.all || self.by_mode.is_empty() {
+            blocks.push(self.known_lines(options, left));
+        }
+        if options.all {
+            blocks.push(self.event_lines());
+        }
+        let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
+        let text = blocks.collect::<Vec<_>>().join("\n\n");
+        options.style.of(&text)
+    }
+
+    fn head(&self, took: Option<f64>, options: ScreenOptions) -> Vec<String> {
+        let first = format!("{}   {}", self.scenario, self.verdict_text);
+        let simulated = format!("{} simulated", time(self.duration_s));
+        let took = took.map_or(simulated.clone(), |took| format!("{simulated} in {}", real_time(took)));
+        let [before, after] = [&first, &took].map(|text| text.chars().count());
+        if before + 3 + after <= options.width {
+            return vec![format!("{first}{}{took}", " ".repeat(options.width - before - after))];
+        }
+        let mut lines = wrapped(&first, options.width, 4);
+        lines.push(format!("    {took}"));
+        lines
+    }
+
+    fn requirement_lines(&self, options: ScreenOptions) -> Vec<String> {
+        let shown = if options.all { self.requirements.len() } else { MOST[0] };
+        let cells = |own: &RequirementAnswer| {
+            let prefix = |word: &str, text: &str| match text {
+                "" => String::new(),
+                text => format!("{word} {text}"),
+            };
+            [
+                if own.met { "✓" } else { "✗" }.to_owned(),
+                own.name.clone(),
+                own.text.value.clone(),
+                format!("at most {}", own.text.limit),
+                if own.margin < -1.0 { own.text.margin.clone() } else { prefix("margin", &own.text.margin) },
+                prefix("largest", &own.text.largest),
+            ]
+        };
+        let rows: Vec<[String; 6]> = self.requirements.iter().take(shown).map(cells).collect();
+        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..6).map(width).collect();
+        let line = |row: &[String; 6]| {
+            let mut cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+            let mark = cells.next().unwrap_or_default();
+            format!("  {mark} {}", cells.collect::<Vec<_>>().join("   ")).trim_end().to_owned()
+        };
+        let mut lines = Vec::new();
+        for (row, own) in rows.iter().zip(&self.requirements) {
+            let text = line(row);
+            // The largest value has a line of its own where the table is too wide.
+            if text.chars().count() > options.width && !row[5].is_empty() {
+                let mut short = row.clone();
+                let largest = std::mem::take(&mut short[5]);
+                lines.extend(wrapped(&line(&short), options.width, 6));
+                lines.push(format!("      {largest}"));
+            } else {
+                lines.extend(wrapped(&text, options.width, 6));
+            }
+            if options.all {
+                lines.push(format!("      {}", own.description));
+            }
+        }
+        if self.requirements.len() > shown {
+            lines.push(format!("    {} more: --all", self.requirements.len() - shown));
+        }
+        lines
+    }
+
+    fn warning_lines(&self, options: ScreenOptions) -> Vec<String> {
+        let (warnings, lines) = if options.all { (usize::MAX, usize::MAX) } else { (MOST[1], MOST[2]) };
+        let mut all: Vec<String> = Vec::new();
+        for warning in self.warnings.iter().take(warnings) {
+            let mut own = wrapped(&format!("  ! {}", warning.text), options.width, 4);
+            if own.len() > lines {
+                own.truncate(lines);
+                if let Some(last) = own.last_mut() {
+                    last.push_str(" ...");
+                }
+            }
+            all.extend(own);
+        }
+        if self.warnings.len() > warnings {
+            all.push(format!("    {} more: --all", counted(self.warnings.len() - warnings, "warning")));
+        }
+        all
+    }
+
+    fn mode_table(&self, options: ScreenOptions) -> Vec<String> {
+        let errors = || self.by_mode.iter().filter_map(|row| row.error_rad.as_ref());
+        // The unit fits the typical error, not that of an acquisition.
+        let typical = errors()
+            .map(|own| own.p95)
+            .fold(f64::INFINITY, f64::min)
+            .max(errors().map(|own| own.median).fold(0.0, f64::max));
+        let unit = options.units.fitting(if typical.is_finite() { typical } else { 0.0 }, "rad");
+        let wheel = self.by_mode.iter().any(|row| row.wheel_speed_rad_s.is_some());
+        let limit = self.by_mode.iter().any(|row| row.at_limit_s.is_some_and(|time| time > 0.0));
+        let has_errors = errors().next().is_some();
+        let mut rows = vec![heads(&unit, [has_errors, wheel, limit])];
+        let shown = if options.all { usize::MAX } else { MOST_MODES };
+        let speed = options.units.rotor_speed();
+        rows.extend(
+            self.by_mode
+                .iter()
+                .take(shown)
+                .map(|row| cells(row, (&unit, &speed), [has_errors, wheel, limit])),
+        );
+        let mut lines = aligned(&rows, options.width);
+        if self.by_mode.len() > shown {
+            lines.push(format!("  {} more: --all", counted(self.by_mode.len() - shown, "mode")));
+        }
+        lines
+    }
+
+    fn known_lines(&self, options: ScreenOptions, most: usize) -> Vec<String> {
+        let shown: Vec<_> = self.lines.iter().filter(|line| options.all || line.is_main).collect();
+        let width = shown.iter().map(|line| line.head.chars().count()).max().unwrap_or(0) + 3;
+        let mut lines = Vec::new();
+        for line in shown {
+            let text = format!("  {:<width$}{}", line.head, line.text);
+            let own = wrapped(&text, options.width, width + 2);
+            if lines.len() + own.len() > most {
+                break;
+            }
+            lines.extend(own);
+        }
+        lines
+    }
+
+    fn event_lines(&self) -> Vec<String> {
+        let line = |event: &super::Event| {
+            let kind = match event.kind {
+                super::EventKind::Mode => "mode",
+                super::EventKind::Saturation => "at a limit",
+                super::EventKind::Blinding => "blinded",
+                super::EventKind::Failure => "failure",
+            };
+            let cause = if event.cause.is_empty() { String::new() } else { format!(": {}", event.cause) };
+            vec![
+                number(event.from_s),
+                "to".to_owned(),
+                time(event.to_s),
+                format!("{kind} {}{cause}", event.part),
+            ]
+        };
+        let rows: Vec<Vec<String>> = self.events.iter().map(line).collect();
+        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths = [width(0), width(1), width(2)];
+        let text = |row: &Vec<String>| {
+            let [from, to, until] = [0, 1, 2].map(|column| format!("{:>1$}", row[column], widths[column]));
+            format!("  {from} {to} {until}   {}", row[3])
+        };
+        rows.iter().map(text).collect()
+    }
+}
+
+fn heads(unit: &ReaderUnit, [errors, wheel, limit]: [bool; 3]) -> Vec<String> {
+    let mut heads = vec!["mode".to_owned(), "visits".to_owned(), "time".to_owned()];
+    if errors {
+        heads.extend([format!("error, {}: median", unit.name), "95 %".to_owned(), "largest".to_owned()]);
+    }
+    heads.extend(wheel.then(|| "fastest wheel".to_owned()));
+    heads.extend(limit.then(|| "at limit".to_owned()));
+    heads
+}
+
+fn cells(
+    row: &ModeRow,
+    (unit, speed): (&ReaderUnit, &ReaderUnit),
+    [errors, wheel, limit]: [bool; 3],
+) -> Vec<String> {
+    let none = || "-".to_owned();
+    if row.visits == 0 {
+        let mut cells = vec![row.mode.clone(), "never".to_owned()];
+        cells.resize_with(3 + 3 * usize::from(errors) + usize::from(wheel) + usize::from(limit), none);
+        return cells;
+    }
+    let mut cells = vec![row.mode.clone(), row.visits.to_string(), time(row.time_s)];
+    if errors {
+        cells.extend(match &row.error_rad {
+            Some(own) => [own.median, own.p95, own.largest].map(|value| unit.number(value)),
+            None => ["no target".to_owned(), none(), none()],
+        });
+    }
+    if wheel {
+        cells.push(row.wheel_speed_rad_s.map_or_else(none, |value| speed.quantity(value)));
+    }
+    if limit {
+        cells.push(row.at_limit_s.filter(|time| *time > 0.0).map_or_else(none, time));
+    }
+    cells
+}
+
+/// Returns rows as columns, the first one aligned to the left, the others to the right; columns that do not fit are left out.
+fn aligned(rows: &[Vec<String>], most: usize) -> Vec<String> {
+    let columns = rows.first().map_or(0, Vec::len);
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let total = |shown: usize| 2 + widths[..shown].iter().sum::<usize>() + 2 * shown.saturating_sub(1);
+    let shown = (1..=columns).rev().find(|shown| total(*shown) <= most).unwrap_or(1);
+    let line = |row: &Vec<String>| {
+        let cells = row[..shown].iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
+            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+        });
+        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
+/// Returns a text in lines of at most `width` characters, broken at spaces, all but the first indented.
+fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
+    let start = text.len() - text.trim_start().len();
+    let mut lines = vec![text[..start].to_owned()];
+    let mut is_first = true;
+    for word in text[start..].split(' ') {
+        let last = lines.last_mut().expect("there is one line at least");
+        let is_start = is_first || last.chars().all(|c| c == ' ');
+        if !is_first && last.chars().count() + 1 + word.chars().count() > width && !word.is_empty() {
+            lines.push(format!("{}{word}", " ".repeat(indent)));
+        } else {
+            if !is_start {
+                last.push(' ');
+            }
+            last.push_str(word);
+        }
+        is_first = false;
+    }
+    lines.iter().map(|line| line.trim_end().to_owned()).collect()
+}
+
+/// Returns a text with plain characters for marks and spaces.
+fn ascii(text: &str) -> String {
+    let plain = text.replace(THIN_SPACE, " ").replace('✓', "ok").replace('✗', "NO");
+    plain.replace('×', "x").replace('±', "+-").replace('µ', "u").replace('²', "^2")
+}
+
+/// Returns a real time in two digits: `3 ms`, `0.46 s`, `12 s`, `5 min`.
+pub fn real_time(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.000_95 => "1 ms".to_owned(),
+        s if s < 0.095 => format!("{:.0} ms", s * 1e3),
+        s if s < 0.995 => format!("{s:.2} s"),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.0} h", s / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_texts_are_broken_at_spaces_and_indented() {
+        let text = "  ! one two three four";
+        assert_eq!(wrapped(text, 11, 4), ["  ! one two", "    three", "    four"]);
+        assert_eq!(wrapped("short", 20, 4), ["short"]);
+        // Columns keep their distances.
+        assert_eq!(wrapped("  a   b", 20, 4), ["  a   b"]);
+    }
+}

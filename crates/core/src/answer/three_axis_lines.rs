@@ -1,0 +1,260 @@
+//! Lines on a run of a three-axis body.
+
+use std::f64::consts::TAU;
+
+use flexsc_formats::count::counted;
+use flexsc_formats::reader_units::{number, percent, time};
+use flexsc_numerics::attitude::AXES;
+use flexsc_numerics::quantity::Time;
+
+use super::error_statistics::ErrorSummary;
+use super::lines::{Lines, RunData};
+
+/// Length of the run's end over which elastic rates are assessed (s), as defined by the metrics.
+const LATE: f64 = 200.0;
+/// Largest number of thrusters in the list.
+const THRUSTERS: usize = 12;
+/// Part of a run from which on blinding is shown on the first screen.
+const MUCH: f64 = 0.1;
+/// Part of its largest speed up to which a wheel stands still.
+const STILL: f64 = 1e-3;
+/// Error of an identified frequency up to which it is not named.
+const CLOSE: f64 = 0.02;
+
+impl RunData<'_> {
+    pub(super) fn three_axis_lines(&self, lines: &mut Lines) {
+        self.lines_of_sight(lines);
+        self.pointing(lines);
+        self.wheels(lines);
+        self.jets(lines);
+        self.gimbals(lines);
+        self.damping(lines);
+        self.elastic(lines);
+        if let Some(text) = self.consistency() {
+            lines.other("filter", text);
+        }
+        for blinded in self.list("tracker_blinded_s") {
+            let share = blinded / self.scenario.duration.seconds();
+            let text = format!("blinded for {}, {} of the time", time(blinded), percent(share));
+            if share > MUCH { lines.main("star tracker", text) } else { lines.other("star tracker", text) }
+        }
+        if let Some(share) = self.known("moment_limit_share").filter(|share| *share > 0.0) {
+            lines.other("magnetorquers", format!("at the largest moment for {} of the time", percent(share)));
+        }
+        if self.known("friction_heat_j").is_some() {
+            let text = format!(
+                "{} of heat, {}, {}",
+                self.quantity("friction_heat_j", "J"),
+                counted(self.number("wheel_zero_crossings"), "zero crossing"),
+                counted(self.number("wheel_stops"), "stop")
+            );
+            lines.other("friction", text);
+        }
+    }
+
+    /// Adds the error and the jitter of each line of sight.
+    fn lines_of_sight(&self, lines: &mut Lines) {
+        for (index, line) in self.scenario.line_of_sight.iter().enumerate() {
+            let value = |name: &str| {
+                let values = self.list(&format!("line_of_sight_{name}_rad"));
+                values.get(index).copied().unwrap_or(f64::NAN)
+            };
+            let [rms, peak, jitter] = ["rms", "peak", "jitter_rms"].map(value);
+            if !rms.is_finite() {
+                continue;
+            }
+            let jitter = match line.jitter_window {
+                Some(window) if jitter.is_finite() => {
+                    format!(
+                        "; jitter {} rms within {}",
+                        self.units.quantity(jitter, "rad"),
+                        time(window.get())
+                    )
+                }
+                _ => String::new(),
+            };
+            let [rms, peak] = [rms, peak].map(|value| self.units.quantity(value, "rad"));
+            lines.main("line of sight", format!("{}: {rms} rms, largest {peak}{jitter}", line.point));
+        }
+    }
+
+    /// Adds the pointing error: while the target moves, afterwards, and at the end.
+    fn pointing(&self, lines: &mut Lines) {
+        let has_modes = !self.scenario.mode.is_empty();
+        let statistics = |errors: &ErrorSummary| {
+            let unit = self.units.fitting(errors.p95, "rad");
+            let rms = unit.quantity(errors.rms);
+            let [p95, largest] = [errors.p95, errors.largest].map(|value| unit.number(value));
+            format!("error {rms} rms, 95 % {p95}, largest {largest} at {}", time(errors.at_s))
+        };
+        let knowledge = self.known("attitude_estimate_error_rms_rad").map_or_else(String::new, |error| {
+            format!("; knowledge {} rms", self.units.quantity(error, "rad"))
+        });
+        let mut add = |head: &str, text: String| {
+            if has_modes { lines.other(head, text) } else { lines.main(head, text) }
+        };
+        let Some(observed) = self.observed else {
+            let end = self.quantity("pointing_error_end_rad", "rad");
+            return add("pointing", format!("error {end} at the end{knowledge}"));
+        };
+        if let (Some(slews), Some([from, to])) = (&observed.slews, observed.slewing) {
+            let head = if observed.slew_count > 1 { "slews" } else { "slew" };
+            let count =
+                if observed.slew_count > 1 { format!("{}, ", observed.slew_count) } else { String::new() };
+            add(head, format!("{count}{} to {}: {}", number(from), time(to), statistics(slews)));
+        }
+        if let (Some(settled), Some([_, to])) = (&observed.settled, observed.slewing)
+            && observed.late.as_ref().is_some_and(|late| settled.largest > late.largest)
+            && settled.at_s > to
+        {
+            let largest = self.units.quantity(settled.largest, "rad");
+            let after = if observed.slew_count == 1 {
+                format!(", {} after the slew", time(settled.at_s - to))
+            } else {
+                String::new()
+            };
+            add("settling", format!("largest error {largest} at {}{after}", time(settled.at_s)));
+        }
+        if let Some(late) = observed.late.as_ref().filter(|late| late.largest > 0.0) {
+            let from = number(0.9 * self.scenario.duration.seconds());
+            let to = time(self.scenario.duration.seconds());
+            add("pointing", format!("{from} to {to}: {}{knowledge}", statistics(late)));
+        }
+        if let Some(pointing) = &self.scenario.reference.pointing {
+            let [start, end] = pointing.window.map(Time::get);
+            let rms = self.quantity("pointing_rms_rad", "rad");
+            lines.other("pointing", format!("{rms} rms from {} to {}", number(start), time(end)));
+        }
+    }
+
+    fn wheels(&self, lines: &mut Lines) {
+        let Some(peak) = self.known("wheel_speed_peak_rad_s") else { return };
+        let unit = self.units.rotor_speed();
+        let least = self
+            .observed
+            .map(|observed| observed.modes.iter().map(|mode| mode.wheel_speed[0]).fold(f64::NAN, f64::min));
+        let speeds = match least.filter(|least| least.is_finite()) {
+            Some(least) if least > STILL * peak => {
+                format!("{} to {}", unit.number(least), unit.quantity(peak))
+            }
+            _ => format!("up to {}", unit.quantity(peak)),
+        };
+        let limits = [
+            ("wheel_torque_limit_share", "limit of torque"),
+            ("wheel_momentum_limit_share", "limit of momentum or speed"),
+        ];
+        let at_limit = |(name, limit): &(&str, &str)| {
+            let share = self.known(name).filter(|share| *share > 0.0)?;
+            Some(format!("; at the {limit} for {} of the time", percent(share)))
+        };
+        let text = format!(
+            "{speeds}, {} in one, {} in all{}",
+            self.quantity("one_wheel_momentum_peak_nm_s", "N m s"),
+            self.quantity("wheel_momentum_peak_nm_s", "N m s"),
+            limits.iter().filter_map(at_limit).collect::<String>()
+        );
+        if self.scenario.mode.is_empty() { lines.main("wheels", text) } else { lines.other("wheels", text) }
+    }
+
+    fn jets(&self, lines: &mut Lines) {
+        // Other actuators use no propellant.
+        let Some(fuel) = self.known("fuel_kg").filter(|fuel| *fuel > 0.0) else { return };
+        let unit = self.units.fitting(fuel, "kg");
+        let parts = |name: &str, names: &[String]| {
+            let parts = self.list(name);
+            if parts.len() > THRUSTERS || parts.len() != names.len() || parts.is_empty() {
+                return String::new();
+            }
+            let part = |(name, part): (&String, &f64)| format!("{name} {}", unit.number(*part));
+            format!(": {}", names.iter().zip(&parts).map(part).collect::<Vec<_>>().join(", "))
+        };
+        let thrusters = self.scenario.actuator.jets().map_or_else(Vec::new, |(jets, _)| jets.names());
+        let text = format!(
+            "{}{}{}; {} in {}",
+            unit.quantity(fuel),
+            parts("fuel_axes_kg", &AXES.map(str::to_owned)),
+            parts("fuel_thrusters_kg", &thrusters),
+            counted(self.number("firings"), "pulse"),
+            counted(self.number("firing_cycles"), "cycle")
+        );
+        lines.main("propellant", text);
+    }
+
+    fn gimbals(&self, lines: &mut Lines) {
+        if self.known("singularity_min").is_some() {
+            let text = format!(
+                "rate at most {}; singularity measure at least {}; torque within {} of the demand",
+                self.quantity("gimbal_rate_peak_rad_s", "rad/s"),
+                number(self.number("singularity_min")),
+                self.quantity("torque_error_peak_nm", "N m")
+            );
+            lines.main("gimbals", text);
+        }
+    }
+
+    /// Adds the frequencies that a filter or an observer has identified, and active damping.
+    fn damping(&self, lines: &mut Lines) {
+        let found = self.list("frequency_estimates_hz");
+        if found.is_empty() {
+            return;
+        }
+        let errors = self.list("frequency_estimate_errors");
+        let unit = self.units.frequency();
+        let real = |(found, error): (&f64, &f64)| TAU * found / (1.0 + error);
+        let far: Vec<String> = found
+            .iter()
+            .zip(&errors)
+            .filter(|(_, error)| error.abs() > CLOSE)
+            .map(|own| {
+                let side = if *own.1 > 0.0 { "high" } else { "low" };
+                format!("{} found {} too {side}", unit.quantity(real(own)), percent(own.1.abs()))
+            })
+            .collect();
+        let close = errors.iter().filter(|error| error.abs() <= CLOSE);
+        let largest = close.clone().fold(0.0, |most: f64, error| most.max(error.abs()));
+        let close = match close.count() {
+            0 => String::new(),
+            count => format!(", {count} within {}", percent(largest)),
+        };
+        let far = if far.is_empty() { String::new() } else { format!("; {}", far.join(", ")) };
+        lines.main("frequencies", format!("{} identified{close}{far}", errors.len()));
+        let each = |own: (&f64, &f64)| format!("{} / {}", unit.number(TAU * own.0), unit.number(real(own)));
+        let each: Vec<String> = found.iter().zip(&errors).map(each).collect();
+        lines.other("", format!("{} {} (identified / true)", each.join(", "), unit.name));
+        if self.metrics.get("damping_cycles").is_some() {
+            let [cycles, pauses] = ["damping_cycles", "damping_pauses"].map(|name| self.number(name));
+            let text = format!("in {}, paused {}", counted(cycles, "cycle"), counted(pauses, "time"));
+            lines.main("active damping", text);
+        }
+    }
+
+    fn elastic(&self, lines: &mut Lines) {
+        if self.scenario.mode_count() == 0 {
+            return;
+        }
+        let below = |name: &str, part: &str| {
+            self.known(name)
+                .map_or_else(String::new, |at| format!(", below {part} of the first at {}", time(at)))
+        };
+        let energies = ["elastic_energy_peak_j", "elastic_energy_end_j"].map(|name| self.quantity(name, "J"));
+        let text = format!(
+            "largest energy {}{}{}, {} at the end",
+            energies[0],
+            below("energy_below_10pct_at_s", "10 %"),
+            below("energy_below_1pct_at_s", "1 %"),
+            energies[1]
+        );
+        let is_damped = self.metrics.get("damping_cycles").is_some();
+        let damps = is_damped || self.number("pointing_error_end_rad") == 0.0;
+        if damps {
+            lines.main("vibration", text)
+        } else {
+            lines.other("vibration", text)
+        }
+        let duration = self.scenario.duration.seconds();
+        let over =
+            if duration > LATE { format!("the last {}", time(LATE)) } else { "the whole run".to_owned() };
+        let rate = self.quantity("elastic_rate_rms_rad_s", "rad/s");
+        lines.other("", format!("elastic rate {rate} rms at the gyro over {over}"));
+    }
+}

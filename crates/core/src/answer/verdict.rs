@@ -1,0 +1,92 @@
+//! Verdict on a run: failed, missed, met with a warning, met, or not asked.
+
+use flexsc_formats::count::counted;
+use flexsc_formats::reader_units::time;
+use serde::Serialize;
+
+use super::lines::RunData;
+use super::requirement_answer::RequirementAnswer;
+use super::warning::Warning;
+use crate::metrics::MetricValue;
+
+/// Verdict on a run.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The motion diverges.
+    Failed,
+    /// A requirement is not met.
+    Missed,
+    /// All requirements are met, and a warning says that target, filter or loop is lost.
+    MetBut,
+    /// All requirements are met.
+    Met,
+    /// There is no requirement, and the goal of the scenario is met.
+    GoalMet,
+    /// There is no requirement, and the goal of the scenario is missed.
+    GoalMissed,
+    /// There is neither a requirement nor a goal.
+    NotAsked,
+}
+
+/// Goal that a scenario gives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GoalAnswer {
+    /// Whether the run ends within the band.
+    pub met: bool,
+    /// Half width of the band about each axis, or about one (rad).
+    pub band_rad: f64,
+    /// Time outside the band (s).
+    pub outside_s: f64,
+    /// Words.
+    pub text: String,
+}
+
+impl GoalAnswer {
+    /// Returns the goal of a run; `None` unless the scenario gives its band.
+    pub(super) fn new(run: &RunData<'_>) -> Option<Self> {
+        run.scenario.reference.band?;
+        let Some(MetricValue::Word(word)) = run.metrics.get("goal") else { return None };
+        let (band, outside) = (run.number("goal_band_rad"), run.number("time_outside_s"));
+        if !band.is_finite() {
+            return None;
+        }
+        let met = *word == "met";
+        let each = if run.scenario.axis_count() == 3 { "each axis " } else { "" };
+        let within = format!("{each}within {}", run.units.quantity(band, "rad"));
+        let settled = run.number("settling_time_s");
+        let text = match (met, outside) {
+            (true, 0.0) => format!("{within} all the time"),
+            (true, _) if settled.is_finite() => format!("{within} from {} on", time(settled)),
+            (true, _) => format!("{within}, after {} outside", time(outside)),
+            (false, _) => format!("not {within} in the last tenth; outside for {}", time(outside)),
+        };
+        Some(Self { met, band_rad: band, outside_s: outside, text })
+    }
+}
+
+/// Returns the verdict and its words.
+pub(super) fn verdict(
+    requirements: &[RequirementAnswer],
+    goal: Option<&GoalAnswer>,
+    warnings: &[Warning],
+) -> (Verdict, String) {
+    let missed = requirements.iter().filter(|own| !own.met).count();
+    let (all, of_all) = (requirements.len(), counted(requirements.len(), "requirement"));
+    if missed > 0 {
+        return (Verdict::Missed, format!("MISSED: {missed} of {of_all}"));
+    }
+    let but = warnings.iter().find_map(|warning| warning.kind.reason(warning));
+    if all > 0 {
+        let met = format!("{all} of {of_all} met");
+        return match but {
+            Some(why) => (Verdict::MetBut, format!("{met}, but {why}")),
+            None => (Verdict::Met, met),
+        };
+    }
+    match goal {
+        Some(goal) if goal.met => (Verdict::GoalMet, format!("goal met: {}", goal.text)),
+        Some(goal) => (Verdict::GoalMissed, format!("goal missed: {}", goal.text)),
+        None => (Verdict::NotAsked, "no requirement".to_owned()),
+    }
+}
