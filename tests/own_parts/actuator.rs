@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use flexsc_core::control::actuator::{
-    Actuator, ActuatorKind, ActuatorSpec, AxisActuatorContext, AxisEffort, Demand,
+    Actuator, ActuatorKind, ActuatorPlacement, ActuatorSpec, AxisActuatorContext, AxisEffort, Demand,
 };
 use flexsc_core::control::custom::Custom;
 use flexsc_core::control::part::{Occasion, Part, ReportContext};
@@ -45,7 +45,7 @@ impl Servo {
 }
 
 impl ActuatorSpec for Servo {
-    fn start(&self, settings: &[AxisActuatorContext]) -> Box<dyn Actuator> {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
         let inertias = settings.iter().map(|setting| setting.inertia).collect();
         Box::new(Turning(self.clone(), [[0.0; 2]; 3], inertias, 0.0))
     }

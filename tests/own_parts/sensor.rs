@@ -34,12 +34,12 @@ impl Encoder {
 }
 
 impl SensorSpec for Encoder {
-    fn start(&self, _: usize, _: Seed) -> Box<dyn Sensor> {
+    fn start(&self, _: usize, _: Seed, _: usize) -> Box<dyn Sensor> {
         Box::new(Counting(self.clone(), [0.0; 3]))
     }
 
-    fn period(&self) -> Span {
-        Span::from_seconds(self.period)
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(Span::from_seconds(self.period))
     }
 
     fn angle_noise(&self) -> f64 {

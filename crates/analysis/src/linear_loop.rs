@@ -2,7 +2,7 @@
 //! estimators.
 
 use flexsc_control::estimator::EstimateOutputs;
-use flexsc_control::estimator::kalman::{FilterContext, Kalman, SteadyStateFilter};
+use flexsc_control::estimator::kalman::{FilterContext, Kalman, MeasurementFilter, SteadyStateFilter};
 use flexsc_control::state_estimate::EstimateNeeds;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::random::Seed;

@@ -12,6 +12,7 @@ pub mod drive_profile;
 pub mod estimator;
 pub mod flight_quantity;
 pub mod interval;
+mod kinds;
 pub mod law;
 pub mod linear_block;
 pub mod offers;

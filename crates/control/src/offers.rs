@@ -268,6 +268,14 @@ pub struct EstimatorOffers {
     pub dominant_mode: bool,
     /// True if the rates of all elastic modes are estimated.
     pub elastic_rates: bool,
+    /// True if several sensors are fused into one state estimate.
+    pub fuses_sensors: bool,
+    /// True if rates only are estimated, and angles left as measured.
+    pub estimates_rates_only: bool,
+    /// True if a Kalman filter processes measured angles and rates.
+    pub filters_measurements: bool,
+    /// True if the estimator has no use without a law that reads the estimates.
+    pub needs_reader: bool,
 }
 
 impl BodyOffers {

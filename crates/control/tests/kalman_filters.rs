@@ -1,7 +1,7 @@
 //! Tests of the Kalman filters against each other, and with invalid measurements.
 
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::estimator::kalman::{FilterContext, KalmanFilter, Prediction};
+use flexsc_control::estimator::kalman::{FilterContext, KalmanFilter, MeasurementFilter};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::from_text;
 use flexsc_numerics::random::Seed;
@@ -25,8 +25,8 @@ fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> Kalman
     let draws = &mut Seed { scenario: scenario_seed, run: 0 }.stream("prior");
     match &estimator {
         EstimatorKind::Kalman(spec) => spec.filter(&setting, draws),
-        EstimatorKind::ExtendedKalman(spec) => spec.filter(&setting, Prediction::Extended, draws),
-        EstimatorKind::UnscentedKalman(spec) => spec.filter(&setting, Prediction::Unscented, draws),
+        EstimatorKind::ExtendedKalman(spec) => spec.filter(&setting, draws),
+        EstimatorKind::UnscentedKalman(spec) => spec.filter(&setting, draws),
         other => panic!("{other:?}"),
     }
 }

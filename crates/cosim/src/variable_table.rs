@@ -1,6 +1,5 @@
 //! Table of the variables of an FMU, which follows from the scenario and the part alone.
 
-use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::description::field_text;
 use flexsc_core::{QuantityField, QuantityGroup, Scenario, Simulation};
@@ -30,7 +29,7 @@ pub struct VariableTable {
 
 /// Returns the unit of a command of the scenario's actuator; empty for one in units of its own.
 pub(crate) fn command_unit(scenario: &Scenario) -> &'static str {
-    let is_torque = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).is_none();
+    let is_torque = scenario.actuator.only_actuator().and_then(|kind| kind.command_gain()).is_none();
     if is_torque { scenario.model.commanded_quantity().1 } else { "" }
 }
 

@@ -3,7 +3,6 @@
 use std::time::Instant as WallInstant;
 
 use flexsc_core::campaign::CommandLog;
-use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::law::Command;
 use flexsc_core::control::quantity::total_width;
 use flexsc_core::numerics::time::{Instant, Span};
@@ -32,13 +31,13 @@ pub fn fields(fields: &[QuantityField]) -> Vec<FieldRow> {
 
 /// The unit of commands to a scenario.
 pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
-    let is_torque = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).is_none();
+    let is_torque = scenario.actuator.only_actuator().and_then(|kind| kind.command_gain()).is_none();
     if is_torque { scenario.model.commanded_quantity().1 } else { "" }
 }
 
 /// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
 pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
-    let gain = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).unwrap_or(1.0);
+    let gain = scenario.actuator.only_actuator().and_then(|kind| kind.command_gain()).unwrap_or(1.0);
     let axes = scenario.study.axes.iter().zip(&scenario.study.authorities);
     axes.map(|(axis, can)| can.accelerations[0].min(can.accelerations[1]) * axis.commanded_inertia() / gain)
         .collect()

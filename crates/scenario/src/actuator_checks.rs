@@ -191,7 +191,7 @@ fn validate_unloading(
     members: &[AssignedMember<'_>],
 ) -> Option<ConfigError> {
     if let Some((wheels, key)) = actuators.wheels()
-        && let Some(fault) = wheels.unloading.as_deref().and_then(WheelUnloading::inconsistency)
+        && let Some(fault) = wheels.unloading.as_deref().and_then(WheelUnloading::validate)
     {
         return Some(fault.within(&format!("{key}.unloading")));
     }

@@ -1,6 +1,5 @@
 //! Compatibility of the parts of a scenario: the offers of all parts, and the requirements of each that they do not meet.
 
-use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget, PlacedLaw, Stage};
 use flexsc_control::offers::{AxisLaw, BodyOffers, EnvironmentOffers, Offers};
 use flexsc_control::requirement::{Requirements, Rule};
@@ -51,7 +50,7 @@ impl ScenarioSpec {
             sensors: self.sensor.offers(self.law.period()),
             sample_period: self.sample_period(),
             actuators: self.actuator.offers(),
-            estimator: self.estimator.as_ref().map(EstimatorKind::offers),
+            estimator: self.estimator.as_ref().map(|estimator| estimator.offers()),
         }
     }
 

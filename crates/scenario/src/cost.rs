@@ -168,7 +168,7 @@ impl Scenario {
     /// Returns the error at the first key that is infeasible on any machine.
     pub(super) fn infeasible_key(&self) -> Option<ConfigError> {
         let modes = self.mode_count();
-        let filtered = self.estimator.as_ref().is_some_and(EstimatorKind::filters_measurements);
+        let filtered = self.estimator.as_ref().is_some_and(|estimator| estimator.filters_measurements());
         let coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let why = if filtered { "that a filter estimates" } else { "that a wheel or a drift couples" };
         for (applies, most, why) in

@@ -21,7 +21,7 @@ pub(super) const ACTUATOR: &str = "ideal";
 const STAGE_LAW: &str = "open";
 
 /// Law of another crate.
-pub type CustomLaw = Custom<dyn LawSpec + Send + Sync>;
+pub type CustomLaw = Custom<dyn LawSpec>;
 
 /// Custom parts of a scenario: at most one estimator and adaptation, one law or several of modes or stages, and any number
 /// of sensors and actuators.

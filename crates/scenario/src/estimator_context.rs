@@ -1,6 +1,6 @@
 //! Scenario data for the estimator, the monitor of the envelope and the meter of an objective, before a run.
 
-use flexsc_control::adaptation::{AdaptationKind, Objective};
+use flexsc_control::adaptation::Objective;
 use flexsc_control::estimator::{
     AdaptationRun, EstimatorContext, EstimatorKind, ObjectiveMeter, WindowedEnvelope,
 };
@@ -60,7 +60,7 @@ impl Scenario {
 impl ScenarioSpec {
     /// Returns the objective of the adaptation, if there is one.
     pub fn objective(&self) -> Option<Objective> {
-        self.adaptation.as_ref().map(AdaptationKind::objective)
+        self.adaptation.as_ref().map(|adaptation| adaptation.objective())
     }
 
     /// Returns the initial value of the law's parameter that the adaptation tunes; `None` without an adaptation.

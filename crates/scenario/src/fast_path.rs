@@ -1,6 +1,5 @@
 //! Condition for the relay kernel: the law alone moves the body.
 
-use flexsc_control::sensor::SensorKind;
 use flexsc_spacecraft::body::BodyModel;
 
 use super::Scenario;
@@ -16,6 +15,6 @@ impl Scenario {
             && self.environment.is_none()
             && self.study.sample_period.is_none()
             && self.actuator.is_ideal()
-            && self.sensor.iter().all(SensorKind::is_continuous)
+            && self.sensor.iter().all(|sensor| sensor.is_continuous())
     }
 }

@@ -81,7 +81,7 @@ impl CustomFacts {
     }
 
     /// Returns a law that has these facts, and is not started.
-    fn law(facts: Option<LawFacts>) -> Custom<dyn LawSpec + Send + Sync> {
+    fn law(facts: Option<LawFacts>) -> Custom<dyn LawSpec> {
         Custom::new(Arc::new(facts.unwrap_or_default()))
     }
 

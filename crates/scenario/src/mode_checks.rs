@@ -130,9 +130,7 @@ impl ScenarioSpec {
         };
         let knows_motion =
             self.estimator.is_some() || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
-        let filters = self.estimator.as_ref().is_some_and(|estimator| {
-            ["kalman", "extended_kalman", "unscented_kalman"].contains(&estimator.kind())
-        });
+        let filters = self.estimator.as_ref().is_some_and(|estimator| estimator.filters_measurements());
         let stores = |kind: &str| offers.actuators.iter().any(|member| member.kind == kind);
         let why = |quantity: ModeQuantity| -> Option<&'static str> {
             match quantity {
@@ -143,7 +141,7 @@ impl ScenarioSpec {
                 ModeQuantity::WheelSpeed => {
                     (!stores("wheels")).then_some("reads the speeds of `wheels`, and there are none")
                 }
-                ModeQuantity::Field | ModeQuantity::FieldRate => (!used(&SensorKind::measures_field))
+                ModeQuantity::Field | ModeQuantity::FieldRate => (!used(&|sensor: &SensorKind| sensor.measures_field()))
                     .then_some("reads the measured field, and no `magnetometer` is in use in this mode"),
                 ModeQuantity::Sunlight | ModeQuantity::TrueSunlight => {
                     (!offers.environment.sun).then_some("reads the light of `environment.sun`, and there is none")

@@ -303,7 +303,7 @@ impl ResolvedScenario {
         };
         let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
         if let Some(kind) = scenario.actuator.only_actuator() {
-            return kind.start(settings(kind), &self.placement(scenario, self.groups.as_ref(), tachometer));
+            return kind.start(&settings(kind), &self.placement(scenario, self.groups.as_ref(), tachometer));
         }
         let members = scenario.actuator.members();
         let start = |member: &AssignedMember<'_>| {
@@ -312,8 +312,8 @@ impl ResolvedScenario {
                 ActuatorTask::Unloads(_) => ([1.0; 3], self.unloading_groups.as_ref()),
             };
             let own = settings(&member.kind).into_iter();
-            let own = own.map(|of| AxisActuatorContext { share: share[of.axis], ..of }).collect();
-            member.kind.start(own, &self.placement(scenario, groups, tachometer))
+            let own: Vec<_> = own.map(|of| AxisActuatorContext { share: share[of.axis], ..of }).collect();
+            member.kind.start(&own, &self.placement(scenario, groups, tachometer))
         };
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
         let executing = || members.iter().filter(|member| member.executes());

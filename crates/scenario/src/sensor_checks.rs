@@ -1,8 +1,6 @@
 //! Checks of the sensors of a scenario as a set, and of sensors in linear loops.
 
-use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::offers::Offers;
-use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::Span;
 
@@ -12,11 +10,11 @@ impl ScenarioSpec {
     /// Checks that the sensors measure the motion that a law reads, each quantity once unless an estimator fuses them.
     pub(super) fn validate_sensor_set(&self, offers: &Offers) -> Option<ConfigError> {
         let at = |index: usize, why: &str| Some(ConfigError::new(self.sensor_key(index), why));
-        if self.estimator.as_ref().is_some_and(EstimatorKind::fuses_sensors) {
+        if self.estimator.as_ref().is_some_and(|estimator| estimator.fuses_sensors()) {
             return None;
         }
         let is_read = offers.laws.iter().any(|law| law.offers.reads_motion());
-        if is_read && self.sensor.iter().all(SensorKind::measures_vector) {
+        if is_read && self.sensor.iter().all(|sensor| sensor.measures_vector()) {
             let why = "gives neither attitude nor rate, which the law needs: add a `gyro` and an `[estimator.attitude]`";
             return at(0, why);
         }

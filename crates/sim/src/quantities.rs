@@ -7,7 +7,6 @@ use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::law::AttitudeErrorMeasure;
 use flexsc_control::quantity::{Meaning, QuantityDescription, QuantityShape};
-use flexsc_control::sensor::SensorKind;
 use flexsc_control::state_estimate::EstimateNeeds;
 
 use super::plant::{FlowQuantities, ThreeAxisQuantities};
@@ -221,7 +220,7 @@ quantities! {
     Predicted flight Rate => |run, out| run.predicted(|own| own.rate, out);
     Predicted "error", Of("rad"), Axes, text("twice the vector part of the quaternion from the reference attitude to the estimated one")
         => |run, out| run.three_axis().and_then(|_| run.predicted(|own| AttitudeErrorMeasure::Quaternion.error(own), out));
-    Predicted flight FieldRate, if |scenario| scenario.sensor.iter().any(SensorKind::measures_field)
+    Predicted flight FieldRate, if |scenario| scenario.sensor.iter().any(|sensor| sensor.measures_field())
         => |run, out| run.predicted(|own| own.field_rate, out);
     Predicted flight Displacement, if reads_dominant_mode
         => |run, out| run.predicted(|own| own.dominant.displacement, out);

@@ -53,7 +53,7 @@ impl Sensors {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let field_source = all.iter().position(SensorKind::measures_field);
+        let field_source = all.iter().position(|sensor| sensor.measures_field());
         let due = |(index, sensor): (usize, &SensorKind)| {
             let period = if all.motion_sensors() == 1 && sensor.measures_motion() {
                 study.sample_period

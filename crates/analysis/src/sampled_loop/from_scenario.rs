@@ -1,6 +1,6 @@
 //! Construction of the sampled loop that a scenario describes.
 
-use flexsc_control::actuator::{ActuatorKind, LinearDrive, Wheel};
+use flexsc_control::actuator::{LinearDrive, Wheel};
 use flexsc_control::law::Pd;
 use flexsc_dynamics::axis_model::CommandedQuantity;
 use flexsc_formats::document::ConfigError;
@@ -47,7 +47,7 @@ impl SampledLoop {
             );
         }
         let inertia = body.inertia.get();
-        let drive = match scenario.actuator.only_actuator().map(ActuatorKind::linear_drive) {
+        let drive = match scenario.actuator.only_actuator().map(|kind| kind.linear_drive()) {
             Some(Some(drive)) => drive,
             None => {
                 return refused("actuator", "must be one, `wheel` or `ideal`, for the analysis of the loop");

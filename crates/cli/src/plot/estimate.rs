@@ -1,7 +1,6 @@
 //! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, the true displacement,
 //! and the difference.
 
-use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::figure_spec::{FigureSpec, MotionPart};
@@ -21,7 +20,7 @@ pub const SPEC: FigureSpec = FigureSpec {
 /// Returns true if a filter of one axis estimates its modes from measurements.
 pub fn filters_one_axis(story: &RunEvents) -> bool {
     let estimator = story.scenario.estimator.as_ref();
-    story.scenario.axis_count() == 1 && estimator.is_some_and(EstimatorKind::filters_measurements)
+    story.scenario.axis_count() == 1 && estimator.is_some_and(|estimator| estimator.filters_measurements())
 }
 
 fn figure(story: &RunEvents, motion: &MotionData) -> Figure {

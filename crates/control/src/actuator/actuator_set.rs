@@ -60,7 +60,8 @@ impl ActuatorSet {
         for (kind, task, actuator) in members {
             match task {
                 ActuatorTask::Executes(shares) => {
-                    if let ActuatorKind::Wheels(_) | ActuatorKind::ControlMomentGyros(_) = kind {
+                    let offers = kind.offers();
+                    if offers.has_reaction_wheels || offers.turns_with_gimbals {
                         several.keepers.push(several.executing.len());
                     }
                     several.executing.push((actuator, *shares));

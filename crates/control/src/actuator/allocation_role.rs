@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 use flexsc_formats::document::ConfigError;
 
-use super::failure;
 use super::{
     ActuatorKind, AssignedActuator, ControlMomentGyros, Jets, Magnetorquers, Share, Thrusters, UnloadingTask,
     Wheel, Wheels,
@@ -59,17 +58,10 @@ impl AssignedMember<'_> {
     /// Checks the failures of an actuator on a body with `axes` axes; returns the first inconsistent key and the
     /// reason.
     pub fn failure_fault(&self, axes: usize) -> Option<ConfigError> {
-        let names = if let ActuatorKind::Jets(jets) = &*self.kind { jets.names() } else { Vec::new() };
-        let parts = match &*self.kind {
-            ActuatorKind::Jets(_) => failure::FailingComponent::Thrusters(&names),
-            ActuatorKind::Wheels(wheels) => failure::FailingComponent::Wheels(wheels.count()),
-            ActuatorKind::ControlMomentGyros(gyros) => failure::FailingComponent::Gimbals(gyros.count()),
-            _ => failure::FailingComponent::Axes(axes),
-        };
-        let sines = !matches!(&*self.kind, ActuatorKind::Magnetorquers(_));
+        let (components, sines) = (self.kind.failing_components(axes), !self.kind.offers().turns_with_field);
         let mut failures = self.kind.failures().iter().enumerate();
         failures.find_map(|(index, failure)| {
-            Some(failure.validate(parts, sines)?.within(&format!("{}.faults[{index}]", self.key)))
+            Some(failure.validate(&components, sines)?.within(&format!("{}.faults[{index}]", self.key)))
         })
     }
 }

@@ -8,10 +8,7 @@ use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 
-use super::{
-    ActuatorKind, ControlMomentGyros, Ideal, Jets, Magnetorquers, Share, Thrusters, UnloadingTask, Wheel,
-    WheelUnloading, Wheels, ZeroOrderHold,
-};
+use super::{ActuatorEntry, ActuatorKind, Share, UnloadingTask, WheelUnloading};
 
 /// Name of the kind that needs no keys.
 const IDEAL: &str = "ideal";
@@ -35,17 +32,14 @@ impl From<ActuatorKind> for AssignedActuator {
     }
 }
 
-/// Declares the keys of an actuator in a list: the kinds, and the keys of the task.
-macro_rules! keys {
-    ($($(#[doc = $doc:literal])* $key:ident: $name:ident($kind:ident)),* $(,)?) => {
+/// Declares the names of the kinds, and the keys of an actuator in a list: those of the kinds and of the task.
+macro_rules! entries {
+    ($($(#[$doc:meta])* $key:literal $kind:ident($settings:ty),)*) => {
         /// Name of a kind of actuator, as in a scenario.
-        #[derive(Copy, Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize, JsonSchema)]
+        #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
         #[serde(rename_all = "snake_case")]
         pub enum ActuatorName {
-            $(
-                $(#[doc = $doc])*
-                $name,
-            )*
+            $($(#[$doc])* #[serde(rename = $key)] $kind,)*
             /// An actuator of another crate, or of Python.
             Own,
         }
@@ -54,25 +48,22 @@ macro_rules! keys {
             /// Returns the name as in a scenario.
             pub fn as_str(self) -> &'static str {
                 match self {
-                    $(Self::$name => stringify!($key),)*
+                    $(Self::$kind => $key,)*
                     Self::Own => "own",
                 }
             }
         }
 
         /// An actuator of a list: exactly one of the kinds, and which part of the demand it executes.
-        #[derive(Default, serde::Serialize, serde::Deserialize, JsonSchema)]
+        #[derive(Default, Serialize, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
         #[schemars(rename = "Assigned")]
+        #[expect(non_snake_case, reason = "a kind has the field of its name")]
         struct ActuatorEntry {
-            $(
-                $(#[doc = $doc])*
-                #[serde(default, skip_serializing_if = "Option::is_none")]
-                $key: Option<$kind>,
-            )*
+            $($(#[$doc])* #[serde(rename = $key, default, skip_serializing_if = "Option::is_none")] $kind: Option<$settings>,)*
             /// Axes about which it executes the demand, on a body with three; default: all.
             #[serde(default, skip_serializing_if = "Option::is_none")]
-            axes: Option<Vec<Axis>>,
+            axes: Option<Vec<flexsc_spacecraft::axes::Axis>>,
             /// Share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum to 1.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             share: Option<Share>,
@@ -84,41 +75,22 @@ macro_rules! keys {
         impl ActuatorEntry {
             /// Moves out the kinds that are given.
             fn kinds(&mut self) -> Vec<ActuatorKind> {
-                [$(self.$key.take().map(ActuatorKind::$name)),*].into_iter().flatten().collect()
+                [$(self.$kind.take().map(ActuatorKind::$kind)),*].into_iter().flatten().collect()
             }
 
             fn from_assignment(assigned: &AssignedActuator) -> Self {
                 let AssignedActuator { kind, axes, share, unloads } = assigned.clone();
                 let mut keys = Self { axes, share, unloads, ..Self::default() };
                 match kind {
-                    $(ActuatorKind::$name(kind) => keys.$key = Some(kind),)*
-                    ActuatorKind::Own(_) => keys.ideal = Some(Ideal::default()),
+                    $(ActuatorKind::$kind(kind) => keys.$kind = Some(kind),)*
+                    ActuatorKind::Own(_) => keys.Ideal = Some(Ideal::default()),
                 }
                 keys
             }
 
-            const NAMES: &str = concat!($("`", stringify!($key), "`, "),*);
+            const NAMES: &str = concat!($("`", $key, "`, "),*);
         }
     };
-}
-
-keys! {
-    /// The command itself, at every instant.
-    ideal: Ideal(Ideal),
-    /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
-    hold: Hold(ZeroOrderHold),
-    /// One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
-    thrusters: Thrusters(Thrusters),
-    /// A flywheel on a motor with back-EMF.
-    wheel: Wheel(Wheel),
-    /// Reaction wheels about axes of their own.
-    wheels: Wheels(Wheels),
-    /// Control moment gyros of a spacecraft.
-    control_moment_gyros: ControlMomentGyros(ControlMomentGyros),
-    /// Thrusters at points of a spatial body.
-    jets: Jets(Jets),
-    /// Magnetorquers of a spatial body in the field of its planet.
-    magnetorquers: Magnetorquers(Magnetorquers),
 }
 
 impl AssignedActuator {

@@ -13,7 +13,7 @@ use flexsc_record::Report;
 use super::failure::FailureScope;
 use super::faulty::FaultyActuator;
 use super::{
-    Actuator, ActuatorEvent, ActuatorKind, AxisEffort, AxisResponse, Capabilities, Demand, WaveformActuator,
+    Actuator, ActuatorEvent, AxisEffort, AxisResponse, Capabilities, Demand, Failure, WaveformActuator,
 };
 use crate::custom::PartError;
 use crate::part::{Part, ReportContext};
@@ -141,20 +141,25 @@ pub struct AxisActuators {
 }
 
 impl AxisActuators {
-    /// Creates the actuator of each axis about which it acts, with its failures.
-    pub fn new(kind: &ActuatorKind, settings: Vec<AxisActuatorContext>) -> Self {
-        let actuator_for = |setting: AxisActuatorContext| {
-            let (actuator, axis) = (kind.axis_actuator(&setting), setting.axis);
+    /// Returns the run-time state of the actuator of each axis about which it acts, with its failures, from the state about
+    /// one axis.
+    pub fn start<A: AxisActuator + 'static>(
+        settings: &[AxisActuatorContext],
+        failures: &[Failure],
+        start_about: impl Fn(&AxisActuatorContext) -> A,
+    ) -> Box<dyn Actuator> {
+        let actuator_for = |setting: &AxisActuatorContext| {
+            let (actuator, axis) = (Box::new(start_about(setting)), setting.axis);
             let own =
                 |scope: &FailureScope<'_>| scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis);
-            (FaultyActuator::with_failures(kind.failures(), own, actuator), setting)
+            (FaultyActuator::with_failures(failures, own, actuator), setting.clone())
         };
-        let axis = |setting: AxisActuatorContext| (setting.share > 0.0).then(|| actuator_for(setting));
+        let axis = |setting: &AxisActuatorContext| (setting.share > 0.0).then(|| actuator_for(setting));
         let axes: Vec<Option<(Box<dyn AxisActuator>, AxisActuatorContext)>> =
-            settings.into_iter().map(axis).collect();
+            settings.iter().map(axis).collect();
         let first = axes.first().and_then(Option::as_ref);
         let back_emf = first.map_or((0.0, false), |(actuator, _)| actuator.properties().back_emf);
-        Self { axes, back_emf }
+        Box::new(Self { axes, back_emf })
     }
 
     /// Returns the actuator about an axis, if one acts there.

@@ -31,7 +31,7 @@ impl Burn {
     }
 
     /// Checks burns, which must follow one another; returns a key within them and the reason.
-    pub fn inconsistency(burns: &[Self]) -> Option<ConfigError> {
+    pub fn validate(burns: &[Self]) -> Option<ConfigError> {
         for (index, burn) in burns.iter().enumerate() {
             let at = |key: &str, why: String| Some(ConfigError::new(format!("[{index}].{key}"), why));
             if burn.to <= burn.from {

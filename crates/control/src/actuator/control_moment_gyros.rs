@@ -8,9 +8,12 @@ use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Failure;
 use super::failure::{ActiveFailures, FailureScope};
 use super::steering::{self, GyroAxes, NullMotion, Robustness, Steering};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorPlacement, ActuatorSpec, AxisActuatorContext,
+    ControlMomentGyrosState, FailingComponent, Failure,
+};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
 use crate::requirement::{Requirements, Rule};
 
@@ -74,9 +77,17 @@ const SQUARE: f64 = 1e-6;
 /// Sum of squared areas between gimbal axes below which they count as parallel.
 const PARALLEL: f64 = 1e-9;
 
-impl ControlMomentGyros {
-    /// Returns the offers of the gyros to the other parts of a scenario.
-    pub(super) fn offers() -> ActuatorOffers {
+impl ActuatorSpec for ControlMomentGyros {
+    fn start(&self, settings: &[AxisActuatorContext], on: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        Box::new(ControlMomentGyrosState::new(self, on.gimbals, settings))
+    }
+
+    /// Returns the authority at the initial gimbal angles.
+    fn authority(&self, axis: usize, inertia: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        ActuatorAuthority::constant(self.largest_torque(on.gimbals, axis) / inertia)
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         ActuatorOffers {
             limits: [TorqueLimit::Varying; 3],
             turns_with_gimbals: true,
@@ -84,8 +95,7 @@ impl ControlMomentGyros {
         }
     }
 
-    /// Adds the requirements of the gyros on the other parts of a scenario.
-    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         needs.require(
             Rule::GimbalAxes,
             offers.body.axes == 3,
@@ -109,6 +119,16 @@ impl ControlMomentGyros {
         );
     }
 
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn failing_components(&self, _: usize) -> FailingComponent {
+        FailingComponent::Gimbals(self.count())
+    }
+}
+
+impl ControlMomentGyros {
     /// Returns the number of control moment gyros.
     pub fn count(&self) -> usize {
         match self.arrangement {

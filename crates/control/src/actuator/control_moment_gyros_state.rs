@@ -52,17 +52,17 @@ pub(super) fn gimbal_rate(report: &Report) -> Option<f64> {
     report.get::<SteeringRecord>().map(|steered| steered.rate_rad_s)
 }
 
-impl ControlMomentGyros {
+impl ControlMomentGyrosState {
     /// Creates the control moment gyros before their first command, on a body with these settings.
-    pub fn start(&self, axes: &[GyroAxes], settings: &[AxisActuatorContext]) -> ControlMomentGyrosState {
-        let (angles, count) = (self.initial_angles(), axes.len());
+    pub fn new(gyros: &ControlMomentGyros, axes: &[GyroAxes], settings: &[AxisActuatorContext]) -> Self {
+        let (angles, count) = (gyros.initial_angles(), axes.len());
         let least_measure = steering::singularity_measure(&steering::torque_directions(axes, &angles));
-        ControlMomentGyrosState {
+        Self {
             axes: axes.to_vec(),
-            momentum: self.momentum.get(),
-            limit: self.rate_limit.map_or(f64::INFINITY, Positive::get),
-            robust: self.steering_weight(),
-            preferred: self.null_motion(),
+            momentum: gyros.momentum.get(),
+            limit: gyros.rate_limit.map_or(f64::INFINITY, Positive::get),
+            robust: gyros.steering_weight(),
+            preferred: gyros.null_motion(),
             settings: settings.to_vec(),
             demanded: Vector::zeros(),
             against: Vector::zeros(),
@@ -70,8 +70,8 @@ impl ControlMomentGyros {
             angles,
             rates: vec![0.0; count],
             commanded: vec![0.0; count],
-            failing: (0..count).map(|gyro| self.gimbal_failures(gyro)).collect(),
-            updates: self.period.map(|period| (Instant::START + period, period)),
+            failing: (0..count).map(|gyro| gyros.gimbal_failures(gyro)).collect(),
+            updates: gyros.period.map(|period| (Instant::START + period, period)),
             steered: SteeringRecord {
                 rate_rad_s: 0.0,
                 largest_rate_rad_s: 0.0,
@@ -80,9 +80,7 @@ impl ControlMomentGyros {
             },
         }
     }
-}
 
-impl ControlMomentGyrosState {
     fn elapsed(&self, now: Instant) -> f64 {
         now.since(self.since).seconds()
     }

@@ -108,8 +108,8 @@ pub struct FailureScope<'a> {
 }
 
 /// Components of an actuator that failures can name.
-#[derive(Copy, Clone, Debug)]
-pub(super) enum FailingComponent<'a> {
+#[derive(Clone, Debug)]
+pub enum FailingComponent {
     /// Number of axes with an actuator each; magnetorquers count so too.
     Axes(usize),
     /// Number of wheels.
@@ -117,7 +117,7 @@ pub(super) enum FailingComponent<'a> {
     /// Number of gimbals.
     Gimbals(usize),
     /// Names of the thrusters.
-    Thrusters(&'a [String]),
+    Thrusters(Vec<String>),
 }
 
 impl Failure {
@@ -148,16 +148,16 @@ impl Failure {
 
     /// Checks the failure against an actuator with these components; `turns`: it exerts torques. Returns a key and the
     /// reason.
-    pub(super) fn validate(&self, parts: FailingComponent<'_>, turns: bool) -> Option<ConfigError> {
+    pub(super) fn validate(&self, parts: &FailingComponent, turns: bool) -> Option<ConfigError> {
         let FailureScope { interval, axis, wheel, gimbal, thruster } = self.scope();
         if let Some(fault) = interval.validate() {
             return Some(fault);
         }
         let error_at = |key: &str, why: &str| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
         let (axes, wheels, gimbals, names): (usize, usize, usize, &[String]) = match parts {
-            FailingComponent::Axes(axes) => (axes, 0, 0, &[]),
-            FailingComponent::Wheels(wheels) => (0, wheels, 0, &[]),
-            FailingComponent::Gimbals(gimbals) => (0, 0, gimbals, &[]),
+            FailingComponent::Axes(axes) => (*axes, 0, 0, &[]),
+            FailingComponent::Wheels(wheels) => (0, *wheels, 0, &[]),
+            FailingComponent::Gimbals(gimbals) => (0, 0, *gimbals, &[]),
             FailingComponent::Thrusters(names) => (0, 0, 0, names),
         };
         if axis.is_some() && axes < 3 {

@@ -8,7 +8,10 @@ use flexsc_record::{Report, WheelMotion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, Failure};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorPlacement, ActuatorSpec, AxisActuator, AxisActuatorContext,
+    AxisActuators, AxisProperties, AxisResponse, AxisTorques, Failure, LinearDrive,
+};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
 use crate::part::{Occasion, Part, ReportContext};
 use crate::requirement::{Requirements, Rule};
@@ -104,9 +107,24 @@ pub struct FlywheelState {
     next: Option<Instant>,
 }
 
-impl Wheel {
-    /// Returns the offers of the wheel to the other parts of a scenario.
-    pub(super) fn offers(&self) -> ActuatorOffers {
+impl ActuatorSpec for Wheel {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        AxisActuators::start(settings, &self.faults, |setting| FlywheelState {
+            wheel: self.clone(),
+            setting: setting.clone(),
+            feedback: 0.0,
+            held: 0.0,
+            delayed: VecDeque::new(),
+            next: None,
+        })
+    }
+
+    fn authority(&self, _: usize, inertia: f64, _: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        let most = self.limit.map_or(f64::INFINITY, Positive::get) * self.gain.get() / inertia;
+        ActuatorAuthority { delay: self.delay.get(), ..ActuatorAuthority::constant(most) }
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         let limit = self.limit.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
         ActuatorOffers {
             limits: [limit; 3],
@@ -116,8 +134,7 @@ impl Wheel {
         }
     }
 
-    /// Adds the requirements of the wheel on the other parts of a scenario.
-    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let is_passive = self.back_emf.get() <= 0.0;
         needs.require(
             Rule::BackEmf,
@@ -152,16 +169,26 @@ impl Wheel {
         );
     }
 
-    /// Creates the wheel before its first command.
-    pub fn start(&self, setting: &AxisActuatorContext) -> FlywheelState {
-        FlywheelState {
-            wheel: self.clone(),
-            setting: setting.clone(),
-            feedback: 0.0,
-            held: 0.0,
-            delayed: VecDeque::new(),
-            next: None,
-        }
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn expected_torque(&self, planned: f64, command: f64) -> f64 {
+        planned.max(self.gain.get() * self.execute_command(command))
+    }
+
+    fn command_gain(&self) -> Option<f64> {
+        Some(self.gain.get())
+    }
+
+    fn linear_drive(&self) -> Option<LinearDrive<'_>> {
+        Some(LinearDrive {
+            gain: self.gain.get(),
+            back_emf: self.back_emf.get(),
+            opposes_body_rate: self.opposes == BackEmfRate::BodyRate,
+            delay: self.delay.get(),
+            wheel: Some(self),
+        })
     }
 }
 

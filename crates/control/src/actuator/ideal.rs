@@ -9,9 +9,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, AxisWaves, Failure,
+    Actuator, ActuatorPlacement, ActuatorSpec, AxisActuator, AxisActuatorContext, AxisActuators,
+    AxisProperties, AxisResponse, AxisTorques, AxisWaves, Failure, LinearDrive,
 };
-use crate::offers::{ActuatorOffers, Offers};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 
@@ -24,14 +25,16 @@ pub struct Ideal {
     pub faults: Vec<Failure>,
 }
 
-impl Ideal {
-    /// Returns the offers of the actuator to the other parts of a scenario.
-    pub(super) fn offers() -> ActuatorOffers {
+impl ActuatorSpec for Ideal {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        AxisActuators::start(settings, &self.faults, IdealState::new)
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         ActuatorOffers { follows_waveform: true, ..ActuatorOffers::default() }
     }
 
-    /// Adds the requirements of the actuator on the other parts of a scenario.
-    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, _: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let Some(matrix) = &offers.body.damping_matrix else { return };
         needs.require_elsewhere(
             Rule::DampingMatrix,
@@ -40,6 +43,14 @@ impl Ideal {
             "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
              thrusters",
         );
+    }
+
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn linear_drive(&self) -> Option<LinearDrive<'_>> {
+        Some(LinearDrive { gain: 1.0, back_emf: 0.0, opposes_body_rate: true, delay: 0.0, wheel: None })
     }
 }
 

@@ -9,7 +9,10 @@ use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuator, AllocatedJets, Burn, Failure, JetsState, PulseWidth, jet_allocation};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorPlacement, ActuatorSpec, AllocatedJets, AxisActuatorContext, Burn,
+    FailingComponent, Failure, Ideal, JetsState, PulseWidth, jet_allocation,
+};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::requirement::{OFF_HUB, Requirements, Rule};
 
@@ -154,9 +157,28 @@ pub struct ThrusterEffect {
     pub thrust: f64,
 }
 
-impl Jets {
-    /// Returns the offers of the jets to the other parts of a scenario.
-    pub(super) fn offers(&self) -> ActuatorOffers {
+impl ActuatorSpec for Jets {
+    fn start(&self, settings: &[AxisActuatorContext], on: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        let Some(groups) = on.groups else { return Ideal::default().start(settings, on) };
+        let fitted = (groups, on.nozzles);
+        match self.allocation {
+            FiringMethod::Groups => Box::new(JetsState::new(self, fitted, on.period)),
+            FiringMethod::LeastPropellant => Box::new(AllocatedJets::new(self, fitted, on.period)),
+        }
+    }
+
+    fn authority(&self, axis: usize, _: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        let groups = on.groups.map(|groups| &groups[axis]);
+        let largest = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
+        let period = self.period.unwrap_or(on.period);
+        ActuatorAuthority {
+            accelerations: [largest(0), largest(1)],
+            width: self.pulse_width(),
+            delay: f64::from(self.delay) * period.seconds(),
+        }
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         ActuatorOffers {
             pulses: true,
             has_jets: true,
@@ -165,8 +187,7 @@ impl Jets {
         }
     }
 
-    /// Adds the requirements of the jets on the other parts of a scenario.
-    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         // With wheels about three axes, the wheels are reported.
         if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
             let instead = ": `[actuator.thrusters]` push a body with one angle";
@@ -188,6 +209,24 @@ impl Jets {
         }
     }
 
+    fn period(&self) -> Option<Span> {
+        self.period
+    }
+
+    fn phase(&self) -> Option<Time> {
+        self.phase
+    }
+
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn failing_components(&self, _: usize) -> FailingComponent {
+        FailingComponent::Thrusters(self.names())
+    }
+}
+
+impl Jets {
     /// Adds the requirements on the cycle of jets that execute commands.
     fn require_cycle(&self, offers: &Offers, needs: &mut Requirements) {
         let driving: Vec<_> = offers.laws.iter().filter(|law| law.drives("jets")).collect();
@@ -279,7 +318,7 @@ impl Jets {
             let tensor = body.inertia;
             let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
             let nozzles = self.thruster_effects(body);
-            let misplaced = Burn::inconsistency(&self.burns).map(|fault| fault.within("burns"));
+            let misplaced = Burn::validate(&self.burns).map(|fault| fault.within("burns"));
             if let Some(fault) = misplaced.or_else(|| Burn::capability_fault(&self.burns, &nozzles)) {
                 return Err(fault);
             }
@@ -360,19 +399,6 @@ impl Jets {
     /// Returns the names of the thrusters.
     pub fn names(&self) -> Vec<String> {
         self.thrusters.iter().map(|thruster| thruster.name.clone()).collect()
-    }
-
-    /// Returns the run-time state before the first command, with the effects of groups and thrusters; `period` is the
-    /// law's, for jets without their own.
-    pub fn start(
-        &self,
-        fitted: (&[[GroupEffect; 2]; 3], &[ThrusterEffect]),
-        period: Span,
-    ) -> Box<dyn Actuator> {
-        match self.allocation {
-            FiringMethod::Groups => Box::new(JetsState::new(self, fitted, period)),
-            FiringMethod::LeastPropellant => Box::new(AllocatedJets::new(self, fitted, period)),
-        }
     }
 
     /// Returns the quantisation of pulse lengths.

@@ -14,7 +14,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
-use super::{Actuator, ActuatorEvent, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorEvent, ActuatorPlacement, ActuatorSpec, AxisActuatorContext,
+    AxisEffort, AxisResponse, Demand, Failure,
+};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::{Occasion, Part, ReportContext};
 use crate::requirement::{Requirements, Rule};
@@ -31,13 +34,27 @@ pub struct Magnetorquers {
 }
 
 impl Magnetorquers {
-    /// Returns the offers of the torquers to the other parts of a scenario.
-    pub(super) fn offers() -> ActuatorOffers {
+    /// Returns the length of the largest magnetic moment (A m²).
+    pub fn largest_moment(&self) -> f64 {
+        Vector::from_fn(|axis, _| self.moment.about(axis).get()).norm()
+    }
+}
+
+impl ActuatorSpec for Magnetorquers {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        Box::new(MagnetorquersState::new(self, settings))
+    }
+
+    /// Returns the authority in the largest field.
+    fn authority(&self, _: usize, inertia: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        ActuatorAuthority::constant(self.largest_moment() * on.field / inertia)
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         ActuatorOffers { turns_with_field: true, ..ActuatorOffers::default() }
     }
 
-    /// Adds the requirements of the torquers on the other parts of a scenario.
-    pub(super) fn requires(place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         // With wheels about three axes, the wheels are reported.
         if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
             offers.require_three_axes(needs, Rule::MagnetorquerAxes, "", "");
@@ -51,26 +68,8 @@ impl Magnetorquers {
         );
     }
 
-    /// Creates the torquers before their first command.
-    pub fn start(&self, settings: &[AxisActuatorContext]) -> MagnetorquersState {
-        MagnetorquersState {
-            limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
-            settings: settings.to_vec(),
-            field: None,
-            demanded: Vector::zeros(),
-            moment: Vector::zeros(),
-            failing: [0, 1, 2].map(|axis| {
-                let own = |scope: &FailureScope<'_>| {
-                    scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis)
-                };
-                ActiveFailures::new(&self.faults, own)
-            }),
-        }
-    }
-
-    /// Returns the length of the largest magnetic moment (A m²).
-    pub fn largest_moment(&self) -> f64 {
-        Vector::from_fn(|axis, _| self.moment.about(axis).get()).norm()
+    fn failures(&self) -> &[Failure] {
+        &self.faults
     }
 }
 
@@ -90,6 +89,23 @@ pub struct MagnetorquersState {
 }
 
 impl MagnetorquersState {
+    /// Creates the torquers before their first command.
+    fn new(torquers: &Magnetorquers, settings: &[AxisActuatorContext]) -> Self {
+        Self {
+            limits: [0, 1, 2].map(|axis| torquers.moment.about(axis).get()),
+            settings: settings.to_vec(),
+            field: None,
+            demanded: Vector::zeros(),
+            moment: Vector::zeros(),
+            failing: [0, 1, 2].map(|axis| {
+                let own = |scope: &FailureScope<'_>| {
+                    scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis)
+                };
+                ActiveFailures::new(&torquers.faults, own)
+            }),
+        }
+    }
+
     /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
         let coil = |axis: usize| {
@@ -218,7 +234,7 @@ mod tests {
             waveform: None,
             share: 1.0,
         };
-        torquers.start(&[0, 1, 2].map(setting))
+        MagnetorquersState::new(&torquers, &[0, 1, 2].map(setting))
     }
 
     #[test]

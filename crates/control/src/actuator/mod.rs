@@ -1,7 +1,9 @@
 //! Actuators: they execute commands ideally, through a hold, by wheels or gyros, or by pulses of thrusters.
 
 mod actuator_set;
+mod actuator_spec;
 mod allocation_role;
+#[macro_use]
 mod assignment;
 mod axis_actuators;
 mod burns;
@@ -42,12 +44,13 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::custom::Custom;
+use crate::kinds::kinds;
 use crate::part::Part;
 
 pub use actuator_set::ActuatorSet;
+pub use actuator_spec::ActuatorSpec;
 pub use allocation_role::{ActuatorTask, AssignedMember};
-pub use assignment::{ActuatorName, AssignedActuator};
+pub use assignment::AssignedActuator;
 pub use axis_actuators::{
     AxisActuator, AxisActuatorContext, AxisActuators, AxisProperties, AxisTorques, AxisWaves,
 };
@@ -56,7 +59,7 @@ pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, 
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;
 pub use effort::{ActuatorEvent, AxisEffort, AxisResponse};
-pub use failure::{Failure, FailureScope};
+pub use failure::{FailingComponent, Failure, FailureScope};
 pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
 pub use ideal::Ideal;
@@ -80,29 +83,30 @@ pub use wheels::{Arrangement, FrictionCompensation, SpeedBias, Wheels};
 pub use wheels_state::WheelsState;
 pub use zero_order_hold::ZeroOrderHold;
 
-/// The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Actuator")]
-pub enum ActuatorKind {
-    /// The command itself, at every instant.
-    Ideal(Ideal),
-    /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
-    Hold(ZeroOrderHold),
-    /// One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
-    Thrusters(Thrusters),
-    /// A flywheel on a motor with back-EMF.
-    Wheel(Wheel),
-    /// Reaction wheels about axes of their own.
-    Wheels(Wheels),
-    /// Control moment gyros of a spacecraft.
-    ControlMomentGyros(ControlMomentGyros),
-    /// Thrusters at points of a spatial body.
-    Jets(Jets),
-    /// Magnetorquers of a spatial body in the field of its planet.
-    Magnetorquers(Magnetorquers),
-    /// An actuator from another crate; a scenario file cannot name it.
-    Own(Custom<dyn ActuatorSpec>),
+kinds! {
+    /// The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[schemars(rename = "Actuator")]
+    pub enum ActuatorKind: dyn ActuatorSpec {
+        /// The command itself, at every instant.
+        "ideal" Ideal(Ideal),
+        /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
+        "hold" Hold(ZeroOrderHold),
+        /// One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold.
+        "thrusters" Thrusters(Thrusters),
+        /// A flywheel on a motor with back-EMF.
+        "wheel" Wheel(Wheel),
+        /// Reaction wheels about axes of their own.
+        "wheels" Wheels(Wheels),
+        /// Control moment gyros of a spacecraft.
+        "control_moment_gyros" ControlMomentGyros(ControlMomentGyros),
+        /// Thrusters at points of a spatial body.
+        "jets" Jets(Jets),
+        /// Magnetorquers of a spatial body in the field of its planet.
+        "magnetorquers" Magnetorquers(Magnetorquers),
+    }
+    own "An actuator from another crate; a scenario file cannot name it."
+    also entries
 }
 
 /// Demand on an actuator about an axis.
@@ -114,17 +118,6 @@ pub enum Demand {
     Change(f64),
     /// Magnetic moment along the axis (A m²), for magnetorquers.
     Moment(f64),
-}
-
-/// Settings of an actuator that another crate provides.
-pub trait ActuatorSpec: Send + Sync {
-    /// Returns the run-time state of the actuator, from the setting of each axis.
-    fn start(&self, settings: &[AxisActuatorContext]) -> Box<dyn Actuator>;
-
-    /// Returns the actuator's largest torque about an axis (N m); `None` without a limit.
-    fn limit(&self, _axis: usize) -> Option<f64> {
-        None
-    }
 }
 
 /// Run-time state of an actuator.
@@ -169,104 +162,4 @@ impl Clone for Box<dyn Actuator> {
 /// Returns the first time at which an actuator with a phase acts.
 fn first(phase: Option<Time>) -> Instant {
     Instant::START + Span::from_seconds(phase.map_or(0.0, Time::get))
-}
-
-impl Default for ActuatorKind {
-    fn default() -> Self {
-        Self::Ideal(Ideal::default())
-    }
-}
-
-impl ActuatorKind {
-    /// Returns the wheels if they are unbalanced.
-    pub fn unbalanced_wheels(&self) -> Option<&Wheels> {
-        match self {
-            Self::Wheels(wheels) if wheels.imbalance.is_some() => Some(wheels),
-            _ => None,
-        }
-    }
-
-    /// Returns the name of the kind, as in a scenario.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Ideal(_) => "ideal",
-            Self::Hold(_) => "hold",
-            Self::Thrusters(_) => "thrusters",
-            Self::Wheel(_) => "wheel",
-            Self::Wheels(_) => "wheels",
-            Self::ControlMomentGyros(_) => "control_moment_gyros",
-            Self::Jets(_) => "jets",
-            Self::Magnetorquers(_) => "magnetorquers",
-            Self::Own(_) => "own",
-        }
-    }
-
-    /// Returns the torque per unit of a torque command (N m).
-    pub fn torque_per_command(&self) -> f64 {
-        if let Self::Wheel(wheel) = self { wheel.gain.get() } else { 1.0 }
-    }
-
-    /// Returns the largest torque (N m) for the largest planned torque (N m) and the largest command of the law.
-    pub fn expected_torque(&self, planned: f64, command: f64) -> f64 {
-        match self {
-            Self::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.execute_command(command)),
-            Self::Thrusters(thrusters) => thrusters.torque.about(0).get(),
-            _ => planned.max(command),
-        }
-    }
-
-    /// Returns the actuator's failures.
-    pub fn failures(&self) -> &[Failure] {
-        match self {
-            Self::Ideal(ideal) => &ideal.faults,
-            Self::Hold(hold) => &hold.faults,
-            Self::Thrusters(thrusters) => &thrusters.faults,
-            Self::Wheel(wheel) => &wheel.faults,
-            Self::Wheels(wheels) => &wheels.faults,
-            Self::ControlMomentGyros(gyros) => &gyros.faults,
-            Self::Jets(jets) => &jets.faults,
-            Self::Magnetorquers(torquers) => &torquers.faults,
-            Self::Own(_) => &[],
-        }
-    }
-
-    /// Returns the period in which the command is executed; `None` for immediate execution.
-    pub fn period(&self) -> Option<Span> {
-        self.timing().0
-    }
-
-    /// Returns the start of the first period (s), if given.
-    pub fn phase(&self) -> Option<Time> {
-        self.timing().1
-    }
-
-    fn timing(&self) -> (Option<Span>, Option<Time>) {
-        match self {
-            Self::Ideal(_)
-            | Self::Wheel(_)
-            | Self::Wheels(_)
-            | Self::ControlMomentGyros(_)
-            | Self::Magnetorquers(_)
-            | Self::Own(_) => (None, None),
-            Self::Hold(hold) => (Some(hold.period), hold.phase),
-            Self::Thrusters(thrusters) => (Some(thrusters.period), thrusters.phase),
-            Self::Jets(jets) => (jets.period, jets.phase),
-        }
-    }
-
-    /// Returns the run-time state of a single-axis actuator. Kinds that act about all axes are not asked for it: jets,
-    /// magnetorquers, wheels of three axes, control moment gyros and those of another crate.
-    pub fn axis_actuator(&self, setting: &AxisActuatorContext) -> Box<dyn AxisActuator> {
-        match self {
-            Self::Ideal(_)
-            | Self::Jets(_)
-            | Self::Wheels(_)
-            | Self::ControlMomentGyros(_)
-            | Self::Magnetorquers(_)
-            | Self::Own(_) => Box::new(ideal::IdealState::new(setting)),
-            Self::Hold(hold) => Box::new(hold.start(setting)),
-            Self::Thrusters(thrusters) => Box::new(thrusters.start(setting)),
-            Self::Wheel(wheel) => Box::new(wheel.start(setting)),
-        }
-    }
 }

@@ -2,47 +2,21 @@
 
 use flexsc_numerics::quantity::Time;
 
-use super::{
-    ActuatorKind, ActuatorSpec, AssignedActuator, ControlMomentGyros, Ideal, Magnetorquers, Thrusters,
-};
-use crate::custom::Custom;
-use crate::offers::{ActuatorMember, ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
+use super::{ActuatorKind, AssignedActuator, Ideal, Jets, Wheels};
+use crate::offers::{ActuatorMember, ActuatorOffers, ActuatorPlace, Offers};
 use crate::one_or_many::OneOrMany;
 use crate::requirement::{Requirements, Rule};
 
 impl ActuatorKind {
     /// Returns the offers of the actuator to the other parts of a scenario.
     pub fn offers(&self) -> ActuatorOffers {
-        let offers = match self {
-            Self::Ideal(_) => Ideal::offers(),
-            Self::Thrusters(_) => Thrusters::offers(),
-            Self::Wheel(wheel) => wheel.offers(),
-            Self::Wheels(wheels) => wheels.offers(),
-            Self::ControlMomentGyros(_) => ControlMomentGyros::offers(),
-            Self::Jets(jets) => jets.offers(),
-            Self::Magnetorquers(_) => Magnetorquers::offers(),
-            Self::Hold(_) => ActuatorOffers::default(),
-            Self::Own(own) => {
-                let limit = |axis| own.limit(axis).map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
-                ActuatorOffers { limits: [0, 1, 2].map(limit), ..ActuatorOffers::default() }
-            }
-        };
-        ActuatorOffers { period: self.period(), ..offers }
+        ActuatorOffers { period: self.period(), ..(**self).offers() }
     }
 
     /// Adds the requirements of the actuator on the other parts of a scenario.
     fn add_requirements(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         self.require_phase(place, offers, needs);
-        match self {
-            Self::Ideal(_) => Ideal::requires(offers, needs),
-            Self::Thrusters(thrusters) => thrusters.requires(offers, needs),
-            Self::Wheel(wheel) => wheel.requires(place, offers, needs),
-            Self::Wheels(wheels) => wheels.requires(place, offers, needs),
-            Self::ControlMomentGyros(gyros) => gyros.requires(place, offers, needs),
-            Self::Jets(jets) => jets.requires(place, offers, needs),
-            Self::Magnetorquers(_) => Magnetorquers::requires(place, offers, needs),
-            Self::Hold(_) | Self::Own(_) => {}
-        }
+        self.requires(place, offers, needs);
     }
 
     /// Adds the requirements on the phase of the periods, so that no first period is missed.
@@ -75,15 +49,24 @@ impl ActuatorKind {
         matches!(self, Self::Ideal(ideal) if ideal.faults.is_empty())
     }
 
-    /// Returns the actuator of another crate, if it is one.
-    pub fn custom(&self) -> Option<&Custom<dyn ActuatorSpec>> {
-        if let Self::Own(own) = self { Some(own) } else { None }
+    /// Returns the jets, if the actuator consists of them.
+    pub fn jets(&self) -> Option<&Jets> {
+        if let Self::Jets(jets) = self { Some(jets) } else { None }
+    }
+
+    /// Returns the wheels if they are unbalanced.
+    pub fn unbalanced_wheels(&self) -> Option<&Wheels> {
+        if let Self::Wheels(wheels) = self {
+            Some(wheels).filter(|wheels| wheels.imbalance.is_some())
+        } else {
+            None
+        }
     }
 }
 
-impl From<Custom<dyn ActuatorSpec>> for ActuatorKind {
-    fn from(actuator: Custom<dyn ActuatorSpec>) -> Self {
-        Self::Own(actuator)
+impl Default for ActuatorKind {
+    fn default() -> Self {
+        Self::Ideal(Ideal::default())
     }
 }
 

@@ -6,8 +6,11 @@ use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, AxisTorques, Failure, PulseWidth};
-use crate::offers::{ActuatorOffers, Offers};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorPlacement, ActuatorSpec, AxisActuator, AxisActuatorContext,
+    AxisActuators, AxisTorques, Failure, PulseWidth,
+};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::Part;
 use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 
@@ -47,14 +50,33 @@ impl Thrusters {
     pub fn width(&self) -> PulseWidth {
         PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
     }
+}
 
-    /// Returns the offers of the thrusters to the other parts of a scenario.
-    pub(super) fn offers() -> ActuatorOffers {
+impl ActuatorSpec for Thrusters {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        AxisActuators::start(settings, &self.faults, |setting| ThrustersState {
+            most: self.torque.about(setting.axis).get(),
+            period: self.period,
+            width: self.width(),
+            setting: setting.clone(),
+            next: super::first(self.phase),
+            feedback: 0.0,
+            held: 0.0,
+            pulse: None,
+            remainder: 0.0,
+        })
+    }
+
+    fn authority(&self, axis: usize, inertia: f64, _: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        let most = self.torque.about(axis).get() / inertia;
+        ActuatorAuthority { width: self.width(), ..ActuatorAuthority::constant(most) }
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         ActuatorOffers { pulses: true, ..ActuatorOffers::default() }
     }
 
-    /// Adds the requirements of the thrusters on the other parts of a scenario.
-    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, _: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let is_one = offers.body.axes == 3 || !self.torque.is_three();
         needs.require(Rule::OneNumber, is_one, "torque", ONE_NUMBER);
         let period = self.period.seconds();
@@ -65,19 +87,20 @@ impl Thrusters {
         }
     }
 
-    /// Creates the thrusters before their first period.
-    pub fn start(&self, setting: &AxisActuatorContext) -> ThrustersState {
-        ThrustersState {
-            most: self.torque.about(setting.axis).get(),
-            period: self.period,
-            width: self.width(),
-            setting: setting.clone(),
-            next: super::first(self.phase),
-            feedback: 0.0,
-            held: 0.0,
-            pulse: None,
-            remainder: 0.0,
-        }
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn phase(&self) -> Option<Time> {
+        self.phase
+    }
+
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn expected_torque(&self, _: f64, _: f64) -> f64 {
+        self.torque.about(0).get()
     }
 }
 

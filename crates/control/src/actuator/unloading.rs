@@ -77,7 +77,7 @@ impl WheelUnloading {
     }
 
     /// Checks the choice of the unloading actuator; returns a key within the unloading and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
+    pub fn validate(&self) -> Option<ConfigError> {
         let error_at = |key: &str, why: &str| Some(ConfigError::new(key, why));
         match (&self.jets, &self.magnetorquers) {
             (None, None) => error_at("jets", "must be given, or `magnetorquers`"),

@@ -14,7 +14,10 @@ use super::failure::{ActiveFailures, FailureScope};
 use super::per_wheel::PerWheel;
 use super::unloading::WheelUnloading;
 use super::wheel_allocation::{Allocation, AllocationCriterion};
-use super::{Failure, Friction, Imbalance};
+use super::{
+    Actuator, ActuatorAuthority, ActuatorPlacement, ActuatorSpec, AxisActuatorContext, CommandResponse,
+    FailingComponent, Failure, Friction, Ideal, Imbalance, WheelsState,
+};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
 use crate::requirement::{ROTATION, Requirements, Rule};
 
@@ -109,9 +112,19 @@ pub struct SpeedBias {
 /// Cant of a pyramid with equal torques about all axes: atan(1/sqrt(2)) (rad).
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
-impl Wheels {
-    /// Returns the offers of the wheels to the other parts of a scenario.
-    pub(super) fn offers(&self) -> ActuatorOffers {
+impl ActuatorSpec for Wheels {
+    fn start(&self, settings: &[AxisActuatorContext], on: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        let Some(allocation) = on.wheels else { return Ideal::default().start(settings, on) };
+        Box::new(WheelsState::new(self, allocation, settings).with_tachometer(on.tachometer))
+    }
+
+    fn authority(&self, axis: usize, inertia: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
+        let limit = self.torque.map_or(f64::INFINITY, Positive::get);
+        let most = on.wheels.map_or(f64::INFINITY, |wheels| wheels.largest_torque(axis, limit));
+        ActuatorAuthority::constant(most / inertia)
+    }
+
+    fn offers(&self) -> ActuatorOffers {
         let limit = self.torque.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
         ActuatorOffers {
             limits: [limit; 3],
@@ -122,8 +135,7 @@ impl Wheels {
         }
     }
 
-    /// Adds the requirements of the wheels on the other parts of a scenario.
-    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+    fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         needs.require(
             Rule::WheelAxes,
             offers.body.axes == 3,
@@ -143,6 +155,20 @@ impl Wheels {
         }
     }
 
+    fn failures(&self) -> &[Failure] {
+        &self.faults
+    }
+
+    fn failing_components(&self, _: usize) -> FailingComponent {
+        FailingComponent::Wheels(self.count())
+    }
+
+    fn command_response(&self) -> Option<CommandResponse> {
+        Some(CommandResponse { gain: 1.0, delay: 0.0 })
+    }
+}
+
+impl Wheels {
     /// Returns the number of wheels.
     pub fn count(&self) -> usize {
         match self.arrangement {

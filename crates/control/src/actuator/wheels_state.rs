@@ -70,21 +70,10 @@ impl WheelState {
     }
 }
 
-impl Wheels {
-    /// Creates the wheels before their first command, on a body with these settings.
-    pub fn start(&self, allocation: &Allocation, settings: &[AxisActuatorContext]) -> WheelsState {
-        WheelsState::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
-    }
-}
-
 impl WheelsState {
-    /// Creates the wheels before their first command, at these speeds (rad/s).
-    pub fn new(
-        wheels: &Wheels,
-        allocation: Allocation,
-        speeds: &[f64],
-        settings: &[AxisActuatorContext],
-    ) -> Self {
+    /// Creates the wheels before their first command, on a body with these settings.
+    pub fn new(wheels: &Wheels, allocation: &Allocation, settings: &[AxisActuatorContext]) -> Self {
+        let speeds = wheels.speeds(allocation.axes().len());
         let inertia = wheels.inertia.get();
         let rate = Vector::from_fn(|axis, _| settings.get(axis).map_or(0.0, |setting| setting.rate));
         let spin = |(axis, speed): (&Vector, &f64)| WheelState {
@@ -94,8 +83,8 @@ impl WheelsState {
         };
         let limit = |limit: Option<Positive>| limit.map_or(f64::INFINITY, Positive::get);
         Self {
-            wheels: allocation.axes().iter().zip(speeds).map(spin).collect(),
-            allocation,
+            wheels: allocation.axes().iter().zip(&speeds).map(spin).collect(),
+            allocation: allocation.clone(),
             inertia,
             torque_limit: limit(wheels.torque),
             momentum_limit: limit(wheels.momentum),
@@ -119,7 +108,7 @@ impl WheelsState {
     pub fn with_tachometer(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
         let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
         let speeds = (0..self.wheels.len()).map(|index| self.known_speed(index, &rate)).collect();
-        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(speeds, seed));
+        self.tachometer = tachometer.map(|(tachometer, seed)| TachometerState::new(tachometer, speeds, seed));
         self
     }
 

@@ -5,7 +5,10 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, AxisTorques, Failure};
+use super::{
+    Actuator, ActuatorPlacement, ActuatorSpec, AxisActuator, AxisActuatorContext, AxisActuators, AxisTorques,
+    Failure,
+};
 use crate::part::Part;
 
 /// A zero-order hold.
@@ -33,16 +36,27 @@ pub struct ZeroOrderHoldState {
     held: f64,
 }
 
-impl ZeroOrderHold {
-    /// Creates the hold before its first period.
-    pub fn start(&self, setting: &AxisActuatorContext) -> ZeroOrderHoldState {
-        ZeroOrderHoldState {
+impl ActuatorSpec for ZeroOrderHold {
+    fn start(&self, settings: &[AxisActuatorContext], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
+        AxisActuators::start(settings, &self.faults, |setting| ZeroOrderHoldState {
             period: self.period,
             setting: setting.clone(),
             next: super::first(self.phase),
             feedback: 0.0,
             held: 0.0,
-        }
+        })
+    }
+
+    fn period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn phase(&self) -> Option<Time> {
+        self.phase
+    }
+
+    fn failures(&self) -> &[Failure] {
+        &self.faults
     }
 }
 

@@ -10,7 +10,7 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::custom::Custom;
+use crate::kinds::kinds;
 use crate::law::Tunable;
 use crate::offers::Offers;
 use crate::part::Part;
@@ -20,18 +20,18 @@ pub use flexsc_record::Decision;
 pub use objective::Objective;
 pub use random_search::{RandomSearch, RandomSearchState, SearchStep};
 
-/// The kinds of adaptation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Adaptation")]
-pub enum AdaptationKind {
-    /// Random search with learning, based on an objective over consecutive windows.
-    RandomSearch(RandomSearch),
-    /// An adaptation from another crate; a scenario file cannot name it.
-    Own(Custom<dyn AdaptationSpec>),
+kinds! {
+    /// The kinds of adaptation.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[schemars(rename = "Adaptation")]
+    pub enum AdaptationKind: dyn AdaptationSpec {
+        /// Random search with learning, based on an objective over consecutive windows.
+        "random_search" RandomSearch(RandomSearch),
+    }
+    own "An adaptation from another crate; a scenario file cannot name it."
 }
 
-/// Settings of an adaptation that another crate provides.
+/// Settings of an adaptation.
 pub trait AdaptationSpec: Send + Sync {
     /// Returns the key of the law's parameter that is tuned.
     fn tunes(&self) -> &str;
@@ -43,6 +43,16 @@ pub trait AdaptationSpec: Send + Sync {
 
     /// Returns the length of the windows; `None` for the mean envelope, whose windows are those of its monitor.
     fn window(&self) -> Option<Span> {
+        None
+    }
+
+    /// Checks the bounds against the parameter that is tuned; returns a key within the adaptation and the reason.
+    fn bounds_error(&self, _number: &Tunable) -> Option<ConfigError> {
+        None
+    }
+
+    /// Returns the reason why the initial value of the parameter is outside the bounds, if it is.
+    fn start_error(&self, _value: f64) -> Option<String> {
         None
     }
 
@@ -66,47 +76,7 @@ impl Clone for Box<dyn Adaptation> {
     }
 }
 
-impl From<Custom<dyn AdaptationSpec>> for AdaptationKind {
-    fn from(adaptation: Custom<dyn AdaptationSpec>) -> Self {
-        Self::Own(adaptation)
-    }
-}
-
 impl AdaptationKind {
-    /// Returns the key of the law's parameter that is tuned.
-    pub fn tunes(&self) -> &str {
-        match self {
-            Self::RandomSearch(search) => &search.tunes,
-            Self::Own(own) => own.tunes(),
-        }
-    }
-
-    /// Returns the objective that is evaluated over each window.
-    pub fn objective(&self) -> Objective {
-        match self {
-            Self::RandomSearch(search) => search.objective,
-            Self::Own(own) => own.objective(),
-        }
-    }
-
-    /// Returns the length of the windows, unless they are those of the envelope.
-    pub fn window(&self) -> Option<Span> {
-        match self {
-            Self::RandomSearch(search) => search.window,
-            Self::Own(own) => own.window(),
-        }
-    }
-
-    /// Checks the bounds against the parameter that is tuned; returns a key within the adaptation and the reason.
-    pub fn bounds_error(&self, number: &Tunable) -> Option<ConfigError> {
-        if let Self::RandomSearch(search) = self { search.bounds_error(number) } else { None }
-    }
-
-    /// Returns the reason why the initial value of the parameter is outside the bounds, if it is.
-    pub fn start_error(&self, value: f64) -> Option<String> {
-        if let Self::RandomSearch(search) = self { search.start_error(value) } else { None }
-    }
-
     /// Checks that the objective can be measured; returns a key within the adaptation and the reason.
     pub fn objective_error(&self, offers: &Offers) -> Option<ConfigError> {
         let (objective, window) = (self.objective(), self.window());
@@ -126,29 +96,5 @@ impl AdaptationKind {
             return at("window", format!("must be given for the objective `{word}`"));
         }
         objective.obstacle(offers).and_then(|why| at("objective", format!("`{word}` {why}")))
-    }
-
-    /// Returns the adaptation of another crate, if it is one.
-    pub fn custom(&self) -> Option<&Custom<dyn AdaptationSpec>> {
-        if let Self::Own(own) = self { Some(own) } else { None }
-    }
-
-    /// Returns the name of the kind, as in a scenario.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::RandomSearch(_) => "random_search",
-            Self::Own(_) => "own",
-        }
-    }
-
-    /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
-    pub fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation> {
-        match self {
-            Self::RandomSearch(constants) => Box::new(random_search::RandomSearchRun::new(
-                RandomSearchState::new(constants.clone(), value),
-                seed,
-            )),
-            Self::Own(own) => own.start(value, seed),
-        }
     }
 }

@@ -13,7 +13,7 @@ use flexsc_record::Decision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Adaptation, Objective};
+use super::{Adaptation, AdaptationSpec, Objective};
 use crate::law::Tunable;
 use crate::part::Part;
 
@@ -52,9 +52,24 @@ pub struct RandomSearch {
     pub freeze: bool,
 }
 
-impl RandomSearch {
-    /// Checks the bounds against the parameter that is tuned; returns a key within the search and the reason.
-    pub fn bounds_error(&self, number: &Tunable) -> Option<ConfigError> {
+impl AdaptationSpec for RandomSearch {
+    fn tunes(&self) -> &str {
+        &self.tunes
+    }
+
+    fn objective(&self) -> Objective {
+        self.objective
+    }
+
+    fn window(&self) -> Option<Span> {
+        self.window
+    }
+
+    fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation> {
+        Box::new(RandomSearchRun::new(RandomSearchState::new(self.clone(), value), seed))
+    }
+
+    fn bounds_error(&self, number: &Tunable) -> Option<ConfigError> {
         let [low, high] = self.bounds.map(Finite::get);
         if low >= high {
             let why = format!("must be [low, high] in this order, got [{low}, {high}]");
@@ -63,8 +78,7 @@ impl RandomSearch {
         number.validate_bounds([low, high]).map(|why| ConfigError::new("bounds", why))
     }
 
-    /// Returns the reason why the initial value of the parameter is outside the bounds, if it is.
-    pub fn start_error(&self, value: f64) -> Option<String> {
+    fn start_error(&self, value: f64) -> Option<String> {
         let [low, high] = self.bounds.map(Finite::get);
         let is_inside = (low..=high).contains(&value);
         (!is_inside).then(|| format!("must lie within the adaptation's bounds [{low}, {high}], got {value}"))

@@ -7,7 +7,9 @@
 //! On three axes x is the size of the rotation that a free mode causes at the first sensor, and c follows from its
 //! modal force.
 
-use crate::offers::{BodyOffers, Offers};
+use super::pass_through::PassThrough;
+use super::{Estimator, EstimatorContext, EstimatorSpec};
+use crate::offers::{BodyOffers, EstimatorOffers, Offers};
 use crate::requirement::{Requirements, Rule};
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisMode;
@@ -15,6 +17,7 @@ use flexsc_dynamics::three_axis_model::ThreeAxisMode;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::{Complex, Phasor, abs, polar};
 use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_numerics::trig::sincos_any;
 use flexsc_numerics::{swing_damped, swing_integral};
@@ -36,9 +39,17 @@ pub struct Envelope {
     pub modes: Option<Vec<Mode>>,
 }
 
-impl Envelope {
-    /// Adds the requirements of the monitor on the other parts of a scenario.
-    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+impl EstimatorSpec for Envelope {
+    /// Returns a pass-through: the monitor itself acts without samples.
+    fn start(&self, _: &EstimatorContext<'_>, _: Seed) -> Box<dyn Estimator> {
+        Box::new(PassThrough)
+    }
+
+    fn offers(&self) -> EstimatorOffers {
+        EstimatorOffers { is_envelope: true, ..EstimatorOffers::default() }
+    }
+
+    fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         let (body, rule) = (&offers.body, Rule::EnvelopeModes);
         if let Some(matrix) = &body.damping_matrix {
             let why = "couples modes, and an `[estimator.envelope]` treats each mode on its own";
@@ -83,6 +94,12 @@ impl Envelope {
         self.require_oscillation(body, needs);
     }
 
+    fn modes(&self) -> Option<&[Mode]> {
+        self.modes.as_deref()
+    }
+}
+
+impl Envelope {
     /// Adds the requirement of modes below critical damping: of the monitor's model, or of the body.
     fn require_oscillation(&self, body: &BodyOffers, needs: &mut Requirements) {
         let why = |ratio: f64| format!("must be below 1 for a mode to have an envelope, got {ratio}");

@@ -7,6 +7,8 @@ pub mod attitude;
 mod consistency;
 mod envelope;
 mod envelope_monitor;
+mod estimator_spec;
+mod ideal_observer;
 pub mod kalman;
 mod objective_meter;
 mod pass_through;
@@ -20,15 +22,13 @@ use std::borrow::Cow;
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
-use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::Mode;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulsedActuator;
-use crate::custom::Custom;
+use crate::kinds::kinds;
 use crate::part::Part;
 use crate::sensor::{Orientation, Reading};
 use crate::state_estimate::{EstimateNeeds, StateEstimate};
@@ -40,51 +40,38 @@ pub use attitude::AttitudeFilter;
 pub use consistency::chi_square;
 pub use envelope::{Envelope, EnvelopeMethod, EnvelopeMonitor};
 pub use envelope_monitor::{EnvelopeWindow, WindowedEnvelope};
-pub use kalman::{FrequencyTracking, Kalman};
+pub use estimator_spec::EstimatorSpec;
+pub use ideal_observer::IdealObserver;
+pub use kalman::{ExtendedKalman, FrequencyTracking, Kalman, UnscentedKalman};
 pub use objective_meter::{MotionSample, ObjectiveMeter, ObjectiveWindow};
 pub use rigid_rate::RigidRate;
 pub use sampled::{LinearFilter, linear_filters};
 
-/// The kinds of estimator.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Estimator")]
-pub enum EstimatorKind {
-    /// The envelope of the elastic modes and its window means.
-    Envelope(Envelope),
-    /// The true dominant mode, as an ideal observer gives it.
-    Truth(IdealObserver),
-    /// A Kalman filter of the motion, with constant natural frequencies.
-    Kalman(Kalman),
-    /// An extended Kalman filter of the motion and the natural frequencies.
-    ExtendedKalman(FrequencyTracking),
-    /// An unscented Kalman filter of the motion and the natural frequencies.
-    UnscentedKalman(FrequencyTracking),
-    /// A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body.
-    Attitude(AttitudeFilter),
-    /// The rigid rates of a spatial body.
-    RigidRate(RigidRate),
-    /// Adaptive observers of the rigid rates and elastic modes of a spatial body.
-    Adaptive(Box<Adaptive>),
-    /// An estimator from another crate; a scenario file cannot name it.
-    Own(Custom<dyn EstimatorSpec>),
-}
-
-/// Settings of an estimator that another crate provides. Such an estimator acts at samples.
-pub trait EstimatorSpec: Send + Sync {
-    /// Returns the run-time state of the estimator in a scenario.
-    fn start(&self, known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator>;
-}
-
-/// An ideal observer.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Truth")]
-pub struct IdealObserver {
-    /// Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured ones, `hub`, or `rigid`;
-    /// default: `modes` for a law that reads the dominant mode, else `hub`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub feeds: Option<EstimateOutputs>,
+kinds! {
+    /// The kinds of estimator.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[schemars(rename = "Estimator")]
+    pub enum EstimatorKind: dyn EstimatorSpec {
+        /// The envelope of the elastic modes and its window means.
+        "envelope" Envelope(Envelope),
+        /// The true dominant mode, as an ideal observer gives it.
+        "truth" Truth(IdealObserver),
+        /// A Kalman filter of the motion, with constant natural frequencies.
+        "kalman" Kalman(Kalman),
+        /// An extended Kalman filter of the motion and the natural frequencies.
+        #[schemars(with = "FrequencyTracking")]
+        "extended_kalman" ExtendedKalman(ExtendedKalman),
+        /// An unscented Kalman filter of the motion and the natural frequencies.
+        #[schemars(with = "FrequencyTracking")]
+        "unscented_kalman" UnscentedKalman(UnscentedKalman),
+        /// A multiplicative extended Kalman filter of the attitude and gyro bias of a spatial body.
+        "attitude" Attitude(AttitudeFilter),
+        /// The rigid rates of a spatial body.
+        "rigid_rate" RigidRate(RigidRate),
+        /// Adaptive observers of the rigid rates and elastic modes of a spatial body.
+        "adaptive" Adaptive(Box<Adaptive>),
+    }
+    own "An estimator from another crate; a scenario file cannot name it."
 }
 
 /// Scenario data that an estimator is built from.
@@ -185,21 +172,9 @@ impl Clone for Box<dyn Estimator> {
     }
 }
 
-/// Returns the run-time state of the scenario's estimator.
+/// Returns the run-time state of the scenario's estimator, or a pass-through without one.
 pub fn start(known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator> {
-    if let Some(sampled) = sampled::AxisEstimators::new(known, seed) {
-        return Box::new(sampled);
-    }
-    match (known.estimator, known.adaptive) {
-        (Some(EstimatorKind::Own(own)), _) => own.start(known, seed),
-        (Some(EstimatorKind::Attitude(spec)), _) if known.attitude.is_some() => {
-            let setting = known.attitude.cloned().unwrap_or_default();
-            Box::new(attitude::AttitudeFilterRun::new(spec, setting, seed.stream("prior")))
-        }
-        (Some(EstimatorKind::RigidRate(spec)), _) => Box::new(spec.start(known.axes.len())),
-        (Some(EstimatorKind::Adaptive(_)), Some(plan)) => Box::new(adaptive::ObserverSet::new(plan)),
-        _ => Box::new(pass_through::PassThrough),
-    }
+    known.estimator.map_or_else(|| Box::new(pass_through::PassThrough) as _, |spec| spec.start(known, seed))
 }
 
 /// Estimates that the law reads in addition to the dominant mode.
@@ -215,25 +190,18 @@ pub enum EstimateOutputs {
     Rigid,
 }
 
+impl EstimateOutputs {
+    /// Returns the given outputs, or the default ones: for a law that reads the dominant mode (`dominant`) nothing more,
+    /// else the motion of the hub.
+    pub(crate) fn given_or_default(given: Option<Self>, dominant: bool) -> Self {
+        given.unwrap_or(if dominant { Self::Modes } else { Self::Hub })
+    }
+}
+
 impl EstimatorKind {
     /// Error text for an estimator that needs samples where there are none.
     pub const AT_SAMPLES: &str = "acts at each sample of a `[sensor.sampled]` or a `[sensor.gyro]`, or of a law with a period, and \
                                   there is none";
-
-    /// Returns the name of the kind, as in a scenario.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Envelope(_) => "envelope",
-            Self::Truth(_) => "truth",
-            Self::Kalman(_) => "kalman",
-            Self::ExtendedKalman(_) => "extended_kalman",
-            Self::UnscentedKalman(_) => "unscented_kalman",
-            Self::Attitude(_) => "attitude",
-            Self::RigidRate(_) => "rigid_rate",
-            Self::Adaptive(_) => "adaptive",
-            Self::Own(_) => "own",
-        }
-    }
 
     /// Returns the attitude filter, if the estimator is one.
     pub fn attitude(&self) -> Option<&AttitudeFilter> {
@@ -245,108 +213,9 @@ impl EstimatorKind {
         if let Self::Envelope(envelope) = self { Some(envelope) } else { None }
     }
 
-    /// Returns true if the estimator fuses several sensors into one state estimate.
-    pub fn fuses_sensors(&self) -> bool {
-        matches!(self, Self::Attitude(_) | Self::Own(_))
-    }
-
-    /// Returns true if the estimator estimates rates only and leaves angles as measured.
-    pub fn estimates_rates_only(&self) -> bool {
-        matches!(self, Self::RigidRate(_) | Self::Adaptive(_))
-    }
-
-    /// Returns true if the estimator is a Kalman filter of angle and rate measurements.
-    pub fn filters_measurements(&self) -> bool {
-        matches!(self, Self::Kalman(_) | Self::ExtendedKalman(_) | Self::UnscentedKalman(_))
-    }
-
-    /// Returns true if the estimator runs for assessment only, so that the law does not read it.
-    pub fn is_assessed_only(&self) -> bool {
-        match self {
-            Self::Kalman(filter) => filter.watch_only,
-            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.watch_only,
-            Self::Attitude(filter) => filter.watch_only,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
-                false
-            }
-        }
-    }
-
-    /// Returns the estimates that the law reads in addition to the dominant mode; `dominant`: the law reads the
-    /// dominant mode.
-    pub fn feeds(&self, dominant: bool) -> EstimateOutputs {
-        let given = match self {
-            Self::Kalman(filter) => filter.feeds,
-            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.feeds,
-            Self::Truth(truth) => truth.feeds,
-            Self::Envelope(_) | Self::Attitude(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
-                Some(EstimateOutputs::Modes)
-            }
-        };
-        if self.is_assessed_only() {
-            EstimateOutputs::Modes
-        } else {
-            given.unwrap_or(if dominant { EstimateOutputs::Modes } else { EstimateOutputs::Hub })
-        }
-    }
-
-    /// Returns the modes of the estimator's model, if they differ from the body's.
-    pub fn modes(&self) -> Option<&[Mode]> {
-        match self {
-            Self::Envelope(Envelope { modes, .. })
-            | Self::Kalman(Kalman { modes, .. })
-            | Self::ExtendedKalman(FrequencyTracking { modes, .. })
-            | Self::UnscentedKalman(FrequencyTracking { modes, .. }) => modes.as_deref(),
-            Self::Truth(_) | Self::Attitude(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
-                None
-            }
-        }
-    }
-
-    /// Returns the standard deviation of the measured angle (rad) that replaces the sensor's own, if given.
-    pub fn angle_noise(&self) -> Option<f64> {
-        match self {
-            Self::Kalman(Kalman { angle_noise, .. })
-            | Self::ExtendedKalman(FrequencyTracking { angle_noise, .. })
-            | Self::UnscentedKalman(FrequencyTracking { angle_noise, .. }) => angle_noise.map(Positive::get),
-            Self::Envelope(_)
-            | Self::Truth(_)
-            | Self::Attitude(_)
-            | Self::RigidRate(_)
-            | Self::Adaptive(_)
-            | Self::Own(_) => None,
-        }
-    }
-
-    /// Returns the number of states that are estimated of a body with `modes` modes.
-    pub fn states(&self, modes: usize) -> usize {
-        match self {
-            Self::Attitude(_) => 6,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => 0,
-            Self::Kalman(_) => 2 + 2 * modes,
-            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
-                2 + 2 * modes + 2 * filter.ratios.count(modes)
-            }
-        }
-    }
-
     /// Between these the normalised estimation error squared of a sample, over its number of states, lies with a probability of 95 %
     /// if the filter is consistent.
     pub fn inside(states: usize) -> [f64; 2] {
         chi_square(states).map(|bound| bound / states as f64)
-    }
-
-    /// Returns the interval (s) in which the metrics assess the estimator.
-    pub fn assess(&self) -> [f64; 2] {
-        let window = match self {
-            Self::Kalman(Kalman { assess, .. })
-            | Self::ExtendedKalman(FrequencyTracking { assess, .. })
-            | Self::UnscentedKalman(FrequencyTracking { assess, .. })
-            | Self::Attitude(AttitudeFilter { assess, .. }) => *assess,
-            Self::Envelope(_) | Self::Truth(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
-                None
-            }
-        };
-        window.map_or([0.0, f64::INFINITY], |window| window.map(NonNegative::get))
     }
 }

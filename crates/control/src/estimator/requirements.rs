@@ -1,8 +1,7 @@
-//! Requirements and offers of the estimator of a scenario.
+//! Requirements of the estimator of a scenario.
 
-use super::{Adaptive, AttitudeFilter, EstimatorKind, EstimatorSpec, FrequencyTracking, Kalman};
-use crate::custom::Custom;
-use crate::offers::{EstimatorOffers, Offers};
+use super::{Adaptive, EstimatorKind, EstimatorSpec, Kalman};
+use crate::offers::Offers;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::EstimateNeeds;
 
@@ -10,43 +9,14 @@ use crate::state_estimate::EstimateNeeds;
 const MOST_FILTERED: usize = 24;
 
 impl EstimatorKind {
-    /// Returns the offers of the estimator to the other parts of a scenario.
-    pub fn offers(&self) -> EstimatorOffers {
-        let is_assessed_only = self.is_assessed_only();
-        let has_modes = !matches!(self, Self::Envelope(_) | Self::RigidRate(_) | Self::Attitude(_));
-        EstimatorOffers {
-            is_envelope: self.envelope().is_some(),
-            is_assessed_only,
-            dominant_mode: has_modes && !is_assessed_only,
-            elastic_rates: self.adaptive().is_some(),
-        }
-    }
-
     /// Adds the requirements of the estimator on the other parts of a scenario.
     pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
         needs.set_part(format!("estimator.{}", self.kind()));
-        if let Self::Envelope(envelope) = self {
-            return envelope.requires(offers, needs);
+        if self.envelope().is_none() {
+            self.require_inputs(offers, needs);
         }
-        self.require_inputs(offers, needs);
-        match self {
-            Self::Attitude(_) => {
-                AttitudeFilter::requires(offers, needs);
-                self.require_window(needs);
-            }
-            Self::RigidRate(rates) => rates.requires(offers, needs),
-            Self::Adaptive(_) => {
-                Adaptive::requires(offers, needs);
-                self.require_modes(offers, needs);
-            }
-            Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => {
-                FrequencyTracking::require_separate_modes(offers, needs);
-                self.require_modes(offers, needs);
-                needs.report(Rule::Filter, filter.inconsistency());
-            }
-            Self::Kalman(_) | Self::Truth(_) => self.require_modes(offers, needs),
-            Self::Envelope(_) | Self::Own(_) => {}
-        }
+        self.requires(offers, needs);
+        needs.report(Rule::Filter, self.validate());
     }
 
     /// Adds the requirements of samples, and of a law that reads the estimates.
@@ -63,62 +33,13 @@ impl EstimatorKind {
             return;
         }
         let is_read = offers.laws.iter().any(|law| law.offers.reads_motion());
-        let is_free = matches!(self, Self::Adaptive(_) | Self::Own(_));
-        needs.require_with(rule, is_read || is_free, "", || {
+        needs.require_with(rule, is_read || !self.offers().needs_reader, "", || {
             let instead = if self.filters_measurements() || self.attitude().is_some() {
                 "with `watch_only = true` the filter is assessed and changes nothing"
             } else {
                 "leave it out"
             };
             format!("is not used, because the law is `{}`: {instead}", offers.law_kind)
-        });
-    }
-
-    /// Adds the requirements of an estimator of modes on the body and its sensors.
-    fn require_modes(&self, offers: &Offers, needs: &mut Requirements) {
-        let (body, rule) = (&offers.body, Rule::Filter);
-        self.require_window(needs);
-        needs.require(rule, body.modes > 0, "", "has no modes to estimate: the body has none");
-        needs.require(
-            rule,
-            !body.follows_motion,
-            "",
-            "observes the modes through the hub's angle, where they do not appear with `drive = \"motion\"`",
-        );
-        let kinematics = "body.panels.kinematics";
-        let why = "must be \"linear\" for an estimator of modes";
-        needs.require_elsewhere(rule, !body.is_chain, kinematics, why);
-        let own = self.modes().map_or(body.modes, <[_]>::len);
-        needs.require_with(rule, own == body.modes, "modes", || {
-            format!("must be as many as the body's, {}, got {own}", body.modes)
-        });
-        let is_silent = self.angle_noise().is_none() && offers.sensors.angle_noise == 0.0;
-        needs.require(
-            rule,
-            !(self.filters_measurements() && is_silent),
-            "angle_noise",
-            "must be given where the sensor has neither noise nor a resolution",
-        );
-        let is_large = self.filters_measurements() && body.modes > MOST_FILTERED;
-        needs.require_with(rule, body.axes == 1 || !is_large, "", || {
-            let modes = body.modes;
-            format!(
-                "estimates at most {MOST_FILTERED} modes about each of three axes, and the body has {modes}"
-            )
-        });
-        needs.require(
-            rule,
-            body.axes == 1 || self.modes().is_none(),
-            "modes",
-            "apply only to one angle: about three axes a filter uses the body's",
-        );
-    }
-
-    /// Adds the requirement of an interval of assessment in order.
-    fn require_window(&self, needs: &mut Requirements) {
-        let [from, to] = self.assess();
-        needs.require_with(Rule::Filter, from < to, "assess", || {
-            format!("must be [from, to] in this order, got [{from}, {to}]")
         });
     }
 
@@ -136,15 +57,50 @@ impl EstimatorKind {
     pub fn has_constant_gains(&self) -> bool {
         matches!(self, Self::Kalman(_) | Self::Truth(_))
     }
-
-    /// Returns the estimator of another crate, if it is one.
-    pub fn custom(&self) -> Option<&Custom<dyn EstimatorSpec>> {
-        if let Self::Own(own) = self { Some(own) } else { None }
-    }
 }
 
-impl From<Custom<dyn EstimatorSpec>> for EstimatorKind {
-    fn from(estimator: Custom<dyn EstimatorSpec>) -> Self {
-        Self::Own(estimator)
-    }
+/// Adds the requirements of an estimator of modes on the body and its sensors.
+pub(super) fn require_modes(spec: &dyn EstimatorSpec, offers: &Offers, needs: &mut Requirements) {
+    let (body, rule) = (&offers.body, Rule::Filter);
+    require_window(spec, needs);
+    needs.require(rule, body.modes > 0, "", "has no modes to estimate: the body has none");
+    needs.require(
+        rule,
+        !body.follows_motion,
+        "",
+        "observes the modes through the hub's angle, where they do not appear with `drive = \"motion\"`",
+    );
+    let kinematics = "body.panels.kinematics";
+    let why = "must be \"linear\" for an estimator of modes";
+    needs.require_elsewhere(rule, !body.is_chain, kinematics, why);
+    let own = spec.modes().map_or(body.modes, <[_]>::len);
+    needs.require_with(rule, own == body.modes, "modes", || {
+        format!("must be as many as the body's, {}, got {own}", body.modes)
+    });
+    let is_silent = spec.angle_noise().is_none() && offers.sensors.angle_noise == 0.0;
+    needs.require(
+        rule,
+        !(spec.filters_measurements() && is_silent),
+        "angle_noise",
+        "must be given where the sensor has neither noise nor a resolution",
+    );
+    let is_large = spec.filters_measurements() && body.modes > MOST_FILTERED;
+    needs.require_with(rule, body.axes == 1 || !is_large, "", || {
+        let modes = body.modes;
+        format!("estimates at most {MOST_FILTERED} modes about each of three axes, and the body has {modes}")
+    });
+    needs.require(
+        rule,
+        body.axes == 1 || spec.modes().is_none(),
+        "modes",
+        "apply only to one angle: about three axes a filter uses the body's",
+    );
+}
+
+/// Adds the requirement of an interval of assessment in order.
+pub(super) fn require_window(spec: &dyn EstimatorSpec, needs: &mut Requirements) {
+    let [from, to] = spec.assess();
+    needs.require_with(Rule::Filter, from < to, "assess", || {
+        format!("must be [from, to] in this order, got [{from}, {to}]")
+    });
 }

@@ -3,13 +3,14 @@
 
 use flexsc_flight::rigid_rate::RigidRateFilter;
 use flexsc_numerics::quantity::{Finite, Fraction};
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AppliedPulses, Estimator, SampleContext};
-use crate::offers::Offers;
+use super::{AppliedPulses, Estimator, EstimatorContext, EstimatorSpec, SampleContext};
+use crate::offers::{EstimatorOffers, Offers};
 use crate::part::Part;
 use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 use crate::state_estimate::StateEstimate;
@@ -38,25 +39,29 @@ pub struct RigidRateState {
     applied_pulses: AppliedPulses,
 }
 
-impl RigidRate {
-    /// Adds the requirements of the estimator on the other parts of a scenario.
-    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+impl EstimatorSpec for RigidRate {
+    fn start(&self, known: &EstimatorContext<'_>, _: Seed) -> Box<dyn Estimator> {
+        Box::new(RigidRateState {
+            filters: (0..known.axes.len()).map(|axis| self.flight_filter(axis)).collect(),
+            pushed: [0.0; 3],
+            applied_pulses: AppliedPulses::default(),
+        })
+    }
+
+    fn offers(&self) -> EstimatorOffers {
+        EstimatorOffers { estimates_rates_only: true, needs_reader: true, ..EstimatorOffers::default() }
+    }
+
+    fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         let is_one = offers.body.axes == 3 || !self.rate.is_three();
         needs.require(Rule::Filter, is_one, "rate", ONE_NUMBER);
     }
+}
 
+impl RigidRate {
     /// Returns the filter about an axis before the first sample, as flight code has it.
     pub fn flight_filter(&self, axis: usize) -> RigidRateFilter {
         RigidRateFilter { correction: self.correction.get(), rate: self.rate.about(axis).get(), drift: 0.0 }
-    }
-
-    /// Returns the estimator's state at the start of a run of a body with `axes` axes.
-    pub fn start(&self, axes: usize) -> RigidRateState {
-        RigidRateState {
-            filters: (0..axes).map(|axis| self.flight_filter(axis)).collect(),
-            pushed: [0.0; 3],
-            applied_pulses: AppliedPulses::default(),
-        }
     }
 }
 

@@ -3,11 +3,12 @@
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_flight::kalman::total;
-use flexsc_numerics::random::Seed;
+use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Estimates, ModeEstimate, Report};
 
-use super::kalman::{FilterContext, Innovation, KalmanFilter, Prediction};
+use super::kalman::{FilterContext, Innovation, KalmanFilter, MeasurementFilter};
+use super::pass_through::PassThrough;
 use super::{BatchEstimator, EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
 use crate::part::{Occasion, Part, ReportContext};
 use crate::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
@@ -56,7 +57,8 @@ pub fn linear_filters(known: &EstimatorContext<'_>, seed: Seed) -> Option<Vec<Li
         }
         _ => None,
     };
-    let all = (!spec.watch_only).then(|| AxisEstimators::new(known, seed)).flatten()?;
+    let create = |setting: &FilterContext<'_>, draws: &mut Stream| Some(spec.filter(setting, draws));
+    let all = (!spec.watch_only).then(|| AxisEstimators::new(known, seed, create)).flatten()?;
     all.0.into_iter().map(filter).collect()
 }
 
@@ -70,10 +72,24 @@ enum AxisMethod {
 }
 
 impl AxisEstimators {
-    /// Creates the estimators of all axes; `None` if the scenario's estimator does not act at samples of single axes.
-    pub fn new(known: &EstimatorContext<'_>, seed: Seed) -> Option<Self> {
+    /// Creates the estimators of all axes by `filter`, which returns the Kalman filter of an axis with a drawn prior, or `None`
+    /// for an ideal observer; `None` without sampling.
+    fn new(
+        known: &EstimatorContext<'_>,
+        seed: Seed,
+        filter: impl Fn(&FilterContext<'_>, &mut Stream) -> Option<KalmanFilter>,
+    ) -> Option<Self> {
         let axes = 0..known.axes.len();
-        axes.map(|axis| AxisEstimator::new(known, axis, seed)).collect::<Option<_>>().map(Self)
+        axes.map(|axis| AxisEstimator::new(known, axis, seed, &filter)).collect::<Option<_>>().map(Self)
+    }
+
+    /// Returns the run-time state of the estimators of all axes, or a pass-through without sampling; `filter` as in `new`.
+    pub fn start(
+        known: &EstimatorContext<'_>,
+        seed: Seed,
+        filter: impl Fn(&FilterContext<'_>, &mut Stream) -> Option<KalmanFilter>,
+    ) -> Box<dyn Estimator> {
+        Self::new(known, seed, filter).map_or_else(|| Box::new(PassThrough) as _, |all| Box::new(all) as _)
     }
 }
 
@@ -157,7 +173,12 @@ impl Estimator for AxisEstimators {
 }
 
 impl AxisEstimator {
-    fn new(known: &EstimatorContext<'_>, axis: usize, seed: Seed) -> Option<Self> {
+    fn new(
+        known: &EstimatorContext<'_>,
+        axis: usize,
+        seed: Seed,
+        filter: impl Fn(&FilterContext<'_>, &mut Stream) -> Option<KalmanFilter>,
+    ) -> Option<Self> {
         let model = &known.axes[axis];
         let back_emf = known.back_emf;
         let setting = FilterContext {
@@ -172,21 +193,9 @@ impl AxisEstimator {
             axis => format!("prior {axis}"),
         };
         let draws = &mut seed.stream(&stream);
-        let filter = |filter| AxisMethod::Filter(Box::new(filter));
+        let method =
+            filter(&setting, draws).map_or(AxisMethod::Ideal, |filter| AxisMethod::Filter(Box::new(filter)));
         let estimator = known.estimator?;
-        let method = match estimator {
-            EstimatorKind::Envelope(_)
-            | EstimatorKind::Attitude(_)
-            | EstimatorKind::RigidRate(_)
-            | EstimatorKind::Adaptive(_)
-            | EstimatorKind::Own(_) => return None,
-            EstimatorKind::Truth(_) => AxisMethod::Ideal,
-            EstimatorKind::Kalman(spec) => filter(spec.filter(&setting, draws)),
-            EstimatorKind::ExtendedKalman(spec) => filter(spec.filter(&setting, Prediction::Extended, draws)),
-            EstimatorKind::UnscentedKalman(spec) => {
-                filter(spec.filter(&setting, Prediction::Unscented, draws))
-            }
-        };
         Some(Self {
             method,
             feeds: estimator.feeds(known.reads[axis] == EstimateNeeds::DominantMode),

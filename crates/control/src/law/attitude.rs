@@ -67,26 +67,6 @@ fn damping() -> Positive {
     Positive::new(0.7).unwrap_or(Positive::ONE)
 }
 
-impl AttitudeLaw {
-    /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        if let Some(inertia) = &self.inertia {
-            let inertia = tensor(inertia);
-            if let Some(why) = asymmetry(&inertia) {
-                return Some(ConfigError::new("inertia", why));
-            }
-            if inertia.cholesky().is_none() {
-                return Some(ConfigError::new("inertia", "must be positive definite"));
-            }
-        }
-        let wrong = |(index, filter): (usize, &Filter)| {
-            let fault = filter.sampled(self.period.seconds()).err()?;
-            Some(fault.within(&format!("filters[{index}]")))
-        };
-        self.filters.iter().enumerate().find_map(wrong)
-    }
-}
-
 impl LawSpec for AttitudeLaw {
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         Box::new(AttitudeLawState {
@@ -111,6 +91,23 @@ impl LawSpec for AttitudeLaw {
         let (inertia, wn) = (conditions.inertia, self.bandwidth.get());
         let at_rest = inertia * wn * wn * conditions.angle.abs();
         conditions.profile_acceleration.map_or(at_rest, |acceleration| inertia * acceleration)
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        if let Some(inertia) = &self.inertia {
+            let inertia = tensor(inertia);
+            if let Some(why) = asymmetry(&inertia) {
+                return Some(ConfigError::new("inertia", why));
+            }
+            if inertia.cholesky().is_none() {
+                return Some(ConfigError::new("inertia", "must be positive definite"));
+            }
+        }
+        let wrong = |(index, filter): (usize, &Filter)| {
+            let fault = filter.sampled(self.period.seconds()).err()?;
+            Some(fault.within(&format!("filters[{index}]")))
+        };
+        self.filters.iter().enumerate().find_map(wrong)
     }
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
@@ -248,7 +245,7 @@ mod tests {
     fn start(keys: &str, most: f64) -> Box<dyn Law> {
         let text = format!("period = {PERIOD}\nbandwidth = 0.1\ndamping = 0.8\n{keys}");
         let law: AttitudeLaw = flexsc_formats::document::from_text(&text).unwrap();
-        assert_eq!(law.inconsistency(), None);
+        assert_eq!(law.validate(), None);
         let width = PulseWidth::default();
         law.start(&Authority { axis: 0, accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
     }
@@ -286,7 +283,7 @@ mod tests {
         let biquad = flexsc_formats::document::from_text::<AttitudeLaw>(
             "period = 0.25\nbandwidth = 0.1\nfilters = [{ low_pass = { frequency = 20.0 } }]",
         );
-        let fault = biquad.unwrap().inconsistency().unwrap();
+        let fault = biquad.unwrap().validate().unwrap();
         assert_eq!(fault.key, "filters[0].low_pass.frequency");
     }
 

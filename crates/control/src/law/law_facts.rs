@@ -28,7 +28,7 @@ pub struct LawFacts {
 
 impl LawFacts {
     /// Collects the facts about a law.
-    pub fn from_law(law: &(dyn LawSpec + Send + Sync)) -> Self {
+    pub fn from_law(law: &dyn LawSpec) -> Self {
         let offers = law.offers();
         let band = law.expected_band();
         Self {

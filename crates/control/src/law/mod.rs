@@ -43,15 +43,13 @@ mod three_axis_state_space;
 mod torque_conditions;
 mod tunable;
 
-use std::ops::Deref;
-
 use flexsc_dynamics::guard::Guard;
 use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
-use crate::custom::Custom;
+use crate::kinds::kinds;
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
 use crate::requirement::Requirements;
@@ -93,35 +91,35 @@ pub use three_axis_law::{ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput};
 pub use torque_conditions::TorqueConditions;
 pub use tunable::{Tunable, TunedNumbers};
 
-/// The kinds of law.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Law")]
-pub enum LawKind {
-    /// Relay with dead zone, hysteresis and a timed brake.
-    Relay(Relay),
-    /// Sampled proportional-derivative feedback of the angle.
-    Pd(Pd),
-    /// Sampled feedback of the attitude, as an acceleration.
-    Attitude(AttitudeLaw),
-    /// A sampled compensator, given by its matrices.
-    StateSpace(StateSpace),
-    /// No law: the default of a scenario with a manoeuvre.
-    Open(Open),
-    /// A relay in the phase plane, with pulses of computed length.
-    PhasePlane(PhasePlane),
-    /// A separate law about each of three axes.
-    PerAxis(Box<PerAxisLaws>),
-    /// Magnetic moments against the measured change of the field, to detumble a body.
-    BDot(BDot),
-    /// Laws that act one after another.
-    Stages(Stages),
-    /// A law from another crate; a scenario file cannot name it.
-    Own(Custom<dyn LawSpec + Send + Sync>),
+kinds! {
+    /// The kinds of law.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[schemars(rename = "Law")]
+    pub enum LawKind: dyn LawSpec {
+        /// Relay with dead zone, hysteresis and a timed brake.
+        "relay" Relay(Relay),
+        /// Sampled proportional-derivative feedback of the angle.
+        "pd" Pd(Pd),
+        /// Sampled feedback of the attitude, as an acceleration.
+        "attitude" Attitude(AttitudeLaw),
+        /// A sampled compensator, given by its matrices.
+        "state_space" StateSpace(StateSpace),
+        /// No law: the default of a scenario with a manoeuvre.
+        "open" Open(Open),
+        /// A relay in the phase plane, with pulses of computed length.
+        "phase_plane" PhasePlane(PhasePlane),
+        /// A separate law about each of three axes.
+        "per_axis" PerAxis(Box<PerAxisLaws>),
+        /// Magnetic moments against the measured change of the field, to detumble a body.
+        "b_dot" BDot(BDot),
+        /// Laws that act one after another.
+        "stages" Stages(Stages),
+    }
+    own "A law from another crate; a scenario file cannot name it."
 }
 
 /// Settings of a law. A law acts about one axis; on a three-axis body there is one about each axis.
-pub trait LawSpec {
+pub trait LawSpec: Send + Sync {
     /// Returns the run-time state of the law about an axis with this actuator authority.
     fn start(&self, authority: &Authority) -> Box<dyn Law>;
 
@@ -135,6 +133,11 @@ pub trait LawSpec {
     /// reads estimates of the motion.
     fn offers(&self) -> LawOffers {
         LawOffers::new(None, EstimateNeeds::Motion)
+    }
+
+    /// Checks the settings against each other; returns a key within the law and the reason.
+    fn validate(&self) -> Option<ConfigError> {
+        None
     }
 
     /// Adds the requirements of the law on the other parts of a scenario.
@@ -225,24 +228,6 @@ pub struct Authority {
     pub threshold: f64,
 }
 
-impl Deref for LawKind {
-    type Target = dyn LawSpec;
-    fn deref(&self) -> &Self::Target {
-        match self {
-            Self::Relay(law) => law,
-            Self::Pd(law) => law,
-            Self::Attitude(law) => law,
-            Self::StateSpace(law) => law,
-            Self::Open(law) => law,
-            Self::PhasePlane(law) => law,
-            Self::PerAxis(laws) => laws.as_ref(),
-            Self::BDot(law) => law,
-            Self::Stages(laws) => laws,
-            Self::Own(law) => &**law,
-        }
-    }
-}
-
 impl LawKind {
     /// Returns the law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub fn about(&self, axis: usize) -> &Self {
@@ -262,34 +247,6 @@ impl LawKind {
     /// Returns true if the law changes the actuators that execute its commands.
     pub fn selects_actuators(&self) -> bool {
         self.stages().iter().any(|stage| stage.actuators.is_some())
-    }
-
-    /// Checks the law's own settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        match self {
-            Self::Relay(law) => law.inconsistency(),
-            Self::Attitude(law) => law.inconsistency(),
-            Self::StateSpace(law) => law.inconsistency(),
-            Self::PhasePlane(law) => law.inconsistency(),
-            Self::Stages(laws) => laws.inconsistency(),
-            Self::Pd(_) | Self::Open(_) | Self::PerAxis(_) | Self::BDot(_) | Self::Own(_) => None,
-        }
-    }
-
-    /// Returns the name of the kind, as in a scenario.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Relay(_) => "relay",
-            Self::Pd(_) => "pd",
-            Self::Attitude(_) => "attitude",
-            Self::StateSpace(_) => "state_space",
-            Self::Open(_) => "open",
-            Self::PhasePlane(_) => "phase_plane",
-            Self::PerAxis(_) => "per_axis",
-            Self::BDot(_) => "b_dot",
-            Self::Stages(_) => "stages",
-            Self::Own(_) => "own",
-        }
     }
 }
 

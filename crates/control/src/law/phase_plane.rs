@@ -178,21 +178,6 @@ impl AttitudeTarget {
 }
 
 impl PhasePlane {
-    /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let (on, off) = (self.switch_on.get(), self.switch_off.get());
-        if off >= on {
-            return Some(ConfigError::new(
-                "switch_off",
-                format!("must be below `switch_on`, {on}, got {off}"),
-            ));
-        }
-        let (late, why) = AttitudeTarget::validate_order(&self.targets)?;
-        Some(ConfigError::new(format!("targets[{late}].from"), why))
-    }
-}
-
-impl PhasePlane {
     /// Adds the requirements on the actuator about an axis, whose largest torque the switching lines depend on.
     fn require_torque(&self, axis: usize, offers: &Offers, needs: &mut Requirements) {
         let Some(actuator) = offers.serving(axis).map(|member| member.offers) else { return };
@@ -243,6 +228,18 @@ impl LawSpec for PhasePlane {
     fn offers(&self) -> LawOffers {
         let needs = if self.damping.is_some() { EstimateNeeds::ElasticRates } else { EstimateNeeds::Motion };
         LawOffers { plans_pulses: true, has_states: true, ..LawOffers::new(Some(self.period), needs) }
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        let (on, off) = (self.switch_on.get(), self.switch_off.get());
+        if off >= on {
+            return Some(ConfigError::new(
+                "switch_off",
+                format!("must be below `switch_on`, {on}, got {off}"),
+            ));
+        }
+        let (late, why) = AttitudeTarget::validate_order(&self.targets)?;
+        Some(ConfigError::new(format!("targets[{late}].from"), why))
     }
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {

@@ -6,8 +6,7 @@ use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 use flexsc_record::CustomTopic;
 
-use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, LawSpec, Pd, Relay, Stage, error_band};
-use crate::custom::Custom;
+use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, Pd, Relay, Stage, error_band};
 
 /// Law about an axis, with its place in a scenario.
 #[derive(Clone, Debug)]
@@ -161,16 +160,5 @@ impl LawKind {
     /// Returns true if the law, or that of a stage or mode, is of another crate.
     pub fn has_custom(&self) -> bool {
         self.custom().is_some() || self.stages().iter().any(|stage| stage.law.has_custom())
-    }
-
-    /// Returns the law of another crate, if it is one.
-    pub fn custom(&self) -> Option<&Custom<dyn LawSpec + Send + Sync>> {
-        if let Self::Own(own) = self { Some(own) } else { None }
-    }
-}
-
-impl From<Custom<dyn LawSpec + Send + Sync>> for LawKind {
-    fn from(law: Custom<dyn LawSpec + Send + Sync>) -> Self {
-        Self::Own(law)
     }
 }

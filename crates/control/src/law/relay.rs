@@ -59,13 +59,6 @@ pub enum RelaySides {
 }
 
 impl Relay {
-    /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let (width, gamma) = (2.0 * self.dead_zone.get(), self.hysteresis.get());
-        let why = || format!("must be less than the dead zone's width of {width}, got {gamma}");
-        (gamma >= width).then(|| ConfigError::new("hysteresis", why()))
-    }
-
     /// Returns the number of steps per radian of the fastest mode in which crossings are searched.
     pub fn search_steps(&self, is_coupled: bool) -> f64 {
         if self.sides == RelaySides::One && !is_coupled { ONE_SIDED_STEPS } else { SEARCH_STEPS }
@@ -102,6 +95,12 @@ impl LawSpec for Relay {
     fn offers(&self) -> LawOffers {
         let offers = LawOffers::new(None, EstimateNeeds::Motion);
         LawOffers { is_switching: true, finds_crossings: true, has_states: true, ..offers }
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        let (width, gamma) = (2.0 * self.dead_zone.get(), self.hysteresis.get());
+        let why = || format!("must be less than the dead zone's width of {width}, got {gamma}");
+        (gamma >= width).then(|| ConfigError::new("hysteresis", why()))
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {

@@ -8,8 +8,8 @@ impl LawKind {
     /// Adds the requirements of the law about each axis, in each of its stages or modes.
     pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
         needs.set_part(self.key());
-        if let Self::Stages(laws) = self {
-            needs.report(Rule::Law, laws.inconsistency());
+        if matches!(self, Self::Stages(_)) {
+            needs.report(Rule::Law, self.validate());
         }
         let observes = offers.estimator.is_some_and(|of| of.dominant_mode || of.is_assessed_only);
         for axis in 0..offers.body.axes {
@@ -20,7 +20,7 @@ impl LawKind {
                     offers.require_three_axes(needs, Rule::AxisLaws, "", "");
                 }
                 needs.set_part(key.clone());
-                needs.report(Rule::Law, law.inconsistency());
+                needs.report(Rule::Law, law.validate());
                 let place = LawPlace { axis, is_per_axis: *is_per_axis };
                 law.requires(&place, &offers.serving_law(|kind| placed.selects(kind)), needs);
                 needs.require(

@@ -60,7 +60,7 @@ fn wheels(speed: f64) -> WheelsState {
         waveform: None,
         share: 1.0,
     };
-    wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
+    WheelsState::new(&wheels, &wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }
 
 /// Time at which a wheel stopped (s), index of the wheel, and its slip afterwards.

@@ -104,32 +104,6 @@ impl Stages {
     pub fn last_start(&self) -> Instant {
         self.list.last().map_or(Instant::START, Stage::begins)
     }
-
-    /// Checks the stages; returns a key within them and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let Some(first) = self.list.first() else {
-            return Some(ConfigError::new("", "must have one law or more, got none"));
-        };
-        if !self.of_modes && first.from != Time::ZERO {
-            let why = format!("must be 0, or left out, for the first, got {}", first.from.get());
-            return Some(ConfigError::new("[0].from", why));
-        }
-        let late = self.list.windows(2).position(|pair| pair[0].from >= pair[1].from);
-        if let Some(late) = late.filter(|_| !self.of_modes) {
-            let why = format!("must be later than the one before, got {}", self.list[late + 1].from.get());
-            return Some(ConfigError::new(format!("[{}].from", late + 1), why));
-        }
-        let inertia = self.laws().find_map(LawKind::inertia);
-        self.list.iter().enumerate().find_map(|(index, stage)| {
-            let key = format!("[{index}].law.{}", stage.law.kind());
-            if stage.law.inertia().is_some_and(|own| Some(own) != inertia) {
-                let why = "must be that of the laws before";
-                return Some(ConfigError::new(format!("{key}.inertia"), why));
-            }
-            let fault = if self.of_modes { stage.law.unfit_for_mode() } else { stage.law.unfit_for_stage() };
-            fault.map(|fault| fault.within(&key))
-        })
-    }
 }
 
 impl LawKind {
@@ -205,6 +179,31 @@ impl LawSpec for Stages {
             stage.law.tunable().into_iter().map(move |number| number.nested(&place))
         };
         self.list.iter().enumerate().flat_map(stage_name).collect()
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        let Some(first) = self.list.first() else {
+            return Some(ConfigError::new("", "must have one law or more, got none"));
+        };
+        if !self.of_modes && first.from != Time::ZERO {
+            let why = format!("must be 0, or left out, for the first, got {}", first.from.get());
+            return Some(ConfigError::new("[0].from", why));
+        }
+        let late = self.list.windows(2).position(|pair| pair[0].from >= pair[1].from);
+        if let Some(late) = late.filter(|_| !self.of_modes) {
+            let why = format!("must be later than the one before, got {}", self.list[late + 1].from.get());
+            return Some(ConfigError::new(format!("[{}].from", late + 1), why));
+        }
+        let inertia = self.laws().find_map(LawKind::inertia);
+        self.list.iter().enumerate().find_map(|(index, stage)| {
+            let key = format!("[{index}].law.{}", stage.law.kind());
+            if stage.law.inertia().is_some_and(|own| Some(own) != inertia) {
+                let why = "must be that of the laws before";
+                return Some(ConfigError::new(format!("{key}.inertia"), why));
+            }
+            let fault = if self.of_modes { stage.law.unfit_for_mode() } else { stage.law.unfit_for_stage() };
+            fault.map(|fault| fault.within(&key))
+        })
     }
 }
 
@@ -288,7 +287,7 @@ mod tests {
             "[[stages]]\nlaw.b_dot = { period = 2.0, gain = 1e4 }\n\
              [[stages]]\nfrom = 5.0\nlaw.attitude = { period = 1.0, bandwidth = 0.1 }",
         );
-        assert_eq!(laws.inconsistency(), None);
+        assert_eq!(laws.validate(), None);
         assert_eq!(laws.offers().period, Some(Span::from_seconds(1.0)));
         let authority = Authority {
             axis: 0,
@@ -316,7 +315,7 @@ mod tests {
 
     #[test]
     fn what_are_no_stages_is_refused() {
-        let fault = |text: &str| stages(text).inconsistency().unwrap().to_string();
+        let fault = |text: &str| stages(text).validate().unwrap().to_string();
         let b_dot = "law.b_dot = { period = 2.0, gain = 1e4 }";
         assert!(fault("stages = []").contains("one law or more"));
         assert!(fault(&format!("[[stages]]\nfrom = 1.0\n{b_dot}")).starts_with("`[0].from` must be 0"));

@@ -246,18 +246,6 @@ impl StateSpace {
         }
     }
 
-    /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        match self.sampled() {
-            Err(fault) => Some(fault),
-            Ok(sampled) => {
-                let all = [&sampled.a, &sampled.b, &sampled.c, &sampled.d];
-                let finite = all.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
-                (!finite).then(|| ConfigError::new("a", "overflows within a period"))
-            }
-        }
-    }
-
     /// Returns the size of the first command at an angle error (rad), with the compensator's states at 0; of a law about
     /// three axes together, that of its largest output.
     fn first_command(&self, angle: f64) -> f64 {
@@ -311,6 +299,17 @@ impl LawSpec for StateSpace {
         LawOffers {
             is_three_axis: self.is_three_axis(),
             ..LawOffers::new(Some(self.period), EstimateNeeds::Motion)
+        }
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        match self.sampled() {
+            Err(fault) => Some(fault),
+            Ok(sampled) => {
+                let all = [&sampled.a, &sampled.b, &sampled.c, &sampled.d];
+                let finite = all.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
+                (!finite).then(|| ConfigError::new("a", "overflows within a period"))
+            }
         }
     }
 

@@ -12,8 +12,10 @@ use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{SensorFailure, stream};
+use super::tachometer::NoMeasurement;
+use super::{MeasuredQuantity, Sensor, SensorFailure, SensorSpec, Subject, stream};
 use crate::offers::Offers;
+use crate::quantity::QuantityShape;
 use crate::requirement::{Requirements, Rule};
 
 /// An accelerometer on a `[spacecraft]` in free fall. It measures the acceleration of its mounting point due to forces,
@@ -58,9 +60,45 @@ pub struct Accelerometer {
     pub faults: Vec<SensorFailure>,
 }
 
-impl Accelerometer {
-    /// Adds the requirements of the accelerometer on the other parts of a scenario.
-    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+impl SensorSpec for Accelerometer {
+    fn start(&self, _: usize, _: Seed, _: usize) -> Box<dyn Sensor> {
+        Box::new(NoMeasurement)
+    }
+
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        None
+    }
+
+    fn own_period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn subject(&self) -> Subject {
+        Subject::Other
+    }
+
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn validate(&self) -> Option<document::ConfigError> {
+        if !self.watch_only {
+            let why = "must be true: an accelerometer is only logged, and the law does not use it";
+            return Some(document::ConfigError::new("watch_only", why));
+        }
+        if self.along.len() > 3 {
+            let why = format!("must be one to three directions, got {}", self.along.len());
+            return Some(document::ConfigError::new("along", why));
+        }
+        let none = self.along.iter().position(|along| along.iter().all(|part| part.get() == 0.0))?;
+        Some(document::ConfigError::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
+    }
+
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         needs.require(
             Rule::Accelerometer,
             offers.body.is_spacecraft,
@@ -81,20 +119,14 @@ impl Accelerometer {
         );
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::ConfigError> {
-        if !self.watch_only {
-            let why = "must be true: an accelerometer is only logged, and the law does not use it";
-            return Some(document::ConfigError::new("watch_only", why));
-        }
-        if self.along.len() > 3 {
-            let why = format!("must be one to three directions, got {}", self.along.len());
-            return Some(document::ConfigError::new("along", why));
-        }
-        let none = self.along.iter().position(|along| along.iter().all(|part| part.get() == 0.0))?;
-        Some(document::ConfigError::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
+    fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {
+        let (shape, meaning) =
+            (QuantityShape::List(self.axis_count()), "specific force along the axes of the sensor");
+        vec![MeasuredQuantity::vector("specific_force", "m/s²", shape, meaning)]
     }
+}
 
+impl Accelerometer {
     /// Returns the number of measurement axes.
     pub fn axis_count(&self) -> usize {
         if self.along.is_empty() { 3 } else { self.along.len() }
@@ -106,24 +138,6 @@ impl Accelerometer {
             return vec![Vector::x(), Vector::y(), Vector::z()];
         }
         self.along.iter().map(|along| flexsc_numerics::attitude::vector(along).normalize()).collect()
-    }
-
-    /// Creates the accelerometer's run-time state; `ordinal` counts earlier accelerometers.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> AccelerometerState {
-        let axes = self.axes();
-        let draws = |name: &str| -> Vec<Stream> {
-            (0..axes.len()).map(|axis| stream(name, (axis, 3), ordinal, seed)).collect()
-        };
-        AccelerometerState {
-            noise: draws("accelerometer"),
-            walk: draws("accelerometer bias"),
-            bias: (0..axes.len()).map(|axis| self.bias.about(axis).get()).collect(),
-            exposes: Instant::START,
-            waiting: VecDeque::new(),
-            last: None,
-            axes,
-            spec: self.clone(),
-        }
     }
 }
 
@@ -166,6 +180,24 @@ pub struct AccelerometerState {
 }
 
 impl AccelerometerState {
+    /// Creates the run-time state; `ordinal` counts earlier accelerometers.
+    pub fn new(spec: &Accelerometer, seed: Seed, ordinal: usize) -> Self {
+        let axes = spec.axes();
+        let draws = |name: &str| -> Vec<Stream> {
+            (0..axes.len()).map(|axis| stream(name, (axis, 3), ordinal, seed)).collect()
+        };
+        Self {
+            noise: draws("accelerometer"),
+            walk: draws("accelerometer bias"),
+            bias: (0..axes.len()).map(|axis| spec.bias.about(axis).get()).collect(),
+            exposes: Instant::START,
+            waiting: VecDeque::new(),
+            last: None,
+            axes,
+            spec: spec.clone(),
+        }
+    }
+
     /// Returns the next time of a sample or an output.
     pub fn due(&self) -> Instant {
         self.waiting.front().map_or(self.exposes, |(available, _)| self.exposes.min(*available))
@@ -220,8 +252,8 @@ mod tests {
     fn start(keys: &str) -> AccelerometerState {
         let spec: Accelerometer =
             toml::from_str(&format!("watch_only = true\nperiod = 0.5\n{keys}")).unwrap();
-        assert_eq!(spec.inconsistency(), None);
-        spec.start(Seed { scenario: 3, run: 0 }, 0)
+        assert_eq!(spec.validate(), None);
+        AccelerometerState::new(&spec, Seed { scenario: 3, run: 0 }, 0)
     }
 
     fn run(
@@ -271,6 +303,6 @@ mod tests {
         let measured = |k: usize| reported[k].1[0].measured;
         assert!(measured(2) == measured(1) && measured(3) == measured(1) && measured(4) != measured(1));
         let loud: Accelerometer = toml::from_str("period = 0.5").unwrap();
-        assert!(loud.inconsistency().unwrap().to_string().contains("`watch_only` must be true"));
+        assert!(loud.validate().unwrap().to_string().contains("`watch_only` must be true"));
     }
 }

@@ -15,8 +15,9 @@ use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
-use super::{Sensor, SensorFailure};
+use super::{FieldOfView, MeasuredQuantity, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject};
 use crate::offers::{EnvironmentOffers, Offers};
+use crate::quantity::QuantityShape;
 use crate::requirement::{Requirements, Rule};
 
 /// Body to which a sensor measures the direction.
@@ -27,6 +28,12 @@ pub trait SensedBody: Copy + Default + PartialEq + fmt::Debug + Send + Sync + Js
     const DESCRIPTION: &'static str;
     /// Reason why there is no direction, as a text that follows the key.
     const UNDEFINED: &'static str;
+
+    /// Meaning of the measured direction, as a noun phrase.
+    const MEANING: &'static str;
+
+    /// Returns the noise of the direction with this covariance.
+    fn reference(covariance: Matrix3<f64>) -> ReferenceNoise;
 
     /// Returns the direction in inertial axes, if it can be measured.
     fn direction(sky: &EnvironmentObservation) -> Option<Vector>;
@@ -93,41 +100,59 @@ fn full_field_of_view() -> NonNegative {
     NonNegative::new(std::f64::consts::PI).unwrap_or_default()
 }
 
-impl<B: SensedBody> DirectionSensor<B> {
-    /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+impl<B: SensedBody> SensorSpec for DirectionSensor<B> {
+    fn start(&self, _: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
         Box::new(VectorSensorState::new(self, seed, ordinal))
     }
 
-    /// Returns the latency of a reading.
-    pub fn latency(&self) -> Span {
-        Span::from_seconds(self.latency.get())
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
     }
 
-    /// Returns the covariance of the noise, including quantisation.
-    pub fn covariance(&self) -> Matrix3<f64> {
-        self.errors().covariance()
+    fn subject(&self) -> Subject {
+        Subject::Direction
     }
 
-    /// Adds the requirements of the sensor on the other parts of a scenario.
-    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn validate(&self) -> Option<document::ConfigError> {
+        if self.boresight.iter().all(|part| part.get() == 0.0) {
+            return Some(document::ConfigError::new("boresight", "must not be zero, got [0, 0, 0]"));
+        }
+        self.errors().validate()
+    }
+
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_attitude(offers, needs);
         needs.require(Rule::Sensor, B::is_defined(offers.environment), "", B::UNDEFINED);
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::ConfigError> {
-        if self.boresight.iter().all(|part| part.get() == 0.0) {
-            return Some(document::ConfigError::new("boresight", "must not be zero, got [0, 0, 0]"));
-        }
-        self.errors().fault()
+    fn field_of_view(&self) -> Option<FieldOfView> {
+        let half_angle = self.field_of_view.get();
+        let boresight = vector(&self.boresight).normalize();
+        (half_angle < std::f64::consts::PI).then_some(FieldOfView { boresight, half_angle })
+    }
+
+    fn reference(&self) -> Option<(Span, ReferenceNoise)> {
+        let [_, latency] = self.timing();
+        Some((latency, B::reference(self.errors().covariance())))
+    }
+
+    fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {
+        vec![MeasuredQuantity::vector("direction", "", QuantityShape::Vector, B::MEANING)]
     }
 }
 
 impl<B: SensedBody> VectorSensor for DirectionSensor<B> {
     const STREAM: &'static str = B::STREAM;
 
-    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector> {
+    fn inertial_vector(&self, sky: &EnvironmentObservation) -> Option<Vector> {
         B::direction(sky)
     }
 
@@ -138,20 +163,12 @@ impl<B: SensedBody> VectorSensor for DirectionSensor<B> {
         (off <= self.field_of_view.get()).then(|| measured.normalize())
     }
 
-    fn is_direction(&self) -> bool {
-        true
-    }
-
     fn errors(&self) -> VectorErrors {
         let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
         VectorErrors { noise, bias, resolution, scale, misalignment }
     }
 
     fn timing(&self) -> [Span; 2] {
-        [self.period, self.latency()]
-    }
-
-    fn faults(&self) -> &[SensorFailure] {
-        &self.faults
+        [self.period, Span::from_seconds(self.latency.get())]
     }
 }

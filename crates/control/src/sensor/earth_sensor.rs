@@ -3,8 +3,10 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_spacecraft::environment::EnvironmentObservation;
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 
+use super::ReferenceNoise;
 use super::direction_sensor::{DirectionSensor, SensedBody};
 use crate::offers::EnvironmentOffers;
 
@@ -24,6 +26,12 @@ impl SensedBody for SensedPlanet {
     const UNDEFINED: &'static str =
         "measures the direction to the planet of `environment.orbit`, and there is none";
 
+    const MEANING: &'static str = "direction to the planet's centre in body axes";
+
+    fn reference(covariance: Matrix3<f64>) -> ReferenceNoise {
+        ReferenceNoise::Earth(covariance)
+    }
+
     fn direction(sky: &EnvironmentObservation) -> Option<Vector> {
         sky.nadir
     }
@@ -40,15 +48,15 @@ mod tests {
     use flexsc_numerics::time::{Instant, Span};
 
     use super::*;
-    use crate::sensor::{Orientation, Truth};
+    use crate::sensor::{Orientation, SensorSpec, Truth};
 
     #[test]
     fn it_measures_the_nadir_within_its_field_of_view() {
         let sensor: EarthSensor =
             flexsc_formats::document::from_text("period = 1.0\nboresight = [0, 0, 2]\nfield_of_view = 0.5")
                 .unwrap();
-        assert_eq!(sensor.inconsistency(), None);
-        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        assert_eq!(sensor.validate(), None);
+        let mut state = sensor.start(3, Seed { scenario: 1, run: 0 }, 0);
         let mut measure = |t: f64, rotation_angle: f64, nadir: Option<Vector>| {
             let sky = EnvironmentObservation { nadir, ..EnvironmentObservation::default() };
             let orientation = Orientation::Attitude(rotation(&Vector::new(rotation_angle, 0.0, 0.0)));

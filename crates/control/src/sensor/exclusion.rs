@@ -41,7 +41,7 @@ impl Exclusion {
     }
 
     /// Checks the angles; returns the first inconsistent key and the reason.
-    pub(super) fn inconsistency(&self) -> Option<ConfigError> {
+    pub(super) fn validate(&self) -> Option<ConfigError> {
         let (body, limit) = self.limits().find(|(_, limit)| *limit >= PI)?;
         let why = format!("must be below pi, which is blinded in every direction, got {limit}");
         Some(ConfigError::new(format!("exclusion.{}", body.name()), why))

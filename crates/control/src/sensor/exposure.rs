@@ -35,13 +35,6 @@ impl ExposureMean {
     }
 }
 
-impl SensorKind {
-    /// Returns the exposure time.
-    pub fn exposure(&self) -> Span {
-        if let Self::StarTracker(tracker) = self { tracker.exposure() } else { Span::ZERO }
-    }
-}
-
 impl OneOrMany<SensorKind> {
     /// Iterates over the star trackers with an exposure time: index among the sensors, period, and half the exposure
     /// time.

@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 
 use super::gauss_markov_bias::GaussMarkovBias;
 use super::latency_queue::with_failures;
+use super::linear_noise::{KeyNoise, SensorNoise, Side, diagonal, existing, padded, rounding, wander_noise};
 use super::rate_integrator::{self, RateIntegrator};
-use super::{Reading, Sensor, Truth, stream};
+use super::{LinearMeasurement, Reading, Sensor, SensorFailure, SensorSpec, Truth, stream};
 use crate::offers::Offers;
 use crate::part::Part;
 use crate::requirement::{ONE_NUMBER, Requirements, Rule};
-use crate::sensor;
 
 /// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
 /// rounded (\[Timakov14\]). A gyro with a random walk integrates: its output is the mean rate over each of its periods.
@@ -74,7 +74,7 @@ pub struct Gyro {
     pub range: Option<PerAxis<Positive>>,
     /// Intervals in which the gyro fails; star trackers still give the attitude.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<sensor::SensorFailure>,
+    pub faults: Vec<SensorFailure>,
 }
 
 fn is_zero(each: &PerAxis<NonNegative>) -> bool {
@@ -105,28 +105,125 @@ pub struct GyroState {
 /// Largest latency of a gyro (periods).
 const LATEST: u64 = 10_000;
 
-impl Gyro {
-    /// Creates the gyro's run-time state on a body with `axes` axes; `ordinal` counts earlier gyros.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> GyroState {
+impl SensorSpec for Gyro {
+    fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
         let draws = |axis: usize| stream("gyro", (axis, axes), ordinal, seed);
         let counter = self.integrates().then(|| RateIntegrator::new(self));
-        GyroState {
+        Box::new(GyroState {
             gyro: self.clone(),
             noise: (0..axes).map(draws).collect(),
             counter,
             wander: GaussMarkovBias::default(),
             last_rates: None,
             waiting: VecDeque::new(),
-        }
+        })
     }
 
-    /// Adds the requirements of the gyro on the other parts of a scenario.
-    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+    fn period(&self, law: Option<Span>) -> Option<Span> {
+        self.period.or(law)
+    }
+
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
+        if self.integrates() {
+            if let Some((key, _)) = samples.into_iter().find(|(_, zero)| !zero) {
+                let why = "applies only to a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
+                return Some(ConfigError::new(key, why));
+            }
+            if self.period.is_none() {
+                return Some(ConfigError::new("period", "must be given for a gyro that integrates"));
+            }
+        }
+        if !is_zero(&self.bias_instability) && self.correlation_time.is_none() {
+            return Some(ConfigError::new("correlation_time", "must be given with `bias_instability`"));
+        }
+        if self.correlation_time.is_some() && is_zero(&self.bias_instability) {
+            return Some(ConfigError::new(
+                "correlation_time",
+                "is that of `bias_instability`, which is not given",
+            ));
+        }
+        if let Some(fault) = self.validate_latency() {
+            return Some(fault);
+        }
+        let rows = self.misalignment.as_ref()?;
+        let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
+        let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
+        Some(ConfigError::new(format!("misalignment[{axis}][{axis}]"), why))
+    }
+
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         if let Some(key) = self.three_axis_key() {
             needs.require(Rule::OneNumber, offers.body.axes == 3, key, ONE_NUMBER);
         }
     }
 
+    fn integrates(&self) -> bool {
+        !(is_zero(&self.angle_random_walk) && is_zero(&self.rate_random_walk) && is_zero(&self.quantum))
+    }
+
+    fn rate_latency(&self) -> Span {
+        Span::from_seconds(self.latency.get())
+    }
+
+    fn rate_noise(&self, axis: usize) -> Option<f64> {
+        if self.integrates() {
+            let period = self.period.map_or(1.0, Span::seconds);
+            return Some(rate_integrator::deviation(self, axis, period));
+        }
+        let (noise, resolution) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
+        Some(f64::sqrt(noise * noise + resolution * resolution / 12.0))
+    }
+
+    fn linear_measurement(&self) -> Option<LinearMeasurement> {
+        Some(LinearMeasurement::Motion)
+    }
+
+    fn linear_noise(&self, axes: usize, period: f64) -> Option<Vec<KeyNoise>> {
+        let rate = |deviation: &dyn Fn(usize) -> f64| diagonal(axes, deviation).map(SensorNoise::Rate);
+        let walk = diagonal(axes, |axis| self.rate_random_walk.about(axis).get()).map(|walk| {
+            let (change, white) = (&walk * f64::sqrt(period), walk * f64::sqrt(period / 12.0));
+            SensorNoise::Walk { change: padded(&change, Side::Left), white: padded(&white, Side::Right) }
+        });
+        let quantum = diagonal(axes, |axis| rounding(self.quantum.about(axis).get()) / period);
+        let wander =
+            diagonal(axes, |axis| self.bias_instability(axis).map_or(0.0, |(deviation, _)| deviation));
+        let wander = wander.zip(self.correlation_time).map(|(deviation, correlation)| {
+            wander_noise(&deviation, period / correlation.get(), self.integrates())
+        });
+        Some(existing([
+            ("noise", rate(&|axis| self.noise.about(axis).get())),
+            ("resolution", rate(&|axis| rounding(self.resolution.about(axis).get()))),
+            ("angle_random_walk", rate(&|axis| self.angle_random_walk.about(axis).get() / f64::sqrt(period))),
+            ("rate_random_walk", walk),
+            ("quantum", quantum.map(SensorNoise::Remainder)),
+            ("bias_instability", wander),
+        ]))
+    }
+
+    fn noise_fault(&self, period: Span) -> Option<(&'static str, &'static str)> {
+        if self.integrates() {
+            let why = "is that of a gyro that integrates the rate: its noise has a linear model only with an attitude filter";
+            return Some(("period", why));
+        }
+        let differs = self.period.is_some_and(|own| own != period);
+        differs.then_some(("period", "is not that of the law: the noise of a linear loop has one period"))
+    }
+
+    fn gyro(&self) -> Option<&Gyro> {
+        Some(self)
+    }
+}
+
+impl Gyro {
     /// Returns the first key that is given for each of three axes, if there is one.
     fn three_axis_key(&self) -> Option<&'static str> {
         let keys = [
@@ -144,19 +241,9 @@ impl Gyro {
         keys.into_iter().find(|(_, three)| *three).map(|(key, _)| key)
     }
 
-    /// Returns true if the gyro measures the mean rate over each of its periods.
-    pub fn integrates(&self) -> bool {
-        !(is_zero(&self.angle_random_walk) && is_zero(&self.rate_random_walk) && is_zero(&self.quantum))
-    }
-
-    /// Returns the latency of a reading.
-    pub fn latency(&self) -> Span {
-        Span::from_seconds(self.latency.get())
-    }
-
     /// Returns the latency in periods.
     fn late(&self) -> u64 {
-        let (Some(period), latency) = (self.period, self.latency()) else { return 0 };
+        let (Some(period), latency) = (self.period, self.rate_latency()) else { return 0 };
         (latency.seconds() / period.seconds()).round() as u64
     }
 
@@ -182,39 +269,9 @@ impl Gyro {
         })
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
-        if self.integrates() {
-            if let Some((key, _)) = samples.into_iter().find(|(_, zero)| !zero) {
-                let why = "applies only to a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
-                return Some(ConfigError::new(key, why));
-            }
-            if self.period.is_none() {
-                return Some(ConfigError::new("period", "must be given for a gyro that integrates"));
-            }
-        }
-        if !is_zero(&self.bias_instability) && self.correlation_time.is_none() {
-            return Some(ConfigError::new("correlation_time", "must be given with `bias_instability`"));
-        }
-        if self.correlation_time.is_some() && is_zero(&self.bias_instability) {
-            return Some(ConfigError::new(
-                "correlation_time",
-                "is that of `bias_instability`, which is not given",
-            ));
-        }
-        if let Some(fault) = self.lateness() {
-            return Some(fault);
-        }
-        let rows = self.misalignment.as_ref()?;
-        let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
-        let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
-        Some(ConfigError::new(format!("misalignment[{axis}][{axis}]"), why))
-    }
-
     /// Checks the latency; returns the key and the reason.
-    fn lateness(&self) -> Option<ConfigError> {
-        let latency = self.latency();
+    fn validate_latency(&self) -> Option<ConfigError> {
+        let latency = self.rate_latency();
         if latency == Span::ZERO {
             return None;
         }
@@ -234,16 +291,6 @@ impl Gyro {
         }
         let why = || format!("must be a whole number of periods of {} s, got {seconds} s", period.seconds());
         (whole != latency).then(|| ConfigError::new("latency", why()))
-    }
-
-    /// Returns the standard deviation of the rate about an axis (rad/s), including quantisation.
-    pub fn rate_noise(&self, axis: usize) -> f64 {
-        if self.integrates() {
-            let period = self.period.map_or(1.0, Span::seconds);
-            return rate_integrator::deviation(self, axis, period);
-        }
-        let (noise, resolution) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
-        f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
 
@@ -328,7 +375,7 @@ mod tests {
     /// Returns what a gyro measures of these rates (rad/s) after one second of them.
     fn measured(text: &str, rate: [f64; 3]) -> [f64; 3] {
         let gyro: Gyro = flexsc_formats::document::from_text(text).unwrap();
-        assert_eq!(gyro.inconsistency(), None);
+        assert_eq!(gyro.validate(), None);
         let mut state = gyro.start(3, Seed { scenario: 1, run: 0 }, 0);
         let read = |state: &mut dyn Sensor, t: f64| {
             let rate_integral = rate.map(|rate| rate * t);
@@ -344,8 +391,8 @@ mod tests {
             };
             state.read(Instant::START + Span::from_seconds(t), &truth, None).unwrap().rate.unwrap()
         };
-        read(&mut state, 0.0);
-        read(&mut state, 1.0)
+        read(&mut *state, 0.0);
+        read(&mut *state, 1.0)
     }
 
     #[test]

@@ -7,13 +7,13 @@ use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
 use flexsc_spacecraft::axes::PerAxis;
 use flexsc_spacecraft::environment::EnvironmentObservation;
-use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
-use super::{Sensor, SensorFailure};
+use super::{MeasuredQuantity, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject};
 use crate::offers::Offers;
+use crate::quantity::QuantityShape;
 use crate::requirement::{Requirements, Rule};
 
 /// A magnetometer on a body with three axes. The body's own magnetorquers do not disturb it.
@@ -53,24 +53,32 @@ pub struct Magnetometer {
     pub faults: Vec<SensorFailure>,
 }
 
-impl Magnetometer {
-    /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+impl SensorSpec for Magnetometer {
+    fn start(&self, _: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
         Box::new(VectorSensorState::new(self, seed, ordinal))
     }
 
-    /// Returns the latency of a reading.
-    pub fn latency(&self) -> Span {
-        Span::from_seconds(self.latency.get())
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
     }
 
-    /// Returns the covariance of the noise, including quantisation.
-    pub fn covariance(&self) -> Matrix3<f64> {
-        self.errors().covariance()
+    fn subject(&self) -> Subject {
+        Subject::Field
     }
 
-    /// Adds the requirements of the sensor on the other parts of a scenario.
-    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn validate(&self) -> Option<document::ConfigError> {
+        self.errors().validate()
+    }
+
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_attitude(offers, needs);
         needs.require(
             Rule::Sensor,
@@ -80,16 +88,20 @@ impl Magnetometer {
         );
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::ConfigError> {
-        self.errors().fault()
+    fn reference(&self) -> Option<(Span, ReferenceNoise)> {
+        let [_, latency] = self.timing();
+        Some((latency, ReferenceNoise::MagneticField(self.errors().covariance())))
+    }
+
+    fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {
+        vec![MeasuredQuantity::vector("field", "T", QuantityShape::Vector, "magnetic field in body axes")]
     }
 }
 
 impl VectorSensor for Magnetometer {
     const STREAM: &'static str = "magnetometer";
 
-    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector> {
+    fn inertial_vector(&self, sky: &EnvironmentObservation) -> Option<Vector> {
         sky.field
     }
 
@@ -103,21 +115,13 @@ impl VectorSensor for Magnetometer {
         Some(self.range.map_or(measured, clipped))
     }
 
-    fn is_direction(&self) -> bool {
-        false
-    }
-
     fn errors(&self) -> VectorErrors {
         let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
         VectorErrors { noise, bias, resolution, scale, misalignment }
     }
 
     fn timing(&self) -> [Span; 2] {
-        [self.period, self.latency()]
-    }
-
-    fn faults(&self) -> &[SensorFailure] {
-        &self.faults
+        [self.period, Span::from_seconds(self.latency.get())]
     }
 }
 
@@ -133,7 +137,7 @@ mod tests {
     fn a_field_beyond_the_range_is_clipped_after_the_errors() {
         let text = "period = 1.0\nbias = [1e-6, 0, 0]\nscale = [0, 0.5, 0]\nrange = [2e-5, 4e-5, 5e-5]";
         let sensor: Magnetometer = flexsc_formats::document::from_text(text).unwrap();
-        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut state = sensor.start(3, Seed { scenario: 1, run: 0 }, 0);
         let mut now = Instant::START;
         let mut measure = |field: [f64; 3]| {
             let sky = EnvironmentObservation {

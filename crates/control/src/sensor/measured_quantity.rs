@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use super::{Reading, SensorKind};
+use super::Reading;
 use crate::quantity::{Meaning, QuantityDescription, QuantityShape};
 
 /// Quantity of a sensor's readings.
@@ -31,8 +31,13 @@ impl MeasuredQuantity {
         Self { quantity: QuantityDescription { name, unit, shape, meaning: Meaning::Text(meaning) }, read }
     }
 
-    /// Creates a quantity that is a vector, such as a magnetic field.
-    fn vector(name: &'static str, unit: &'static str, shape: QuantityShape, meaning: &'static str) -> Self {
+    /// Creates the quantity of a sensor of a vector, such as a magnetic field.
+    pub(super) fn vector(
+        name: &'static str,
+        unit: &'static str,
+        shape: QuantityShape,
+        meaning: &'static str,
+    ) -> Self {
         let read = |reading: &Reading| {
             reading.sight.map(|measured| measured.vector).unwrap_or_default().iter().copied().collect()
         };
@@ -45,39 +50,16 @@ impl MeasuredQuantity {
     }
 }
 
-impl SensorKind {
-    /// Returns the quantities that the sensor measures on a body with `axes` axes, of which it is the source of the attitude
-    /// or not; none of a tachometer, whose readings are the speeds of the wheels.
-    pub fn measured_quantities(&self, provides_attitude: bool, axes: usize) -> Vec<MeasuredQuantity> {
-        let vector = MeasuredQuantity::vector;
-        match self {
-            Self::Tachometer(_) => Vec::new(),
-            Self::Accelerometer(accelerometer) => {
-                let shape = QuantityShape::List(accelerometer.axis_count());
-                vec![vector("specific_force", "m/s²", shape, "specific force along the axes of the sensor")]
-            }
-            Self::Magnetometer(_) => {
-                vec![vector("field", "T", QuantityShape::Vector, "magnetic field in body axes")]
-            }
-            Self::SunSensor(_) | Self::SunCells(_) => {
-                vec![vector("direction", "", QuantityShape::Vector, "direction to the Sun in body axes")]
-            }
-            Self::EarthSensor(_) => {
-                vec![vector(
-                    "direction",
-                    "",
-                    QuantityShape::Vector,
-                    "direction to the planet's centre in body axes",
-                )]
-            }
-            Self::Continuous | Self::Sampled(_) | Self::Gyro(_) | Self::StarTracker(_) | Self::Own(_) => {
-                let attitude = if axes > 1 { measured_attitude } else { measured_angle };
-                let has_rate = self.is_continuous() || self.rate_noise(0).is_some();
-                let attitude = provides_attitude.then(attitude);
-                attitude.into_iter().chain(has_rate.then(|| measured_rate(axes))).collect()
-            }
-        }
-    }
+/// Returns the quantities of a sensor of the motion about `axes` axes, which measures rates or not and is the source of the
+/// attitude or not.
+pub(super) fn quantities_of_motion(
+    provides_attitude: bool,
+    has_rate: bool,
+    axes: usize,
+) -> Vec<MeasuredQuantity> {
+    let attitude = if axes > 1 { measured_attitude } else { measured_angle };
+    let attitude = provides_attitude.then(attitude);
+    attitude.into_iter().chain(has_rate.then(|| measured_rate(axes))).collect()
 }
 
 fn measured_attitude() -> MeasuredQuantity {

@@ -111,7 +111,7 @@ impl RateIntegrator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sensor::{Orientation, Sensor};
+    use crate::sensor::{Orientation, SensorSpec};
     use flexsc_numerics::random::Seed;
     use flexsc_numerics::time::Span;
 
@@ -119,7 +119,7 @@ mod tests {
 
     fn readings(keys: &str, count: usize, rate: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         let gyro: Gyro = flexsc_formats::document::from_text(&format!("period = {PERIOD}\n{keys}")).unwrap();
-        assert_eq!(gyro.inconsistency(), None);
+        assert_eq!(gyro.validate(), None);
         let mut gyro = gyro.start(3, Seed { scenario: 5, run: 0 }, 0);
         let (mut reported, mut biases) = (Vec::new(), Vec::new());
         for k in 0..=count {
@@ -184,7 +184,7 @@ mod tests {
         }
         let refused = |keys: &str| {
             let gyro: Gyro = flexsc_formats::document::from_text(keys).unwrap();
-            gyro.inconsistency().unwrap().to_string()
+            gyro.validate().unwrap().to_string()
         };
         assert!(
             refused("noise = 1e-5\nquantum = 1e-6\nperiod = 0.1")

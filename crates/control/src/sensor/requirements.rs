@@ -2,10 +2,7 @@
 
 use flexsc_numerics::time::Span;
 
-use super::{
-    Accelerometer, EarthSensor, Magnetometer, SensorKind, SensorSpec, SunCells, SunSensor, Tachometer,
-};
-use crate::custom::Custom;
+use super::SensorKind;
 use crate::offers::{Offers, SensorOffers};
 use crate::one_or_many::OneOrMany;
 use crate::requirement::{OFF_HUB, Requirements, Rule};
@@ -23,47 +20,8 @@ impl SensorKind {
             "",
             "must have a `period` with a law that has none of its own",
         );
-        needs.report(Rule::Sensor, self.inconsistency());
-        match self {
-            Self::Gyro(gyro) => gyro.requires(offers, needs),
-            Self::StarTracker(tracker) => tracker.requires(offers, needs),
-            Self::Magnetometer(_) => Magnetometer::requires(offers, needs),
-            Self::SunSensor(_) => SunSensor::requires(offers, needs),
-            Self::SunCells(_) => SunCells::requires(offers, needs),
-            Self::EarthSensor(_) => EarthSensor::requires(offers, needs),
-            Self::Tachometer(_) => Tachometer::requires(ordinal, offers, needs),
-            Self::Accelerometer(_) => Accelerometer::requires(offers, needs),
-            Self::Continuous => {
-                let is_alone = offers.sensors.motion_sensors <= 1;
-                let why = if offers.sensors.vector_sensors + 1 == offers.sensors.motion_sensors {
-                    "has no samples, and sensors of the field and of directions have: use a `sampled` sensor beside them"
-                } else {
-                    "gives the motion at every instant, so other sensors add nothing"
-                };
-                needs.require(Rule::Sensor, is_alone, "", why);
-            }
-            Self::Sampled(_) | Self::Own(_) => {}
-        }
-    }
-
-    /// Returns the period of the samples that does not follow from a law, of the body's motion or for the log.
-    pub fn own_period(&self) -> Option<Span> {
-        match self {
-            Self::Tachometer(tachometer) => Some(tachometer.period),
-            Self::Accelerometer(accelerometer) => Some(accelerometer.period),
-            _ => self.period(None),
-        }
-    }
-
-    /// Returns the sensor of another crate, if it is one.
-    pub fn custom(&self) -> Option<&Custom<dyn SensorSpec>> {
-        if let Self::Own(own) = self { Some(own) } else { None }
-    }
-}
-
-impl From<Custom<dyn SensorSpec>> for SensorKind {
-    fn from(sensor: Custom<dyn SensorSpec>) -> Self {
-        Self::Own(sensor)
+        needs.report(Rule::Sensor, self.validate());
+        self.requires(ordinal, offers, needs);
     }
 }
 
@@ -78,8 +36,8 @@ impl OneOrMany<SensorKind> {
         SensorOffers {
             motion_sensors: self.motion_sensors(),
             vector_sensors: self.iter().filter(|sensor| sensor.measures_vector()).count(),
-            is_continuous: self.iter().any(SensorKind::is_continuous),
-            magnetic_field: self.iter().any(SensorKind::measures_field),
+            is_continuous: self.iter().any(|sensor| sensor.is_continuous()),
+            magnetic_field: self.iter().any(|sensor| sensor.measures_field()),
             period: self.period(law),
             angle_noise: self.angle_noise(),
         }

@@ -8,7 +8,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::latency_queue::with_failures;
-use super::{Reading, Sensor, Truth, stream};
+use super::linear_noise::{KeyNoise, SensorNoise, diagonal, existing, rounding};
+use super::{LinearMeasurement, Reading, ReferenceNoise, Sensor, SensorSpec, Truth, stream};
 use crate::interval::Interval;
 use crate::part::Part;
 
@@ -66,20 +67,53 @@ impl SensorFailure {
     }
 }
 
-impl Sampled {
-    /// Creates the sensor's run-time state on a body with `axes` axes; `ordinal` counts earlier sensors of the same
-    /// kind.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> SampledState {
+impl SensorSpec for Sampled {
+    fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
         let draws = |axis: usize| stream("sensor", (axis, axes), ordinal, seed);
-        SampledState { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
+        Box::new(SampledState { sampled: self.clone(), noise: (0..axes).map(draws).collect() })
     }
 
-    /// Returns the standard deviation of the measured angle (rad), including quantisation.
-    pub fn angle_noise(&self) -> f64 {
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn angle_noise(&self) -> f64 {
         let (noise, resolution) = (self.noise.get(), self.resolution.get());
         f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 
+    fn rate_noise(&self, _: usize) -> Option<f64> {
+        self.rate_noise.map(Positive::get)
+    }
+
+    fn reference(&self) -> Option<(Span, ReferenceNoise)> {
+        Some((Span::ZERO, ReferenceNoise::Attitude([self.angle_noise(); 3])))
+    }
+
+    fn linear_measurement(&self) -> Option<LinearMeasurement> {
+        Some(LinearMeasurement::Samples { period: self.period, is_difference: self.rate_noise.is_none() })
+    }
+
+    fn linear_noise(&self, axes: usize, _: f64) -> Option<Vec<KeyNoise>> {
+        let angle = |deviation: f64| diagonal(axes, |_| deviation).map(SensorNoise::Angle);
+        let rate = self.rate_noise.map_or(0.0, Positive::get);
+        Some(existing([
+            ("noise", angle(self.noise.get())),
+            ("resolution", angle(rounding(self.resolution.get()))),
+            ("rate_noise", diagonal(axes, |_| rate).map(SensorNoise::Rate)),
+        ]))
+    }
+}
+
+impl Sampled {
     fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {
         let mut output = angle + self.bias.get();
         if self.noise.get() > 0.0 {

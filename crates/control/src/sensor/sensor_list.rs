@@ -40,7 +40,7 @@ impl OneOrMany<SensorKind> {
 
     /// Returns true if a sensor provides the attitude: a gyro only without another such sensor, and then exactly.
     pub fn provides_attitude(&self, index: usize) -> bool {
-        let rates = |sensor: &SensorKind| matches!(sensor, SensorKind::Gyro(_));
+        let rates = |sensor: &SensorKind| sensor.gyro().is_some();
         let of_body = |sensor: &SensorKind| sensor.measures_motion() && !sensor.measures_vector();
         let alone = self.iter().filter(|sensor| of_body(sensor)).all(rates);
         let is_first = !self[..index].iter().any(of_body);

@@ -5,13 +5,16 @@ use flexsc_numerics::attitude::{Attitude, Vector, rotation};
 use flexsc_numerics::quantity::{NonNegative, Positive, Time};
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::{DMatrix, Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::exclusion::Exclusion;
 use super::latency_queue::{LatencyQueue, with_failures};
-use super::{ExposureMean, Orientation, Reading, Sensor, SensorFailure, Truth, stream};
+use super::linear_noise::{KeyNoise, SensorNoise, existing};
+use super::{
+    ExposureMean, Orientation, Reading, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Truth, stream,
+};
 use crate::offers::Offers;
 use crate::part::Part;
 use crate::requirement::Requirements;
@@ -55,30 +58,25 @@ fn is_instant(exposure: &Time) -> bool {
     *exposure == Time::default()
 }
 
-impl StarTracker {
-    /// Creates the tracker's run-time state; `ordinal` counts earlier star trackers.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> StarTrackerState {
-        let draws = |axis: usize| stream("star tracker", (axis, 3), ordinal, seed);
-        StarTrackerState {
-            tracker: self.clone(),
-            noise: [0, 1, 2].map(draws),
-            queue: LatencyQueue::new(self.period, self.latency()),
-            open_exposure: None,
-            is_blinded: false,
-        }
+impl SensorSpec for StarTracker {
+    fn start(&self, _: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+        Box::new(StarTrackerState::new(self, seed, ordinal))
     }
 
-    /// Adds the requirements of the sensor on the other parts of a scenario.
-    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
-        super::requirements::require_attitude(offers, needs);
-        if let Some(exclusion) = &self.exclusion {
-            exclusion.requires(offers, needs);
-        }
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::ConfigError> {
-        if let Some(fault) = self.exclusion.as_ref().and_then(Exclusion::inconsistency) {
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn validate(&self) -> Option<document::ConfigError> {
+        if let Some(fault) = self.exclusion.as_ref().and_then(Exclusion::validate) {
             return Some(fault);
         }
         let (exposure, latency) = (self.exposure.get(), self.latency.get());
@@ -95,14 +93,43 @@ impl StarTracker {
         (self.half_exposure() > self.latency()).then(|| document::ConfigError::new("exposure", why()))
     }
 
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_attitude(offers, needs);
+        if let Some(exclusion) = &self.exclusion {
+            exclusion.requires(offers, needs);
+        }
+    }
+
+    fn exposure(&self) -> Span {
+        Span::from_seconds(self.exposure.get())
+    }
+
+    fn angle_noise(&self) -> f64 {
+        self.noise.map(NonNegative::get).into_iter().fold(0.0, f64::max)
+    }
+
+    fn reference(&self) -> Option<(Span, ReferenceNoise)> {
+        Some((self.latency(), ReferenceNoise::Attitude(self.noise.map(NonNegative::get))))
+    }
+
+    fn attitude_covariance(&self, deviations: [f64; 3]) -> Matrix3<f64> {
+        let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| self.to_body_axes(&axis));
+        axes.iter().zip(deviations).fold(Matrix3::zeros(), |sum, (axis, deviation)| {
+            sum + axis * axis.transpose() * (deviation * deviation)
+        })
+    }
+
+    fn linear_noise(&self, _: usize, _: f64) -> Option<Vec<KeyNoise>> {
+        let matrix =
+            DMatrix::from_fn(3, 3, |row, axis| self.body_direction(axis)[row] * self.noise[axis].get());
+        Some(existing([("noise", (matrix.amax() > 0.0).then_some(SensorNoise::Angle(matrix)))]))
+    }
+}
+
+impl StarTracker {
     /// Returns the latency of a reading.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
-    }
-
-    /// Returns the exposure time.
-    pub fn exposure(&self) -> Span {
-        Span::from_seconds(self.exposure.get())
     }
 
     /// Returns half the exposure time.
@@ -113,19 +140,6 @@ impl StarTracker {
     /// Returns true if the exposure time is not 0.
     pub fn has_exposure(&self) -> bool {
         self.half_exposure() > Span::ZERO
-    }
-
-    /// Returns the largest standard deviation about an axis (rad).
-    pub fn angle_noise(&self) -> f64 {
-        self.noise.map(NonNegative::get).into_iter().fold(0.0, f64::max)
-    }
-
-    /// Returns the error covariance in the body's axes, for these standard deviations in the tracker's axes (rad).
-    pub fn covariance(&self, deviations: [f64; 3]) -> Matrix3<f64> {
-        let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| self.to_body_axes(&axis));
-        axes.iter().zip(deviations).fold(Matrix3::zeros(), |sum, (axis, deviation)| {
-            sum + axis * axis.transpose() * (deviation * deviation)
-        })
     }
 
     /// Returns the direction of one of the tracker's axes in the body's axes, as a unit vector.
@@ -154,6 +168,18 @@ pub struct StarTrackerState {
 }
 
 impl StarTrackerState {
+    /// Creates the run-time state; `ordinal` counts earlier star trackers.
+    fn new(tracker: &StarTracker, seed: Seed, ordinal: usize) -> Self {
+        let draws = |axis: usize| stream("star tracker", (axis, 3), ordinal, seed);
+        Self {
+            tracker: tracker.clone(),
+            noise: [0, 1, 2].map(draws),
+            queue: LatencyQueue::new(tracker.period, tracker.latency()),
+            open_exposure: None,
+            is_blinded: false,
+        }
+    }
+
     /// Returns the reading of an exposure at `now`.
     fn expose(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Random numbers are drawn during a failure too, so that later ones do not depend on it.
@@ -225,7 +251,7 @@ mod tests {
     fn start(keys: &str) -> StarTrackerState {
         let tracker: StarTracker =
             flexsc_formats::document::from_text(&format!("period = 1.0\n{keys}")).unwrap();
-        tracker.start(Seed { scenario: 3, run: 0 }, 0)
+        StarTrackerState::new(&tracker, Seed { scenario: 3, run: 0 }, 0)
     }
 
     fn attitude(reading: Reading) -> Quaternion<f64> {
@@ -332,7 +358,7 @@ mod tests {
             );
             sums += error * error.transpose() / f64::from(count);
         }
-        let exact = tracker.tracker.covariance([1e-5, 2e-5, 1e-3]);
+        let exact = tracker.tracker.attitude_covariance([1e-5, 2e-5, 1e-3]);
         for (axis, variance) in [(0, 1e-6), (1, 4e-10), (2, 1e-10)] {
             assert!((exact[(axis, axis)] / variance - 1.0).abs() < 1e-9, "{exact}");
             // Three standard errors: 3 sqrt(2/n).

@@ -15,10 +15,16 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::direction_sensor::SensedBody;
 use super::latency_queue::{LatencyQueue, with_failures};
-use super::{Reading, Sensor, SensorFailure, Truth, VectorMeasurement};
+use super::sun_sensor::SensedSun;
+use super::{
+    MeasuredQuantity, Reading, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject, Truth,
+    VectorMeasurement,
+};
 use crate::offers::Offers;
 use crate::part::Part;
+use crate::quantity::QuantityShape;
 use crate::requirement::{Requirements, Rule};
 
 /// Least determinant of the sum of n n' over the lit cells, at which they still give a direction.
@@ -78,48 +84,28 @@ fn threshold() -> Positive {
     Positive::new(0.1).unwrap_or(Positive::ONE)
 }
 
-impl SunCells {
-    /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> SunCellsState {
-        let draws = |cell: usize| seed.stream(&format!("sun cells {ordinal} {cell}"));
-        SunCellsState {
-            sensor: self.clone(),
-            normals: self.normals().collect(),
-            noise: (0..self.cells.len()).map(draws).collect(),
-            late: LatencyQueue::new(self.period, self.latency()),
-        }
+impl SensorSpec for SunCells {
+    fn start(&self, _: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+        Box::new(SunCellsState::new(self, seed, ordinal))
     }
 
-    /// Iterates over the outward normals in the body's axes, unit vectors.
-    fn normals(&self) -> impl Iterator<Item = Vector> {
-        self.cells.iter().map(|cell| vector(&cell.normal).normalize())
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
     }
 
-    /// Returns the latency of a reading.
-    pub fn latency(&self) -> Span {
-        Span::from_seconds(self.latency.get())
+    fn subject(&self) -> Subject {
+        Subject::Direction
     }
 
-    /// Returns the covariance of the direction with half of all cells lit.
-    pub fn covariance(&self) -> Matrix3<f64> {
-        let spread: Matrix3<f64> = self.normals().map(|normal| normal * normal.transpose()).sum();
-        let variance = self.noise.get() * self.noise.get();
-        inverse_3x3(spread).map_or_else(Matrix3::zeros, |inverse| inverse * (2.0 * variance))
+    fn point(&self) -> Option<&str> {
+        self.point.as_deref()
     }
 
-    /// Adds the requirements of the sensor on the other parts of a scenario.
-    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
-        super::requirements::require_attitude(offers, needs);
-        needs.require(
-            Rule::Sensor,
-            offers.environment.sun,
-            "",
-            "measures the direction to `environment.sun`, and there is none",
-        );
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
     }
 
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
+    fn validate(&self) -> Option<ConfigError> {
         let flat = |cell: &SunCell| cell.normal.iter().all(|part| part.get() == 0.0);
         if let Some(index) = self.cells.iter().position(flat) {
             let key = format!("cells[{index}].normal");
@@ -145,6 +131,38 @@ impl SunCells {
             ConfigError::new("threshold", why)
         })
     }
+
+    fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_attitude(offers, needs);
+        needs.require(Rule::Sensor, offers.environment.sun, "", SensedSun::UNDEFINED);
+    }
+
+    fn reference(&self) -> Option<(Span, ReferenceNoise)> {
+        Some((self.latency(), ReferenceNoise::Sun(self.covariance())))
+    }
+
+    fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {
+        vec![MeasuredQuantity::vector("direction", "", QuantityShape::Vector, SensedSun::MEANING)]
+    }
+}
+
+impl SunCells {
+    /// Iterates over the outward normals in the body's axes, unit vectors.
+    fn normals(&self) -> impl Iterator<Item = Vector> {
+        self.cells.iter().map(|cell| vector(&cell.normal).normalize())
+    }
+
+    /// Returns the latency of a reading.
+    pub fn latency(&self) -> Span {
+        Span::from_seconds(self.latency.get())
+    }
+
+    /// Returns the covariance of the direction with half of all cells lit.
+    pub fn covariance(&self) -> Matrix3<f64> {
+        let spread: Matrix3<f64> = self.normals().map(|normal| normal * normal.transpose()).sum();
+        let variance = self.noise.get() * self.noise.get();
+        inverse_3x3(spread).map_or_else(Matrix3::zeros, |inverse| inverse * (2.0 * variance))
+    }
 }
 
 /// Run-time state of Sun cells.
@@ -158,6 +176,17 @@ pub struct SunCellsState {
 }
 
 impl SunCellsState {
+    /// Creates the run-time state; `ordinal` counts earlier Sun cells.
+    fn new(sensor: &SunCells, seed: Seed, ordinal: usize) -> Self {
+        let draws = |cell: usize| seed.stream(&format!("sun cells {ordinal} {cell}"));
+        Self {
+            normals: sensor.normals().collect(),
+            noise: (0..sensor.cells.len()).map(draws).collect(),
+            late: LatencyQueue::new(sensor.period, sensor.latency()),
+            sensor: sensor.clone(),
+        }
+    }
+
     /// Returns the direction to the Sun in the body's axes, as measured, for its true direction.
     fn direction(&mut self, exact: Option<&Vector>) -> Option<Vector> {
         // Random numbers are drawn in shadow too, so that later ones do not depend on it.
@@ -229,8 +258,8 @@ mod tests {
 
     fn start(keys: &str) -> SunCellsState {
         let cells = cells(&format!("{CUBE}{keys}"));
-        assert_eq!(cells.inconsistency(), None);
-        cells.start(Seed { scenario: 1, run: 0 }, 0)
+        assert_eq!(cells.validate(), None);
+        SunCellsState::new(&cells, Seed { scenario: 1, run: 0 }, 0)
     }
 
     #[test]
@@ -251,7 +280,7 @@ mod tests {
     #[test]
     fn errors_of_a_cell_turn_the_direction() {
         let keys = CUBE.replace("normal = [1, 0, 0]", "normal = [1, 0, 0], scale = 0.1, bias = -0.02");
-        let mut state = cells(&keys).start(Seed { scenario: 1, run: 0 }, 0);
+        let mut state = SunCellsState::new(&cells(&keys), Seed { scenario: 1, run: 0 }, 0);
         let sun = Vector::new(0.6, -0.5, 0.4).normalize();
         let exact = Vector::new(1.1 * sun.x - 0.02, sun.y, sun.z).normalize();
         assert!((state.direction(Some(&sun)).unwrap() - exact).norm() < 1e-15);
@@ -269,7 +298,7 @@ mod tests {
 
     #[test]
     fn cells_that_give_no_direction_are_refused() {
-        let fault = |keys: &str| cells(keys).inconsistency().unwrap().to_string();
+        let fault = |keys: &str| cells(keys).validate().unwrap().to_string();
         let two =
             "period = 1.0\ncells = [{ normal = [1, 0, 0] }, { normal = [0, 1, 0] }, { normal = [1, 1, 0] }]";
         assert!(fault(two).starts_with("`cells` must have three normals"));

@@ -2,8 +2,10 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_spacecraft::environment::EnvironmentObservation;
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 
+use super::ReferenceNoise;
 use super::direction_sensor::{DirectionSensor, SensedBody};
 use crate::offers::EnvironmentOffers;
 
@@ -21,6 +23,12 @@ impl SensedBody for SensedSun {
                                        is one number for all axes, or a list of three.";
     const UNDEFINED: &'static str = "measures the direction to `environment.sun`, and there is none";
 
+    const MEANING: &'static str = "direction to the Sun in body axes";
+
+    fn reference(covariance: Matrix3<f64>) -> ReferenceNoise {
+        ReferenceNoise::Sun(covariance)
+    }
+
     fn direction(sky: &EnvironmentObservation) -> Option<Vector> {
         sky.sun
     }
@@ -35,7 +43,7 @@ mod tests {
     use nalgebra::Quaternion;
 
     use super::*;
-    use crate::sensor::{Orientation, Truth};
+    use crate::sensor::{Orientation, SensorSpec, Truth};
     use flexsc_numerics::attitude::rotation;
     use flexsc_numerics::random::Seed;
     use flexsc_numerics::time::{Instant, Span};
@@ -58,7 +66,7 @@ mod tests {
         let sensor: SunSensor =
             flexsc_formats::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5")
                 .unwrap();
-        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut state = sensor.start(3, Seed { scenario: 1, run: 0 }, 0);
         let mut measure = |t: f64, rotation_angle: f64, sun: Option<Vector>| {
             let now = Instant::START + Span::from_seconds(t);
             let attitude = rotation(&Vector::new(0.0, 0.0, rotation_angle));
@@ -79,7 +87,7 @@ mod tests {
     #[test]
     fn noise_is_across_and_errors_are_those_that_are_asked_for() {
         let sensor: SunSensor = flexsc_formats::document::from_text("period = 1.0\nnoise = 1e-3").unwrap();
-        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut state = sensor.start(3, Seed { scenario: 1, run: 0 }, 0);
         let count = 20_000;
         let mut squares = Vector::zeros();
         for k in 0..count {
@@ -96,8 +104,8 @@ mod tests {
              resolution = [0, 0, 7e-6]\nfaults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0 } }]",
         )
         .unwrap();
-        assert_eq!(magnetometer.inconsistency(), None);
-        let mut state = magnetometer.start(Seed { scenario: 1, run: 0 }, 0);
+        assert_eq!(magnetometer.validate(), None);
+        let mut state = magnetometer.start(3, Seed { scenario: 1, run: 0 }, 0);
         let (mut now, mut readings, mut last) = (Instant::START, Vec::new(), None);
         while now.seconds() < 5.0 {
             let attitude = rotation(&Vector::new(0.0, 0.0, 0.1 * now.seconds()));

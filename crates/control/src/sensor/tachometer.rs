@@ -9,7 +9,7 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Reading, Sensor, SensorFailure, Truth};
+use super::{MeasuredQuantity, Reading, Sensor, SensorFailure, SensorSpec, Subject, Truth};
 use crate::offers::Offers;
 use crate::part::Part;
 use crate::requirement::{ROTATION, Requirements, Rule};
@@ -47,9 +47,28 @@ pub struct TachometerState {
     next: Instant,
 }
 
-impl Tachometer {
-    /// Adds the requirements of the tachometer on the other parts of a scenario; `ordinal` counts earlier tachometers.
-    pub(super) fn requires(ordinal: usize, offers: &Offers, needs: &mut Requirements) {
+impl SensorSpec for Tachometer {
+    fn start(&self, _: usize, _: Seed, _: usize) -> Box<dyn Sensor> {
+        Box::new(NoMeasurement)
+    }
+
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        None
+    }
+
+    fn own_period(&self) -> Option<Span> {
+        Some(self.period)
+    }
+
+    fn subject(&self) -> Subject {
+        Subject::Other
+    }
+
+    fn faults(&self) -> &[SensorFailure] {
+        &self.faults
+    }
+
+    fn requires(&self, ordinal: usize, offers: &Offers, needs: &mut Requirements) {
         let has_wheels = offers.lists_actuator(|actuator| actuator.has_reaction_wheels);
         needs.require(
             Rule::Tachometer,
@@ -67,19 +86,23 @@ impl Tachometer {
         needs.require(Rule::TachometerBearings, offers.body.is_two_way, "", ROTATION);
     }
 
-    /// Creates the tachometers of wheels with these initial speeds (rad/s), which are the readings at the start.
-    pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> TachometerState {
-        TachometerState {
-            noise: (1..=speeds.len()).map(|wheel| seed.stream(&format!("tachometer {wheel}"))).collect(),
-            counted: vec![0.0; speeds.len()],
-            speeds,
-            next: Instant::START + self.period,
-            spec: self.clone(),
-        }
+    fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {
+        Vec::new()
     }
 }
 
 impl TachometerState {
+    /// Creates the tachometers of wheels with these initial speeds (rad/s), which are the readings at the start.
+    pub fn new(spec: &Tachometer, speeds: Vec<f64>, seed: Seed) -> Self {
+        Self {
+            noise: (1..=speeds.len()).map(|wheel| seed.stream(&format!("tachometer {wheel}"))).collect(),
+            counted: vec![0.0; speeds.len()],
+            speeds,
+            next: Instant::START + spec.period,
+            spec: spec.clone(),
+        }
+    }
+
     /// Returns the time of the next reading.
     pub fn due(&self) -> Instant {
         self.next
@@ -137,7 +160,7 @@ mod tests {
 
     fn start(keys: &str) -> TachometerState {
         let spec: Tachometer = flexsc_formats::document::from_text(&format!("period = 0.1\n{keys}")).unwrap();
-        spec.start(vec![10.0], Seed { scenario: 1, run: 0 })
+        TachometerState::new(&spec, vec![10.0], Seed { scenario: 1, run: 0 })
     }
 
     fn read(tachometer: &mut TachometerState, k: i32, angle: f64, speed: f64) -> f64 {

@@ -12,7 +12,7 @@ use flexsc_spacecraft::environment::{EnvironmentObservation, to_body};
 use nalgebra::Matrix3;
 
 use super::latency_queue::{LatencyQueue, with_failures};
-use super::{Orientation, Reading, Sensor, SensorFailure, Truth, VectorMeasurement, stream};
+use super::{Orientation, Reading, Sensor, SensorSpec, Subject, Truth, VectorMeasurement, stream};
 use crate::part::Part;
 
 /// Errors of a vector measurement in the sensor's axes: y = M v + bias + noise, then rounded.
@@ -50,7 +50,7 @@ impl VectorErrors {
     }
 
     /// Checks that the misalignment has a zero diagonal; returns the key and the reason if not.
-    pub fn fault(&self) -> Option<document::ConfigError> {
+    pub fn validate(&self) -> Option<document::ConfigError> {
         let rows = &self.misalignment;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
         let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
@@ -59,28 +59,22 @@ impl VectorErrors {
 }
 
 /// Interface of a specific vector sensor.
-pub(super) trait VectorSensor: Clone + fmt::Debug + Send + Sync + 'static {
+pub(super) trait VectorSensor: SensorSpec + Clone + fmt::Debug + 'static {
     /// Name of the random streams of the noise.
     const STREAM: &'static str;
 
     /// Returns the reference vector in inertial axes, if there is one.
-    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector>;
+    fn inertial_vector(&self, sky: &EnvironmentObservation) -> Option<Vector>;
 
     /// Returns the output for the true vector `exact` and the measured one, in the body's axes; `None` outside the
     /// field of view.
     fn reading(&self, exact: &Vector, measured: Vector) -> Option<Vector>;
-
-    /// Returns true if the sensor measures a direction only.
-    fn is_direction(&self) -> bool;
 
     /// Returns the errors of the measurement.
     fn errors(&self) -> VectorErrors;
 
     /// Returns period and latency.
     fn timing(&self) -> [Span; 2];
-
-    /// Returns the sensor's failures.
-    fn faults(&self) -> &[SensorFailure];
 }
 
 /// Run-time state of a vector sensor.
@@ -110,11 +104,11 @@ impl<S: VectorSensor> VectorSensorState<S> {
         let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
             return None;
         };
-        let reading = self.sensor.reference(&truth.environment).and_then(|inertial| {
+        let reading = self.sensor.inertial_vector(&truth.environment).and_then(|inertial| {
             let exact = to_body(&attitude, &inertial);
             let vector = self.sensor.reading(&exact, self.errors.measured(&exact, &draws))?;
-            let vector_measurement =
-                VectorMeasurement { vector, inertial, is_direction: self.sensor.is_direction() };
+            let is_direction = self.sensor.subject() == Subject::Direction;
+            let vector_measurement = VectorMeasurement { vector, inertial, is_direction };
             Some(Reading { at: truth.orientation, rate: None, sight: Some(vector_measurement) })
         });
         with_failures(self.sensor.faults(), now, reading, last)

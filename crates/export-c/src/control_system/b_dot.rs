@@ -4,7 +4,6 @@ use flexsc_core::Scenario;
 use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::flight_quantity::FlightQuantity;
 use flexsc_core::control::law::LawKind;
-use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::time::Span;
 use flexsc_flight::b_dot::{FieldRate, limited_moment, opposing_moment};
 use flexsc_flight::ticks::Ticks;
@@ -39,7 +38,7 @@ impl BDotLaws {
             let reason = "has laws with different periods: give them one period";
             return Err(NotExportable::new("law.per_axis", reason));
         }
-        let Some(magnetometer) = scenario.sensor.iter().position(SensorKind::measures_field) else {
+        let Some(magnetometer) = scenario.sensor.iter().position(|sensor| sensor.measures_field()) else {
             return Err(NotExportable::new("law.b_dot", "needs a `[sensor.magnetometer]`"));
         };
         Ok(Self {

@@ -1,7 +1,8 @@
 //! Actuators written in Python: they make torques of what is demanded, about each axis.
 
 use flexsc_core::control::actuator::{
-    Actuator, ActuatorEvent, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
+    Actuator, ActuatorEvent, ActuatorPlacement, ActuatorSpec, AxisActuatorContext as EngineSetting,
+    AxisEffort, Demand,
 };
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::part::{Part, ReportContext};
@@ -149,7 +150,7 @@ impl PythonActuator {
 }
 
 impl ActuatorSpec for PythonActuator {
-    fn start(&self, settings: &[EngineSetting]) -> Box<dyn Actuator> {
+    fn start(&self, settings: &[EngineSetting], _: &ActuatorPlacement<'_>) -> Box<dyn Actuator> {
         let reported: Vec<Setting> = settings
             .iter()
             .map(|setting| Setting {

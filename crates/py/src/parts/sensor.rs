@@ -39,7 +39,7 @@ impl PythonSensor {
 }
 
 impl SensorSpec for PythonSensor {
-    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sensor> {
+    fn start(&self, axes: usize, seed: Seed, _: usize) -> Box<dyn Sensor> {
         let method = Python::attach(|py| {
             let started =
                 Py::new(py, Draws(seed)).and_then(|draws| self.object.started_copy(py, (axes, draws)));
@@ -48,15 +48,15 @@ impl SensorSpec for PythonSensor {
         Box::new(Reads(method, self.signals.clone()))
     }
 
-    fn period(&self) -> Span {
-        self.period
+    fn period(&self, _: Option<Span>) -> Option<Span> {
+        Some(self.period)
     }
 
     fn angle_noise(&self) -> f64 {
         self.angle_noise
     }
 
-    fn rate_noise(&self) -> Option<f64> {
+    fn rate_noise(&self, _: usize) -> Option<f64> {
         self.rate_noise
     }
 }

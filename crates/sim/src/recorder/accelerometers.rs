@@ -35,7 +35,7 @@ impl Accelerometers {
                 scenario.model.spacecraft()?.mass,
                 point,
             );
-            let state = accelerometer.start(seed, scenario.sensor.index_in_kind(index));
+            let state = AccelerometerState::new(accelerometer, seed, scenario.sensor.index_in_kind(index));
             Some(MountedAccelerometer { index, mount, state, latest: None })
         };
         Self(scenario.sensor.accelerometers().filter_map(of).collect())

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::FiringMethod;
-use flexsc_core::control::adaptation::{AdaptationKind, Objective};
+use flexsc_core::control::adaptation::Objective;
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::metrics::MetricsCollector;
@@ -158,7 +158,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
-    let window = scenario.adaptation.as_ref().and_then(AdaptationKind::window);
+    let window = scenario.adaptation.as_ref().and_then(|adaptation| adaptation.window());
     let measures =
         window.is_some_and(|window| scenario.goal().from + window <= Instant::START + scenario.duration);
     add(measures, "/objective", Events);

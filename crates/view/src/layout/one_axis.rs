@@ -1,7 +1,6 @@
 //! Panels of a one-axis body.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::dynamics::axis_model::{AxisModel, AxisOutput};
 
 use super::Tab;
@@ -11,7 +10,7 @@ use crate::scene::Extent;
 /// Returns true if a scenario has a filter that acts at samples.
 pub fn filters(scenario: &Scenario) -> bool {
     let estimator = scenario.estimator.as_ref();
-    estimator.is_some_and(EstimatorKind::filters_measurements)
+    estimator.is_some_and(|estimator| estimator.filters_measurements())
 }
 
 /// Returns true if the law feeds back after a manoeuvre, or if there is no manoeuvre.

@@ -16,7 +16,7 @@ fn start(keys: &str) -> ControlMomentGyrosState {
         waveform: None,
         share: 1.0,
     };
-    gyros.start(&gyros.axes().unwrap(), &[0, 1, 2].map(setting))
+    ControlMomentGyrosState::new(&gyros, &gyros.axes().unwrap(), &[0, 1, 2].map(setting))
 }
 
 fn at(seconds: f64) -> Instant {

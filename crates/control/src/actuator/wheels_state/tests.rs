@@ -21,7 +21,7 @@ fn start(keys: &str) -> WheelsState {
         waveform: None,
         share: 1.0,
     };
-    wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
+    WheelsState::new(&wheels, &wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }
 
 fn at(seconds: f64) -> Instant {

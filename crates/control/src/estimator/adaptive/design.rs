@@ -5,6 +5,7 @@ use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::{Finite, Frequency};
 
 use super::{Adaptive, MergedTracker, ObserverForm, Tracker, bounds, merge};
+use crate::estimator::EstimatorSpec;
 
 /// Design of the observers of all axes, from the scenario and its body.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +61,7 @@ impl ObserverDesign {
     /// # Errors
     /// A `ConfigError` with a key within the estimator and the reason.
     pub fn new(spec: &Adaptive, measured: &RateMeasurement, period: f64) -> Result<Self, ConfigError> {
-        if let Some(fault) = spec.inconsistency() {
+        if let Some(fault) = spec.validate() {
             return Err(fault);
         }
         let axes = measured.inputs.len();
@@ -168,12 +169,12 @@ fn started(
         ConfigError::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
     };
     let (wrong, reach) = match form {
-        ObserverForm::Gradient(form) => (form.inconsistency(designed, inputs, period), form.reach),
+        ObserverForm::Gradient(form) => (form.validate(designed, inputs, period), form.reach),
         ObserverForm::Recurrence(_) if designed.len() > 1 => {
             let why = format!("must be one mode in the form `recurrence`, got {}", designed.len());
             return Err(with_axis(ConfigError::new("trackers", why)));
         }
-        ObserverForm::Recurrence(form) => (form.inconsistency(&designed[0], period), form.reach),
+        ObserverForm::Recurrence(form) => (form.validate(&designed[0], period), form.reach),
     };
     if let Some(fault) = wrong {
         let kind = if matches!(form, ObserverForm::Gradient(_)) { "gradient" } else { "recurrence" };

@@ -68,7 +68,7 @@ fn is_above(phase: &ModeVector, bound: f64) -> bool {
 
 /// Returns the first key of either form that is inconsistent with the others, the trackers, the number of inputs or the
 /// sampling period (s), and the reason. Bounds and reach are relative to the initial values.
-fn inconsistency(
+fn validate(
     damping: NonNegative,
     influence_bounds: [NonNegative; 2],
     reach: Positive,
@@ -89,7 +89,7 @@ fn inconsistency(
     if reach <= 1.0 {
         return error_at("reach", format!("must be above 1, got {reach}"));
     }
-    tracker::inconsistency(trackers, reach, inputs, period)
+    tracker::validate(trackers, reach, inputs, period)
 }
 
 /// Run-time observer of one axis: at each sample `update`, then `advance` over the cycle that follows.

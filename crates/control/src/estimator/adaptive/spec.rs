@@ -2,11 +2,16 @@
 
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, NonNegative};
+use flexsc_numerics::random::Seed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Gradient, Recurrence, Tracker};
-use crate::offers::Offers;
+use super::{Gradient, ObserverSet, Recurrence, Tracker};
+use crate::estimator::pass_through::PassThrough;
+use crate::estimator::requirements::require_modes;
+use crate::estimator::sample_cost::ADAPTIVE_S;
+use crate::estimator::{Estimator, EstimatorContext, EstimatorSpec};
+use crate::offers::{EstimatorOffers, Offers};
 use crate::requirement::{Requirements, Rule};
 
 /// Tolerance of rounded shares of the demand.
@@ -98,9 +103,45 @@ impl Default for Adaptive {
     }
 }
 
-impl Adaptive {
-    /// Adds the requirements of the observers on the other parts of a scenario.
-    pub(in crate::estimator) fn requires(offers: &Offers, needs: &mut Requirements) {
+impl EstimatorSpec for Adaptive {
+    fn start(&self, known: &EstimatorContext<'_>, _: Seed) -> Box<dyn Estimator> {
+        known
+            .adaptive
+            .map_or_else(|| Box::new(PassThrough) as _, |design| Box::new(ObserverSet::new(design)) as _)
+    }
+
+    fn offers(&self) -> EstimatorOffers {
+        EstimatorOffers {
+            dominant_mode: true,
+            elastic_rates: true,
+            estimates_rates_only: true,
+            ..EstimatorOffers::default()
+        }
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        let error_at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        for (key, error) in
+            [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
+        {
+            if error.get() <= -1.0 {
+                return error_at(key, format!("must be above -1, got {}", error.get()));
+            }
+        }
+        if self.count() == 0 {
+            return error_at("count", "must be 1 or more, got 0".to_owned());
+        }
+        if self.recurs() && self.count() > 1 {
+            let why = format!("must be 1 in the form `recurrence`, got {}", self.count());
+            return error_at("count", why);
+        }
+        if self.recurs() && self.uses_cross_axis() {
+            return error_at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
+        }
+        None
+    }
+
+    fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         needs.require(
             Rule::ObserverInputs,
             !offers.has_actuator(|actuator| actuator.programs_pulses),
@@ -115,8 +156,15 @@ impl Adaptive {
             "",
             "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
         );
+        require_modes(self, offers, needs);
     }
 
+    fn sample_seconds(&self, _: usize, modes: f64) -> f64 {
+        modes * ADAPTIVE_S
+    }
+}
+
+impl Adaptive {
     /// Returns true for the form `recurrence`.
     fn recurs(&self) -> bool {
         matches!(self.form, ObserverForm::Recurrence(_))
@@ -145,28 +193,5 @@ impl Adaptive {
             }
         }
         form
-    }
-
-    /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let error_at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        for (key, error) in
-            [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
-        {
-            if error.get() <= -1.0 {
-                return error_at(key, format!("must be above -1, got {}", error.get()));
-            }
-        }
-        if self.count() == 0 {
-            return error_at("count", "must be 1 or more, got 0".to_owned());
-        }
-        if self.recurs() && self.count() > 1 {
-            let why = format!("must be 1 in the form `recurrence`, got {}", self.count());
-            return error_at("count", why);
-        }
-        if self.recurs() && self.uses_cross_axis() {
-            return error_at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
-        }
-        None
     }
 }

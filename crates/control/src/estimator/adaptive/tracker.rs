@@ -106,7 +106,7 @@ pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
 
 /// Checks the trackers against the number of inputs, the sampling period (s) and each other; returns the first
 /// inconsistent key and the reason.
-pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<ConfigError> {
+pub fn validate(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<ConfigError> {
     if trackers.is_empty() {
         return Some(ConfigError::new("trackers", "must have at least one mode to track, got none"));
     }
@@ -202,7 +202,7 @@ mod tests {
         close(found[1].influence[0].get(), 2.8, 1e-12);
         assert_eq!(trackers(0.0).len(), 5);
         let two = &found[..2];
-        assert_eq!(inconsistency(two, 2.0, 1, CYCLE), None);
+        assert_eq!(validate(two, 2.0, 1, CYCLE), None);
         let [first, second] = bounds(two, 2.0, CYCLE)[..] else { panic!("two") };
         assert_eq!(first[1], second[0]);
         close(first[0], PI * 0.2476, 1e-12);
@@ -217,7 +217,7 @@ mod tests {
         };
         let wrong = |trackers: &[Tracker], inputs| {
             let ConfigError { key, why, .. } =
-                Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
+                Gradient::default().validate(trackers, inputs, CYCLE).expect("wrong");
             format!("{key} {why}")
         };
         for (found, expected) in [
@@ -249,9 +249,9 @@ mod tests {
         }
         let number = |value| NonNegative::new(value).expect("0 or more");
         let spec = Recurrence { influence_bounds: [2.0, 3.0].map(number), ..Recurrence::default() };
-        assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").key, "influence_bounds");
+        assert_eq!(spec.validate(&tracker(0.2, 2.0), CYCLE).expect("wrong").key, "influence_bounds");
         let spec = Gradient { damping: number(1.0), ..Gradient::default() };
-        assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").key, "damping");
+        assert_eq!(spec.validate(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").key, "damping");
         let unknown: Result<Gradient, _> = flexsc_formats::document::from_text("damping = 0.01\nlg = 0.1");
         assert!(unknown.is_err());
         let known: Gradient =

@@ -6,17 +6,22 @@ use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
 use flexsc_spacecraft::environment::OrbitEnvironment;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ElasticStates, FilterModes, GainMethod, GyroNoise};
+use super::{AttitudeFilterRun, ElasticStates, FilterModes, GainMethod, GyroNoise};
 use crate::estimator::kalman::Prior;
-use crate::offers::Offers;
+use crate::estimator::pass_through::PassThrough;
+use crate::estimator::requirements::require_window;
+use crate::estimator::sample_cost::{ATTITUDE_FILTER_S, ELASTIC_PRODUCTS, products_s};
+use crate::estimator::{Estimator, EstimatorContext, EstimatorSpec};
+use crate::offers::{EstimatorOffers, Offers};
 use crate::requirement::{Requirements, Rule};
-use crate::sensor::{Gyro, ReferenceNoise, SensorKind};
+use crate::sensor::{Gyro, ReferenceNoise, SensorKind, SensorSpec};
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -127,17 +132,48 @@ pub struct FilterSetup {
 /// Body, points at which its sensors are mounted, and true if jets drive it.
 pub type SensorMounts<'a> = (&'a ThreeAxisModel, &'a [String], bool);
 
-impl AttitudeFilter {
-    /// Adds the requirements of the filter on the other parts of a scenario, except its sensors.
-    pub(in crate::estimator) fn requires(offers: &Offers, needs: &mut Requirements) {
+impl EstimatorSpec for AttitudeFilter {
+    fn start(&self, known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator> {
+        let Some(setup) = known.attitude else { return Box::new(PassThrough) };
+        Box::new(AttitudeFilterRun::new(self, setup.clone(), seed.stream("prior")))
+    }
+
+    fn offers(&self) -> EstimatorOffers {
+        EstimatorOffers {
+            is_assessed_only: self.watch_only,
+            fuses_sensors: true,
+            needs_reader: true,
+            ..EstimatorOffers::default()
+        }
+    }
+
+    /// Adds the requirements of the filter except those on its sensors.
+    fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         needs.require(
             Rule::AttitudeAxes,
             offers.body.axes == 3,
             "",
             "is for three axes: use `[estimator.kalman]` for a body with one angle",
         );
+        require_window(self, needs);
     }
 
+    fn states(&self, _: usize) -> usize {
+        6
+    }
+
+    fn assessment(&self) -> Option<[NonNegative; 2]> {
+        self.assess
+    }
+
+    fn sample_seconds(&self, _: usize, _: f64) -> f64 {
+        self.elastic.as_ref().map_or(ATTITUDE_FILTER_S, |elastic| {
+            ELASTIC_PRODUCTS * products_s(6.0 + 3.0 * elastic.modes.len() as f64)
+        })
+    }
+}
+
+impl AttitudeFilter {
     /// Returns the setup for these sensors under a sky, with the law's period `cycle` and the sensors' mounts, if there
     /// are any.
     ///
@@ -167,7 +203,7 @@ impl AttitudeFilter {
                 let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
                 Ok(SensorRole::Corrects { latency, noise, gain: gain.map(Box::new) })
             }
-            None if index == read => Ok(SensorRole::Gyro { latency: gyro.latency() }),
+            None if index == read => Ok(SensorRole::Gyro { latency: gyro.rate_latency() }),
             None => Ok(SensorRole::None),
         };
         let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, ConfigError>>()?;
@@ -180,7 +216,8 @@ impl AttitudeFilter {
             return Err(ConfigError::new("", why));
         };
         let correct = roles.iter().filter(|role| matches!(role, SensorRole::Corrects { .. })).count();
-        if self.form == GainMethod::Steady && (correct > 1 || sensors.iter().any(SensorKind::measures_vector))
+        if self.form == GainMethod::Steady
+            && (correct > 1 || sensors.iter().any(|sensor| sensor.measures_vector()))
         {
             let why = "needs one attitude sensor and no vector sensors to have a steady state: use `extended` or `complementary`";
             return Err(ConfigError::new("form", why));
@@ -198,7 +235,7 @@ impl AttitudeFilter {
         sky: &OrbitEnvironment,
     ) -> Result<Option<OrbitEnvironment>, ConfigError> {
         let Some(degree) = self.field_degree else { return Ok(None) };
-        if !sensors.iter().any(SensorKind::measures_field) {
+        if !sensors.iter().any(|sensor| sensor.measures_field()) {
             let why = "is that of the field that a `magnetometer` measures, and there is none";
             return Err(ConfigError::new("field_degree", why));
         }
@@ -264,7 +301,7 @@ impl AttitudeFilter {
         let own = if gyro.integrates() {
             largest(&|axis| gyro.angle_random_walk.about(axis).get())
         } else {
-            largest(&|axis| gyro.rate_noise(axis)) * f64::sqrt(period)
+            largest(&|axis| gyro.rate_noise(axis).unwrap_or_default()) * f64::sqrt(period)
         };
         let angle_random_walk = self.angle_random_walk.map_or(own, Positive::get);
         if angle_random_walk <= 0.0 {

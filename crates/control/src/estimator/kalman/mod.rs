@@ -5,12 +5,14 @@
 
 mod filter;
 mod frequency_bounds;
+mod measurement_filter;
 mod model;
 mod sigma;
 mod steady_state;
 
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::flow::CoupledMatrices;
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Stream;
 use flexsc_spacecraft::body::Mode;
@@ -21,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::EstimateOutputs;
 
 pub use filter::{FilterLanes, FilterParameters, Innovation, KalmanFilter, Prediction};
+pub use measurement_filter::{FilterKeys, MeasurementFilter};
 pub use model::FilterModel;
 pub use steady_state::SteadyStateFilter;
 
@@ -123,6 +126,47 @@ pub struct FrequencyTracking {
     pub gate: NonNegative,
 }
 
+/// Settings of an extended Kalman filter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ExtendedKalman(pub FrequencyTracking);
+
+/// Settings of an unscented Kalman filter.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct UnscentedKalman(pub FrequencyTracking);
+
+impl MeasurementFilter for ExtendedKalman {
+    fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
+        self.0.filter(setting, Prediction::Extended, draws)
+    }
+
+    fn keys(&self) -> FilterKeys<'_> {
+        self.0.keys()
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        self.0.validate()
+    }
+}
+
+impl MeasurementFilter for UnscentedKalman {
+    /// Number of passes through the sigma points, relative to the other filters.
+    const PASSES: f64 = 4.0;
+
+    fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
+        self.0.filter(setting, Prediction::Unscented, draws)
+    }
+
+    fn keys(&self) -> FilterKeys<'_> {
+        self.0.keys()
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        self.0.validate()
+    }
+}
+
 /// Standard deviations of a filter's estimate at the start.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -193,9 +237,19 @@ pub struct FilterContext<'a> {
     pub rate_noise: Option<f64>,
 }
 
-impl Kalman {
-    /// Creates the filter for a setting; `draws` supplies a drawn prior.
-    pub fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
+impl MeasurementFilter for Kalman {
+    fn keys(&self) -> FilterKeys<'_> {
+        FilterKeys {
+            modes: self.modes.as_deref(),
+            angle_noise: self.angle_noise,
+            assess: self.assess,
+            feeds: self.feeds,
+            watch_only: self.watch_only,
+            ratios: None,
+        }
+    }
+
+    fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
         let body = filter_body(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
         let (transition, input) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
@@ -220,8 +274,19 @@ impl Kalman {
 }
 
 impl FrequencyTracking {
+    fn keys(&self) -> FilterKeys<'_> {
+        FilterKeys {
+            modes: self.modes.as_deref(),
+            angle_noise: self.angle_noise,
+            assess: self.assess,
+            feeds: self.feeds,
+            watch_only: self.watch_only,
+            ratios: Some(self.ratios),
+        }
+    }
+
     /// Creates the filter for a setting, extended or unscented by `prediction`; `draws` supplies a drawn prior.
-    pub fn filter(
+    fn filter(
         &self,
         setting: &FilterContext<'_>,
         prediction: Prediction,

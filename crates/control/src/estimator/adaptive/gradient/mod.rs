@@ -54,7 +54,7 @@ impl Default for Gradient {
 impl Gradient {
     /// Checks the settings against each other, the trackers, the number of inputs and the sampling period (s); returns
     /// the first inconsistent key and the reason.
-    pub fn inconsistency(&self, trackers: &[Tracker], inputs: usize, period: f64) -> Option<ConfigError> {
-        super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
+    pub fn validate(&self, trackers: &[Tracker], inputs: usize, period: f64) -> Option<ConfigError> {
+        super::validate(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
     }
 }

@@ -77,8 +77,8 @@ impl Default for Recurrence {
 impl Recurrence {
     /// Checks the settings against each other, a tracker and the sampling period (s); returns the first inconsistent
     /// key and the reason.
-    pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<ConfigError> {
+    pub fn validate(&self, tracker: &Tracker, period: f64) -> Option<ConfigError> {
         let trackers = std::slice::from_ref(tracker);
-        super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
+        super::validate(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
     }
 }
