@@ -141,7 +141,9 @@ fn a_kind_is_named_in_its_file_and_in_the_list_of_kinds() {
     }
     assert!(all.len() > 1000, "{}", all.len());
     all.retain(|(name, _)| !name.ends_with("tests.rs"));
-    all.iter_mut().for_each(|(_, text)| *text = code(text));
+    for (_, text) in &mut all {
+        *text = code(text);
+    }
     for (role, variant, settings, key, others) in KINDS {
         let folder = format!("crates/control/src/{}/", role.trim_end_matches("Kind").to_lowercase());
         let names = |(name, text): &&(String, String)| {
