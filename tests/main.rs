@@ -54,6 +54,7 @@ mod attitude_filter;
 mod bearings;
 mod blinding;
 mod budget_levels;
+mod conflicts;
 mod convergence;
 mod cycles;
 mod damaged_fe_results;

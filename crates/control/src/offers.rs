@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use flexsc_numerics::time::Span;
 
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::EstimateNeeds;
 
 /// Offers of all parts of a scenario.
@@ -58,8 +58,8 @@ pub struct BodyOffers {
     pub drifts: bool,
     /// True if appendages turn on drives or hinges.
     pub turns_appendages: bool,
-    /// Names of the points of the hub, of a body with such appendages.
-    pub hub_points: Vec<String>,
+    /// Names of the points of such appendages, whose motion is not computed.
+    pub moving_points: Vec<String>,
     /// True if there is a planned manoeuvre.
     pub has_manoeuvre: bool,
 }
@@ -191,7 +191,7 @@ pub struct ActuatorPlace<'a> {
 impl ActuatorPlace<'_> {
     /// Adds the requirement that there is no earlier actuator of the same kind.
     pub fn require_single(&self, needs: &mut Requirements, why: &str) {
-        needs.require_with(Rule::Repetition, self.twin.is_none(), "", || {
+        needs.require_with(self.twin.is_none(), "", || {
             format!("are there already, as `{}`: {why}", self.twin.unwrap_or_default())
         });
     }
@@ -279,9 +279,9 @@ pub struct EstimatorOffers {
 }
 
 impl BodyOffers {
-    /// Returns true if the motion of a point is computed; that of points on appendages is not where these turn.
+    /// Returns true if the motion of a point of the body is computed; that of points on appendages is not where these turn.
     pub fn has_motion_at(&self, point: &str) -> bool {
-        !self.turns_appendages || self.hub_points.iter().any(|own| own == point)
+        !self.moving_points.iter().any(|moving| moving == point)
     }
 }
 
@@ -332,9 +332,8 @@ impl Offers {
     }
 
     /// Adds the requirement of three axes; `instead` is an alternative for one, after a colon.
-    pub fn require_three_axes(&self, needs: &mut Requirements, rule: Rule, key: &str, instead: &str) {
-        needs.require_with(rule, self.body.axes == 3, key, || {
-            format!("is for a body with three axes, and the body is `{}`{instead}", self.body.kind)
-        });
+    pub fn require_three_axes(&self, needs: &mut Requirements, key: &str, instead: &str) {
+        let why = format!("is for a body with three axes, and the body is `{}`{instead}", self.body.kind);
+        needs.require_axes(self.body.axes == 3, key, &why);
     }
 }

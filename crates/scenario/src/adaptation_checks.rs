@@ -4,22 +4,24 @@ use flexsc_control::law::Tunable;
 use flexsc_control::offers::Offers;
 use flexsc_formats::document::ConfigError;
 
-use super::Scenario;
+use super::ScenarioSpec;
 
-impl Scenario {
-    pub(super) fn validate_adaptation(&self, offers: &Offers) -> Option<ConfigError> {
-        let adaptation = self.adaptation.as_ref()?;
+impl ScenarioSpec {
+    pub(super) fn validate_adaptation(&self, offers: &Offers, errors: &mut Vec<ConfigError>) {
+        let Some(adaptation) = &self.adaptation else { return };
         let tunable = self.law.tunable();
         let place = format!("adaptation.{}", adaptation.kind());
+        errors.extend(adaptation.objective_error(offers).map(|error| error.within(&place)));
         let Some(number) = tunable.iter().find(|number| number.key == adaptation.tunes()) else {
             let key = if tunable.is_empty() { "" } else { "tunes" };
-            return Some(ConfigError::new(key, self.untunable(adaptation.tunes(), &tunable)).within(&place));
+            errors.push(ConfigError::new(key, self.untunable(adaptation.tunes(), &tunable)).within(&place));
+            return;
         };
-        if let Some(fault) = adaptation.objective_error(offers).or_else(|| adaptation.bounds_error(number)) {
-            return Some(fault.within(&place));
+        if let Some(error) = adaptation.bounds_error(number) {
+            errors.push(error.within(&place));
+        } else if let Some(why) = adaptation.start_error(number.value) {
+            errors.push(ConfigError::new(adaptation.tunes(), why).within(&self.law.key()));
         }
-        let why = adaptation.start_error(number.value)?;
-        Some(ConfigError::new(adaptation.tunes(), why).within(&self.law.key()))
     }
 
     /// Returns the reason why the law has no parameter `tunes`.

@@ -1,12 +1,9 @@
-//! Appendage drives of a scenario: their angles over the run, known before it begins, and checks of parts that need fixed
-//! appendages.
+//! Appendage drives of a scenario: their angles over the run, known before it begins.
 
 use std::sync::Arc;
 
 use flexsc_control::drive_profile::{DriveProfile, DriveProfiles, SunTracking};
 use flexsc_control::law::TargetFrame;
-use flexsc_control::offers::Offers;
-use flexsc_control::requirement::{OFF_HUB, Requirements, Rule};
 use flexsc_dynamics::three_axis::ArticulatedBody;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::{Instant, Span};
@@ -14,7 +11,7 @@ use flexsc_spacecraft::body::BodyModel;
 use flexsc_spacecraft::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
 use nalgebra::Quaternion;
 
-use super::{ResolvedScenario, Scenario, ScenarioSpec};
+use super::{ResolvedScenario, ScenarioSpec};
 
 /// Largest change of a drive angle (rad) before the modes are replaced by those of another angle.
 const APART: f64 = 1.0 / 32.0;
@@ -179,22 +176,6 @@ impl ScenarioSpec {
              model neglects too much"
         );
         Err(ConfigError::new(format!("appendage[{index}].drive.rate"), why))
-    }
-}
-
-impl Scenario {
-    /// Returns the error of a part that is incompatible with drives and hinges.
-    pub(super) fn validate_drives(&self, offers: &Offers, unmet: &Requirements) -> Option<ConfigError> {
-        self.study.drives.as_ref()?;
-        if let Some(fault) = unmet.first(Rule::FixedSensors) {
-            return Some(fault);
-        }
-        let points = self.disturbance.iter().map(|disturbance| disturbance.point.as_deref());
-        let mut moving = points.map(|point| point.is_some_and(|point| !offers.body.has_motion_at(point)));
-        if let Some(index) = moving.position(|is_moving| is_moving) {
-            return Some(ConfigError::new(format!("disturbance[{index}].point"), OFF_HUB));
-        }
-        unmet.first_of(Rule::FixedJets..=Rule::FixedBearings)
     }
 }
 

@@ -43,8 +43,8 @@ pub struct BoundSpec {
 }
 
 impl BoundSpec {
-    /// Returns an inconsistency of the values with each other: the key, and the reason.
-    pub(super) fn fault(&self) -> Option<ConfigError> {
+    /// Checks the values against each other; returns the inconsistent key and the reason.
+    pub(super) fn validate(&self) -> Option<ConfigError> {
         if let Some(fault) = self.limits.and_then(|limits| unordered("limits", limits)) {
             return Some(fault);
         }

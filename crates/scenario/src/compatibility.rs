@@ -2,14 +2,16 @@
 
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget, PlacedLaw, Stage};
 use flexsc_control::offers::{AxisLaw, BodyOffers, EnvironmentOffers, Offers};
-use flexsc_control::requirement::{Requirements, Rule};
+use flexsc_control::requirement::Requirements;
 use flexsc_dynamics::axis_model::CommandedQuantity;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::Span;
 use flexsc_spacecraft::body::{Body, BodyAxes, BodyModel};
-use flexsc_spacecraft::disturbance::Disturbance;
 
-use super::ScenarioSpec;
+use super::{ScenarioSpec, requirement_checks};
+
+/// Period of the cycles if neither law nor sensors have a period (s).
+const DEFAULT_CYCLE: f64 = 1.0;
 
 /// Distance from the planet's centre (m) up to which directions to the Moon change slowly.
 const BELOW_MOON: f64 = 1e8;
@@ -21,6 +23,11 @@ impl ScenarioSpec {
         let samples = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
         // With an estimator that works on samples, a continuous sensor is sampled at the law's period.
         self.sensor.period(cycle).or(cycle.filter(|_| samples))
+    }
+
+    /// Returns the period of the cycles of a three-axis body: that of the law, else of the sensors, else 1 s.
+    pub(super) fn assessment_period(&self) -> Span {
+        self.law.period().or(self.sample_period()).unwrap_or(Span::from_seconds(DEFAULT_CYCLE))
     }
 
     /// Returns the offers of all parts.
@@ -56,12 +63,12 @@ impl ScenarioSpec {
 
     fn body_offers(&self, model: &BodyModel) -> BodyOffers {
         let one_axis = model.one_axis();
-        let turns_appendages = model.three_axis().is_some_and(|body| body.articulation.is_some());
-        let hub_points = match &self.spacecraft {
-            Some(craft) if turns_appendages && craft.points.is_empty() => vec!["hub".to_owned()],
-            Some(craft) if turns_appendages => craft.points.iter().map(|point| point.name.clone()).collect(),
-            _ => Vec::new(),
+        let articulated = model.three_axis().filter(|body| body.articulation.is_some());
+        let is_of_hub = |name: &str| match self.spacecraft.as_ref().map(|craft| &craft.points[..]) {
+            None | Some([]) => name == "hub",
+            Some(points) => points.iter().any(|point| point.name == name),
         };
+        let points = articulated.into_iter().flat_map(|body| &body.points).map(|point| point.name.clone());
         BodyOffers {
             axes: self.axis_count(),
             kind: self.body_kind(),
@@ -74,8 +81,8 @@ impl ScenarioSpec {
             follows_motion: one_axis.is_some_and(|body| body.drive == CommandedQuantity::Motion),
             damping_matrix: one_axis.filter(|body| body.is_coupled()).map(|_| self.damping_key()),
             drifts: self.drift.is_some(),
-            turns_appendages,
-            hub_points,
+            turns_appendages: articulated.is_some(),
+            moving_points: points.filter(|name| !is_of_hub(name)).collect(),
             has_manoeuvre: self.manoeuvre.is_some(),
         }
     }
@@ -99,8 +106,10 @@ impl ScenarioSpec {
         }
     }
 
-    /// Returns the requirements of the parts that the others do not meet.
-    pub(super) fn unmet_requirements(&self, offers: &Offers) -> Requirements {
+    /// Returns all errors of the parts: of their own keys, and of their combination.
+    pub(super) fn conflicts(&self, model: &BodyModel, offers: &Offers) -> Vec<ConfigError> {
+        let mut errors = Vec::new();
+        self.validate_keys(&mut errors);
         let mut needs = Requirements::default();
         self.law.add_requirements(offers, &mut needs);
         self.sensor.add_requirements(offers, &mut needs);
@@ -108,49 +117,66 @@ impl ScenarioSpec {
         if let Some(estimator) = &self.estimator {
             estimator.add_requirements(offers, &mut needs);
         }
-        needs
+        errors.extend_from_slice(needs.invalid());
+        let valid = errors.len();
+        errors.extend_from_slice(needs.wrong_axes());
+        self.require_axes(&mut errors);
+        // What parts require of each other follows from the number of axes, which may be the error.
+        if errors.len() == valid {
+            self.validate_combination(model, offers, needs.unmet(), &mut errors);
+        }
+        // A law about three axes requires the same of the others about each.
+        let is_new = |index: usize| !errors[..index].contains(&errors[index]);
+        (0..errors.len()).filter(|index| is_new(*index)).map(|index| errors[index].clone()).collect()
     }
 
-    /// Checks that the parts of the scenario are compatible, in the order in which errors are reported.
-    ///
-    /// # Errors
-    /// Fails with the first key that is incompatible with the others, and the reason.
-    pub(super) fn validate_compatibility(
+    /// Checks the combination of parts that are for the axes of the body, with their unmet requirements on each other. This is the
+    /// place that knows which errors are mere consequences of others.
+    fn validate_combination(
         &self,
         model: &BodyModel,
         offers: &Offers,
-        unmet: &Requirements,
-    ) -> Result<(), ConfigError> {
-        let checks: [&dyn Fn() -> Option<ConfigError>; 18] = [
-            &|| self.validate_modes(model, offers),
-            &|| unmet.first_of(Rule::AxisLaws..=Rule::MomentAxes),
-            &|| self.validate_one_axis_tables(),
-            &|| unmet.first_of(Rule::SensorPoint..=Rule::OneNumber),
-            &|| self.validate_one_axis_disturbances(),
-            &|| self.validate_three_axis_tables(),
-            &|| self.validate_small_angles(model),
-            &|| unmet.first(Rule::BackEmf),
-            &|| self.validate_assignments(),
-            &|| unmet.first_of(Rule::Repetition..=Rule::Phase),
-            &|| self.validate_shares(offers),
-            &|| self.validate_environment(),
-            &|| self.validate_targets(model),
-            &|| unmet.first(Rule::Law),
-            &|| unmet.first_of(Rule::Sensor..=Rule::Accelerometer),
-            &|| self.validate_sensor_set(offers),
-            &|| unmet.first_of(Rule::MagneticField..=Rule::JetCycle),
-            &|| unmet.first_of(Rule::DominantMode..=Rule::EstimatorInputs),
-        ];
-        checks.iter().find_map(|check| check()).map_or(Ok(()), Err)
+        unmet: &[ConfigError],
+        errors: &mut Vec<ConfigError>,
+    ) {
+        errors.extend_from_slice(unmet);
+        self.validate_modes(model, offers, errors);
+        self.validate_environment(errors);
+        self.validate_drift(model, errors);
+        self.validate_unloading(errors);
+        self.validate_failures(model, errors);
+        self.validate_adaptation(offers, errors);
+        match model.axes() {
+            BodyAxes::One(body) => self.validate_one_axis(body, offers, errors),
+            BodyAxes::Three(body) => self.validate_three_axis(model, body, offers, errors),
+        }
+        requirement_checks::assessed(self, model, self.assessment_period(), errors);
+        errors.extend(self.topic_conflict());
+        // A sensor, an estimator or an actuator that has to change, or to go, measures, combines or executes something else then.
+        if is_valid("sensor", errors) && is_valid("estimator", errors) {
+            self.require_sensor_set(offers, errors);
+        }
+        if is_valid("actuator", errors) {
+            self.require_shares(offers, errors);
+        }
+        // Directions and times of targets follow from the environment.
+        if is_valid("environment", errors) {
+            self.validate_targets(model, errors);
+        }
     }
 
-    /// Checks that a one-axis body has no tables for three axes.
-    fn validate_one_axis_tables(&self) -> Option<ConfigError> {
+    /// Checks that tables are for the axes of the body.
+    fn require_axes(&self, errors: &mut Vec<ConfigError>) {
         if self.axis_count() == 3 {
-            return None;
+            if self.manoeuvre.is_some() {
+                let why = "is for bodies with one angle: use `[[target]]` for three axes";
+                errors.push(ConfigError::new("manoeuvre", why));
+            }
+            return;
         }
+        let turned = "a `[manoeuvre]` turns a body with one angle";
         let tables = [
-            ("target", !self.target.is_empty(), "a `[manoeuvre]` turns a body with one angle"),
+            ("target", !self.target.is_empty(), turned),
             ("environment", self.environment.is_some(), "a `[[disturbance]]` acts on a body with one angle"),
             (
                 "line_of_sight",
@@ -158,56 +184,59 @@ impl ScenarioSpec {
                 "the angle, or an output, is that of a body with one angle",
             ),
         ];
-        let (key, _, instead) = tables.into_iter().find(|(_, is_given, _)| *is_given)?;
         let kind = self.body_kind();
-        let why = format!("is for a body with three axes, and the body is `{kind}`: {instead}");
-        Some(ConfigError::new(key, why))
+        for (key, _, instead) in tables.into_iter().filter(|(_, is_given, _)| *is_given) {
+            let why = format!("is for a body with three axes, and the body is `{kind}`: {instead}");
+            errors.push(ConfigError::new(key, why));
+        }
+        for index in (0..self.mode.len()).filter(|index| self.mode[*index].target.is_some()) {
+            let why = format!("is for a body with three axes: {turned}");
+            errors.push(ConfigError::new(format!("mode[{index}].target"), why));
+        }
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            errors.extend(
+                disturbance.validate_one_axis().map(|error| error.within(&format!("disturbance[{index}]"))),
+            );
+        }
+        for (index, _) in self.actuator.iter().enumerate().filter(|(_, of)| of.axes.is_some()) {
+            let key = self.actuator.key("actuator", index);
+            // An actuator for three axes has to go with its axes.
+            if is_valid(&key, errors) {
+                let why = "names axes of three, and the body has one angle: leave it out";
+                errors.push(ConfigError::new("axes", why).within(&key));
+            }
+        }
     }
 
-    fn validate_one_axis_disturbances(&self) -> Option<ConfigError> {
-        let list = Some(&self.disturbance).filter(|_| self.axis_count() == 1)?;
-        Disturbance::validate_one_axis(list).map(|fault| fault.within("disturbance"))
-    }
-
-    /// Checks that a three-axis body has no tables for one axis, and that its disturbances have a direction.
-    fn validate_three_axis_tables(&self) -> Option<ConfigError> {
-        if self.axis_count() == 1 {
-            return None;
-        }
-        if self.manoeuvre.is_some() {
-            let why = "is for bodies with one angle: use `[[target]]` for three axes";
-            return Some(ConfigError::new("manoeuvre", why));
-        }
-        if self.drift.is_some() && self.spacecraft.is_some() {
-            let why = "is for modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` can turn";
-            return Some(ConfigError::new("drift", why));
-        }
-        self.disturbance.iter().enumerate().find_map(|(index, disturbance)| {
-            Some(disturbance.validate_three_axis()?.within(&format!("disturbance[{index}]")))
-        })
-    }
-
-    fn validate_targets(&self, model: &BodyModel) -> Option<ConfigError> {
+    fn validate_targets(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
         let own = self.law.own_targets();
-        if !own.is_empty() {
-            let key = format!("law.{}.targets", self.law.kind());
-            if !self.target.is_empty() {
-                let why = format!("are those of the scenario: leave out `{key}`");
-                return Some(ConfigError::new("target", why));
-            }
-            // The order of the targets is checked with the law.
-            if AttitudeTarget::validate_order(own).is_some() {
-                return None;
-            }
-            let fault = AttitudeProfile::validate(own, &self.orbit_environment(), &model.free_modes())?;
-            return Some(fault.within(&key));
+        let key = self.targets_key();
+        if !own.is_empty() && !self.target.is_empty() {
+            errors.push(ConfigError::new("target", format!("are those of the scenario: leave out `{key}`")));
+            return;
         }
-        if let Some((late, why)) = AttitudeTarget::validate_order(&self.target) {
-            return Some(ConfigError::new(format!("target[{late}].from"), why));
-        }
-        AttitudeProfile::validate(&self.target, &self.orbit_environment(), &model.free_modes())
-            .map(|fault| fault.within("target"))
+        let targets = if own.is_empty() { &self.target } else { own };
+        let error = match AttitudeTarget::validate_order(targets) {
+            // The order of the law's own targets is checked with the law.
+            Some(_) if !own.is_empty() => None,
+            Some((late, why)) => Some(ConfigError::new(format!("[{late}].from"), why)),
+            None => AttitudeProfile::validate(targets, &self.orbit_environment(), &model.free_modes()),
+        };
+        errors.extend(error.map(|error| error.within(&key)));
     }
+
+    /// Returns the key of the targets: of those of the law if it has its own.
+    pub(super) fn targets_key(&self) -> String {
+        match self.law.own_targets() {
+            [] => "target".to_owned(),
+            _ => format!("law.{}.targets", self.law.kind()),
+        }
+    }
+}
+
+/// Returns true if there is no error of a part, of which this is the begin of the key.
+fn is_valid(part: &str, errors: &[ConfigError]) -> bool {
+    !errors.iter().any(|error| error.key.starts_with(part))
 }
 
 /// Returns index and value of the first damping ratio at or above 1.

@@ -2,139 +2,224 @@
 
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::Offers;
-use flexsc_control::requirement::{Requirements, Rule};
+use flexsc_control::requirement::OFF_HUB;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
-use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
-use flexsc_spacecraft::disturbance::Disturbance;
+use flexsc_spacecraft::body::{BodyAxes, BodyModel};
 
-use super::{LineOfSight, Scenario, file_name, meant};
+use super::uncertain::{Correlated, Distribution};
+use super::{Scenario, ScenarioSpec, file_name, meant};
 
-impl Scenario {
-    /// Checks that the keys are consistent with each other.
-    ///
-    /// # Errors
-    /// Fails with the first inconsistent key, and the reason.
-    pub(super) fn validate(&self, offers: &Offers, unmet: &Requirements) -> Result<(), ConfigError> {
-        self.inconsistency(offers, unmet).map_or(Ok(()), Err)
-    }
-
-    fn inconsistency(&self, offers: &Offers, unmet: &Requirements) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        if let Err(fault) = file_name::validate(&self.name) {
-            return Some(fault);
-        }
+impl ScenarioSpec {
+    /// Checks the keys of tables that depend on no other part.
+    pub(super) fn validate_keys(&self, errors: &mut Vec<ConfigError>) {
+        errors.extend(file_name::validate(&self.name).err());
         // The first day of 2554 is the last whose nanoseconds since 1970 fit 64 bits.
         let longest = (u64::MAX - self.epoch_ns()) as f64 / 1e9;
-        if self.duration.seconds() >= longest {
+        let duration = self.duration.seconds();
+        if duration >= longest {
             let why = format!(
-                "must be below {longest:.4e} s, so that the log can count its nanoseconds from 1970, got {:e}",
-                self.duration.seconds()
+                "must be below {longest:.4e} s, so that the log can count its nanoseconds from 1970, got {duration:e}"
             );
-            return at("duration", why);
+            errors.push(ConfigError::new("duration", why));
         }
-        if let Some(impossible) = self.infeasible_key() {
-            return Some(impossible);
+        errors.extend(self.log.scene.validate().map(|error| error.within("log.scene")));
+        for (index, bound) in self.bound.iter().enumerate() {
+            errors.extend(bound.validate().map(|error| error.within(&format!("bound[{index}]"))));
         }
-        if let Some(fault) = self.log.scene.inconsistency() {
-            return Some(fault.within("log.scene"));
+        if let Some(pointing) = &self.reference.pointing {
+            let error = pointing.validate(self.axis_count());
+            errors.extend(error.map(|error| error.within("reference.pointing")));
         }
-        let bounds = self.bound.iter().enumerate();
-        let mut faults =
-            bounds.filter_map(|(index, bound)| Some(bound.fault()?.within(&format!("bound[{index}]"))));
-        if let Some(fault) = faults.next() {
-            return Some(fault);
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            let error = disturbance.validate_times();
+            errors.extend(error.map(|error| error.within(&format!("disturbance[{index}]"))));
         }
-        if let Some(pointing) = &self.reference.pointing
-            && let Some(fault) = pointing.fault(self.axis_count())
-        {
-            return Some(fault.within("reference.pointing"));
+        self.validate_assignments(errors);
+        for (index, group) in self.correlated.iter().enumerate() {
+            let error = self.validate_correlation(index, group);
+            errors.extend(error.map(|error| error.within(&format!("correlated[{index}]"))));
         }
-        // The compatibility of three-axis parts was checked before.
-        let parts = match self.model.axes() {
-            BodyAxes::One(body) => self.one_axis_inconsistency(body, offers, unmet),
-            BodyAxes::Three(body) => self.three_axis_inconsistency(body, offers, unmet),
+        if !self.uncertain.is_empty() {
+            self.validate_uncertain(errors);
+        }
+    }
+
+    fn validate_uncertain(&self, errors: &mut Vec<ConfigError>) {
+        let mut written = self.clone();
+        written.inline_files();
+        let mut table = written.to_table();
+        table.remove("uncertain");
+        table.remove("correlated");
+        for (key, distribution) in &self.uncertain {
+            let nominal = key::get(&table, key);
+            let Some(mut why) = distribution.validate(nominal) else { continue };
+            if let Some(near) =
+                Some(&table).filter(|_| nominal.is_none()).and_then(|table| meant::number(table, key))
+            {
+                why = format!("{why}; did you mean `{near}`?");
+            }
+            errors.push(ConfigError::new(format!("uncertain.\"{key}\""), why));
+        }
+    }
+
+    /// Checks a group of correlated keys; returns the inconsistent key of the group and the reason.
+    fn validate_correlation(&self, group: usize, correlated: &Correlated) -> Option<ConfigError> {
+        let why = |key: &String| match self.uncertain.get(key).map(Distribution::is_continuous) {
+            None => Some(format!("names `{key}`, which is no key of `[uncertain]`")),
+            Some(false) => Some(format!("names `{key}`, a choice: only numbers of a range are correlated")),
+            Some(true) if self.correlated[..group].iter().any(|other| other.keys.contains(key)) => {
+                Some(format!("names `{key}`, which is correlated with others already"))
+            }
+            Some(true) => None,
         };
-        parts.or_else(|| {
-            if self.uncertain.is_empty() && self.correlated.is_empty() {
-                return None;
-            }
-            if let Some(fault) = self.correlation_fault() {
-                return Some(fault);
-            }
-            let mut written = self.written.clone();
-            written.inline_files();
-            let mut table = written.to_table();
-            table.remove("uncertain");
-            table.remove("correlated");
-            self.uncertain.iter().find_map(|(key, distribution)| {
-                let why = distribution.validate(key::get(&table, key))?;
-                let near = if key::get(&table, key).is_none() { meant::number(&table, key) } else { None };
-                let why = near.map_or(why.clone(), |near| format!("{why}; did you mean `{near}`?"));
-                Some(ConfigError::new(format!("uncertain.\"{key}\""), why))
-            })
-        })
+        let error = correlated.keys.iter().find_map(why).map(|why| ConfigError::new("keys", why));
+        error.or_else(|| correlated.validate())
     }
 
-    /// Checks the groups of correlated keys.
-    fn correlation_fault(&self) -> Option<ConfigError> {
-        self.correlated.iter().enumerate().find_map(|(group, correlated)| {
-            let within = format!("correlated[{group}]");
-            let why = |key: &String| match self.uncertain.get(key) {
-                None => Some(format!("names `{key}`, which is no key of `[uncertain]`")),
-                Some(distribution) if !distribution.is_continuous() => {
-                    Some(format!("names `{key}`, a choice: only numbers of a range are correlated"))
-                }
-                _ if self.correlated[..group].iter().any(|other| other.keys.contains(key)) => {
-                    Some(format!("names `{key}`, which is correlated with others already"))
-                }
-                _ => None,
-            };
-            let fault = correlated.keys.iter().find_map(why).map(|why| ConfigError::new("keys", why));
-            fault.or_else(|| correlated.validate()).map(|fault| fault.within(&within))
-        })
-    }
-
-    fn three_axis_inconsistency(
+    /// Checks the parts of a three-axis body.
+    pub(super) fn validate_three_axis(
         &self,
+        model: &BodyModel,
         body: &ThreeAxisModel,
         offers: &Offers,
-        unmet: &Requirements,
-    ) -> Option<ConfigError> {
-        self.validate_small_start(body, &self.study)
-            .or_else(|| self.validate_drives(offers, unmet))
-            .or_else(|| unmet.first(Rule::GainSchedule))
-            .or_else(|| self.timing_inconsistency(unmet))
-            .or_else(|| self.rate_inconsistency())
-            .or_else(|| self.validate_drift())
-            .or_else(|| self.validate_lines_of_sight(body, offers))
-            .or_else(|| unmet.first_of(Rule::EnvelopeModes..=Rule::Filter))
-            .or_else(|| self.validate_adaptation(offers))
+        errors: &mut Vec<ConfigError>,
+    ) {
+        self.validate_points(body, offers, errors);
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            let error = disturbance.validate_three_axis();
+            errors.extend(error.map(|error| error.within(&format!("disturbance[{index}]"))));
+        }
+        if body.small_angles.is_some() {
+            self.require_small_angles(model, body, errors);
+        }
+        for (index, line) in self.line_of_sight.iter().enumerate() {
+            let error = line.validate(body, offers);
+            errors.extend(error.map(|error| error.within(&format!("line_of_sight[{index}]"))));
+        }
     }
 
-    /// Checks the lines of sight.
-    fn validate_lines_of_sight(&self, body: &ThreeAxisModel, offers: &Offers) -> Option<ConfigError> {
-        let fault = |(index, line): (usize, &LineOfSight)| {
-            Some(line.fault(body, offers)?.within(&format!("line_of_sight[{index}]")))
-        };
-        self.line_of_sight.iter().enumerate().find_map(fault)
+    /// Checks the points at which sensors are mounted and forces act.
+    fn validate_points(&self, body: &ThreeAxisModel, offers: &Offers, errors: &mut Vec<ConfigError>) {
+        let sensors = self.sensor.iter().enumerate();
+        let sensors = sensors.map(|(index, sensor)| (self.sensor_key(index), sensor.point()));
+        let forces = self.disturbance.iter().enumerate();
+        let forces = forces.map(|(index, force)| (format!("disturbance[{index}]"), force.point.as_deref()));
+        for (key, point) in sensors.chain(forces).filter_map(|(key, point)| Some((key, point?))) {
+            let why = if body.point(point).is_none() {
+                format!("must be one of the body's points, {}, got `{point}`", body.point_names())
+            } else if key.starts_with("disturbance") && !offers.body.has_motion_at(point) {
+                OFF_HUB.to_owned()
+            } else {
+                continue;
+            };
+            errors.push(ConfigError::new("point", why).within(&key));
+        }
+    }
+
+    /// Checks the parts of a one-axis body.
+    pub(super) fn validate_one_axis(&self, body: &AxisModel, offers: &Offers, errors: &mut Vec<ConfigError>) {
+        self.require_separate_modes(body, errors);
+        self.require_uncoupled_torque(offers, errors);
+        if offers.body.follows_motion {
+            self.require_given_motion(offers, errors);
+        }
+        self.require_hub_torque(body, errors);
+    }
+
+    /// Adds the requirements of manoeuvre and drift on a damping matrix.
+    fn require_separate_modes(&self, body: &AxisModel, errors: &mut Vec<ConfigError>) {
+        if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
+            let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
+            errors.push(ConfigError::new(self.damping_key(), why));
+        }
+        if body.is_coupled() && self.drift.is_some() {
+            errors.push(ConfigError::new(self.damping_key(), "has no closed form for modes that drift"));
+        }
+    }
+
+    /// Adds the requirements of a wheel or of a drift, which couple the modes.
+    fn require_uncoupled_torque(&self, offers: &Offers, errors: &mut Vec<ConfigError>) {
+        let wheel = self.actuator.flywheel().map(|(_, key)| key);
+        if wheel.is_none() && self.drift.is_none() {
+            return;
+        }
+        let unsampled = wheel.is_some() && self.manoeuvre.is_some() && self.law.period().is_none();
+        let conflicts = [
+            (
+                unsampled,
+                "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`",
+            ),
+            (
+                offers.follows_waveform() && !unsampled,
+                "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters",
+            ),
+            (
+                offers.body.is_chain || offers.body.follows_motion,
+                "needs linear modes of a body that a torque drives",
+            ),
+        ];
+        let key = wheel.as_deref().unwrap_or("drift");
+        let conflicts = conflicts.into_iter().filter(|(applies, _)| *applies);
+        errors.extend(conflicts.map(|(_, why)| ConfigError::new(key, why)));
+    }
+
+    /// Adds the requirement that no torque acts on a hub that follows a given motion.
+    fn require_given_motion(&self, offers: &Offers, errors: &mut Vec<ConfigError>) {
+        let disturbances = (0..self.disturbance.len()).map(|index| format!("disturbance[{index}]"));
+        let pulses = offers.actuators.iter().filter(|member| member.offers.pulses);
+        let law = offers.laws.iter().any(|law| !law.offers.is_open).then(|| "law".to_owned());
+        let torques = disturbances.chain(pulses.map(|member| member.key.clone())).chain(law);
+        let why = "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
+        errors.extend(torques.map(|key| ConfigError::new(key, why)));
+        if offers.body.is_chain {
+            let why = "must be \"linear\" where the hub's motion is given";
+            errors.push(ConfigError::new("body.panels.kinematics", why));
+        }
+    }
+
+    /// Adds the requirement that no other torque acts on the hub of a body whose modes have the gains of a load elsewhere.
+    fn require_hub_torque(&self, body: &AxisModel, errors: &mut Vec<ConfigError>) {
+        if body.modes.iter().all(|mode| mode.gain == mode.hub_gain) {
+            return;
+        }
+        let disturbances = (0..self.disturbance.len()).map(|index| format!("disturbance[{index}]"));
+        let disturbances = disturbances.map(|key| (key, "is a torque that"));
+        let wheel = self.actuator.flywheel().map(|(_, key)| (key, "is a wheel that"));
+        for (key, what) in disturbances.chain(wheel) {
+            let why = format!(
+                "{what} acts on the hub, but the actuator of this body elsewhere (`manoeuvre.load`, or a `hub_gain` of modes)"
+            );
+            errors.push(ConfigError::new(key, why));
+        }
+    }
+}
+
+impl Scenario {
+    /// Returns the errors that show only in the data resolved from all parts: costs, and the motion at the start and in turns.
+    pub(super) fn conflicts_of_motion(&self) -> Vec<ConfigError> {
+        let mut errors: Vec<ConfigError> = self.infeasible_key().into_iter().collect();
+        if let BodyAxes::Three(body) = self.model.axes() {
+            errors.extend(self.validate_small_start(body, &self.study));
+            self.validate_rates(&mut errors);
+        }
+        errors
     }
 
     /// Checks that a spacecraft does not rotate faster than the limit of its modal model.
-    fn rate_inconsistency(&self) -> Option<ConfigError> {
-        let craft = self.model.spacecraft()?;
-        let RateLimit { rate: limit, why } = craft.rate_limit()?;
+    fn validate_rates(&self, errors: &mut Vec<ConfigError>) {
+        let Some(craft) = self.model.spacecraft() else { return };
+        let Some(RateLimit { rate: limit, why }) = craft.rate_limit() else { return };
         let start = vector(&craft.model.rate).norm();
         if start > limit {
             let why = format!("must be below {limit:.3e} rad/s together, {why}, got {start:.3e}");
-            return Some(ConfigError::new("spacecraft.rate", why));
+            errors.push(ConfigError::new("spacecraft.rate", why));
         }
-        let is_own = !self.law.own_targets().is_empty();
-        let key = if is_own { format!("law.{}.targets", self.law.kind()) } else { "target".to_owned() };
+        let key = self.targets_key();
         let way = AttitudeProfile::new(self.targets(), &self.orbit_environment(), &self.model.free_modes());
         let fast = |(index, target): (usize, &AttitudeTarget)| {
             let planned = || Some(("duration", way.fastest(index).filter(|_| target.command.is_some())?));
@@ -142,90 +227,6 @@ impl Scenario {
             let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
             Some(ConfigError::new(format!("{key}[{index}].{of}"), why))
         };
-        self.targets().iter().enumerate().find_map(fast)
-    }
-
-    fn one_axis_inconsistency(
-        &self,
-        body: &AxisModel,
-        offers: &Offers,
-        unmet: &Requirements,
-    ) -> Option<ConfigError> {
-        unmet
-            .first(Rule::Crossings)
-            .or_else(|| self.damping_inconsistency(body, unmet))
-            .or_else(|| unmet.first(Rule::GainSchedule))
-            .or_else(|| self.validate_drift())
-            .or_else(|| self.coupling_inconsistency(offers))
-            .or_else(|| self.timing_inconsistency(unmet))
-            .or_else(|| unmet.first_of(Rule::EnvelopeTorques..=Rule::EnvelopeBackEmf))
-            .or_else(|| self.motion_inconsistency(offers))
-            .or_else(|| self.load_inconsistency(body))
-            .or_else(|| unmet.first_of(Rule::EnvelopeModes..=Rule::Filter))
-            .or_else(|| self.validate_adaptation(offers))
-    }
-
-    fn damping_inconsistency(&self, body: &AxisModel, unmet: &Requirements) -> Option<ConfigError> {
-        if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
-            let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
-            return Some(ConfigError::new(self.damping_key(), why));
-        }
-        if body.is_coupled() && self.drift.is_some() {
-            return Some(ConfigError::new(self.damping_key(), "has no closed form for modes that drift"));
-        }
-        unmet.first(Rule::DampingMatrix)
-    }
-
-    fn coupling_inconsistency(&self, offers: &Offers) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        let wheel = self.actuator.flywheel().map(|(_, key)| key);
-        if wheel.is_none() && self.drift.is_none() {
-            return None;
-        }
-        let key = wheel.as_deref().unwrap_or("drift");
-        if wheel.is_some() && self.manoeuvre.is_some() && self.law.period().is_none() {
-            let why = "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`";
-            return at(key, why.to_owned());
-        }
-        if offers.follows_waveform() {
-            let why = "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
-            return at(key, why.to_owned());
-        }
-        if offers.body.is_chain || offers.body.follows_motion {
-            let why = "needs linear modes of a body that a torque drives";
-            return at(key, why.to_owned());
-        }
-        None
-    }
-
-    /// Checks the order of times, and times against their periods.
-    fn timing_inconsistency(&self, unmet: &Requirements) -> Option<ConfigError> {
-        if let Some(fault) = Disturbance::validate_times(&self.disturbance) {
-            return Some(fault.within("disturbance"));
-        }
-        self.validate_failures().or_else(|| unmet.first(Rule::PulseLength))
-    }
-
-    /// Checks that no torque acts on a hub that follows a given motion.
-    fn motion_inconsistency(&self, offers: &Offers) -> Option<ConfigError> {
-        if !offers.body.follows_motion {
-            return None;
-        }
-        let moves = |key: &str| {
-            let why =
-                "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
-            Some(ConfigError::new(key, why))
-        };
-        if !self.disturbance.is_empty() {
-            return moves("disturbance[0]");
-        }
-        if let Some(member) = offers.actuators.iter().find(|member| member.offers.pulses) {
-            return moves(&member.key);
-        }
-        if !offers.laws.iter().all(|law| law.offers.is_open) {
-            return moves("law");
-        }
-        let why = "must be \"linear\" where the hub's motion is given";
-        offers.body.is_chain.then(|| ConfigError::new("body.panels.kinematics", why))
+        errors.extend(self.targets().iter().enumerate().filter_map(fast));
     }
 }

@@ -49,8 +49,8 @@ impl Scenario {
     pub fn with(mut self, change: impl FnOnce(&mut ScenarioSpec)) -> Result<Self, ScenarioError> {
         change(&mut self.written);
         let origin = self.name.clone();
-        let fault = |fault: ConfigError| ScenarioError::Key { origin, key: fault.key, why: fault.why };
-        Self::fitted(self.written, self.model).map_err(fault)
+        Self::fitted(self.written, self.model)
+            .map_err(|errors| ScenarioError::without_places(&origin, errors))
     }
 
     /// Reads a scenario from a document with custom parts: for roles that the document leaves out, and for sensors and

@@ -2,59 +2,55 @@
 
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
-use flexsc_spacecraft::body::{Drift, DriftProfile};
+use flexsc_spacecraft::body::{BodyModel, Drift, DriftProfile};
 
-use super::Scenario;
+use super::ScenarioSpec;
 
-impl Scenario {
-    pub(super) fn validate_drift(&self) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        let drift = self.drift.as_ref()?;
-        let modes = self.mode_count();
-        let profiles: Vec<(String, &DriftProfile)> = match drift {
-            Drift::Common(profile) => vec![("drift.common".to_owned(), profile)],
-            Drift::Each(profiles) if profiles.len() != modes => {
-                return at(
-                    "drift.each",
-                    format!(
-                        "must have a profile for each of {}, got {}",
-                        counted(modes, "mode"),
-                        profiles.len()
-                    ),
-                );
+impl ScenarioSpec {
+    pub(super) fn validate_drift(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
+        let Some(drift) = &self.drift else { return };
+        if self.spacecraft.is_some() {
+            let why = "is for modes that are given: those of a `[spacecraft]` follow from its appendages, which a `drive` can turn";
+            errors.push(ConfigError::new("drift", why));
+            return;
+        }
+        match drift {
+            Drift::Common(profile) => {
+                errors.extend(validate_profile(profile).map(|error| error.within("drift.common")));
             }
             Drift::Each(profiles) => {
-                let key = |(index, profile)| (format!("drift.each[{index}]"), profile);
-                profiles.iter().enumerate().map(key).collect()
-            }
-        };
-        for (key, profile) in profiles {
-            match profile {
-                DriftProfile::Sinusoid(sinusoid) if sinusoid.amplitude.get() >= 0.5 => {
-                    let why = format!(
-                        "must be below 0.5, so that no frequency vanishes, got {}",
-                        sinusoid.amplitude.get()
-                    );
-                    return at(&format!("{key}.sinusoid.amplitude"), why);
+                let (modes, count) = (model.mode_count(), profiles.len());
+                if count != modes {
+                    let why =
+                        format!("must have a profile for each of {}, got {count}", counted(modes, "mode"));
+                    errors.push(ConfigError::new("drift.each", why));
                 }
-                DriftProfile::Table(points) if points.len() < 2 => {
-                    return at(
-                        &format!("{key}.table"),
-                        format!("must have at least two points, got {}", points.len()),
-                    );
-                }
-                DriftProfile::Table(points) => {
-                    if let Some(index) = points.windows(2).position(|pair| pair[0].time >= pair[1].time) {
-                        let (index, time) = (index + 1, points[index + 1].time.get());
-                        return at(
-                            &format!("{key}.table[{index}].time"),
-                            format!("must be later than the one before, got {time}"),
-                        );
-                    }
-                }
-                _ => {}
+                let each = profiles.iter().enumerate();
+                errors.extend(each.filter_map(|(index, profile)| {
+                    Some(validate_profile(profile)?.within(&format!("drift.each[{index}]")))
+                }));
             }
         }
-        None
+    }
+}
+
+/// Checks a profile; returns the inconsistent key and the reason.
+fn validate_profile(profile: &DriftProfile) -> Option<ConfigError> {
+    match profile {
+        DriftProfile::Sinusoid(sinusoid) if sinusoid.amplitude.get() >= 0.5 => {
+            let why =
+                format!("must be below 0.5, so that no frequency vanishes, got {}", sinusoid.amplitude.get());
+            Some(ConfigError::new("sinusoid.amplitude", why))
+        }
+        DriftProfile::Table(points) if points.len() < 2 => {
+            let why = format!("must have at least two points, got {}", points.len());
+            Some(ConfigError::new("table", why))
+        }
+        DriftProfile::Table(points) => {
+            let late = 1 + points.windows(2).position(|pair| pair[0].time >= pair[1].time)?;
+            let why = format!("must be later than the one before, got {}", points[late].time.get());
+            Some(ConfigError::new(format!("table[{late}].time"), why))
+        }
+        DriftProfile::Sinusoid(_) | DriftProfile::Ramp(_) => None,
     }
 }

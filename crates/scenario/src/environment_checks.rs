@@ -36,14 +36,18 @@ impl ScenarioSpec {
             return Some(fault.within("environment.drag"));
         }
         // Orbits that are interpolated must be known before anything follows from them.
-        if is_sampled { self.validate_environment() } else { None }
+        if is_sampled { self.environment_error() } else { None }
     }
 
     /// Checks that the environment is consistent in itself and with the run.
-    pub(super) fn validate_environment(&self) -> Option<ConfigError> {
+    pub(super) fn validate_environment(&self, errors: &mut Vec<ConfigError>) {
+        errors.extend(self.environment_error());
+    }
+
+    fn environment_error(&self) -> Option<ConfigError> {
         let around = self.environment.as_ref()?;
-        let fault = around.fault().or_else(|| around.run_error(self.duration, self.date_ns()))?;
-        Some(fault.within("environment"))
+        let error = around.fault().or_else(|| around.run_error(self.duration, self.date_ns()))?;
+        Some(error.within("environment"))
     }
 
     /// Returns remarks on an environment that is accepted and probably not meant.

@@ -24,8 +24,8 @@ pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Dateti
     deserializer.deserialize_newtype_struct(DATE, Date).map(Some)
 }
 
-/// Returns the error of a scenario's `epoch` that is no date and time from 1970 to 2500.
-pub fn fault(epoch: Option<&Datetime>) -> Option<ConfigError> {
+/// Checks that a scenario's `epoch` is a date and time from 1970 to 2500.
+pub fn validate(epoch: Option<&Datetime>) -> Option<ConfigError> {
     let why = "must be a date and time from 1970 to 2500, such as 2026-03-20T14:46:00Z; a second 60 is a leap second, at the \
                end of June or December, UTC";
     epoch.filter(|epoch| nanoseconds_since_1970(epoch).is_none()).map(|_| ConfigError::new("epoch", why))

@@ -5,8 +5,9 @@ use flexsc_control::interval::Interval;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
+use flexsc_spacecraft::body::BodyModel;
 
-use super::{Scenario, ScenarioSpec};
+use super::ScenarioSpec;
 
 /// Failure of a part with its interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,26 +52,24 @@ impl ScenarioSpec {
         }
         all
     }
-}
 
-impl Scenario {
     /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
-    pub(super) fn validate_failures(&self) -> Option<ConfigError> {
+    pub(super) fn validate_failures(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
         for (number, sensor) in self.sensor.iter().enumerate() {
-            let disorder = |fault: &flexsc_control::sensor::SensorFailure| fault.interval().validate();
-            let mut faults = sensor.faults().iter().enumerate();
-            if let Some((index, fault)) = faults.find_map(|(index, fault)| Some((index, disorder(fault)?))) {
-                return Some(fault.within(&format!("{}.faults[{index}]", self.sensor_key(number))));
-            }
+            let failures = sensor.faults().iter().enumerate();
+            errors.extend(failures.filter_map(|(index, failure)| {
+                let error = failure.interval().validate()?;
+                Some(error.within(&format!("{}.faults[{index}]", self.sensor_key(number))))
+            }));
         }
         let members = self.actuator.members();
-        let failed = members.iter().find_map(|member| member.failure_fault(self.axis_count()));
-        failed.or_else(|| self.sines_fault())
+        errors.extend(members.iter().filter_map(|member| member.failure_fault(self.axis_count())));
+        errors.extend(self.sines_error(model));
     }
 
     /// Checks that the motion under sinusoidal torques has a closed form, or is integrated with steps that resolve
     /// them.
-    fn sines_fault(&self) -> Option<ConfigError> {
+    fn sines_error(&self, model: &BodyModel) -> Option<ConfigError> {
         let disturbed = self.disturbance.iter().position(|of| !of.sines.is_empty());
         let disturbed = disturbed.map(|index| format!("disturbance[{index}].sines"));
         let failed = self.actuator.members().into_iter().find_map(|member| {
@@ -95,7 +94,7 @@ impl Scenario {
                 "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
             _ if self.drift.is_some() => "have no closed form for modes that drift",
-            _ if self.model.one_axis().is_some_and(AxisModel::is_coupled) => {
+            _ if model.one_axis().is_some_and(AxisModel::is_coupled) => {
                 "have no closed form for modes that a damping matrix couples"
             }
             law if self.sensor.period(law.period()).is_none()

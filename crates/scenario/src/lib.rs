@@ -20,7 +20,6 @@ mod failures;
 mod fast_path;
 mod file_name;
 mod line_of_sight;
-mod load_checks;
 mod log;
 mod logged_scenario;
 mod magnitudes;
@@ -48,7 +47,6 @@ use std::sync::{Arc, OnceLock};
 
 use flexsc_control::law::{ErrorBand, Setpoint};
 use flexsc_control::operation::ModeTables;
-use flexsc_control::requirement::Requirements;
 use flexsc_control::sensor::SensorKind;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::LinearFlow;
@@ -121,7 +119,7 @@ impl Scenario {
     fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
         let (written, model) = Self::assembled(document, parent, own)?;
-        Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
+        Self::fitted(written, model).map_err(|errors| document.at_keys(&errors))
     }
 
     /// Returns the keys of a document in SI units, with custom parts, and the model of the body.
@@ -144,7 +142,7 @@ impl Scenario {
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let fault =
-            epoch::fault(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
+            epoch::validate(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
         if let Some(fault) = fault {
             return Err(document.at_key(&fault));
         }
@@ -161,31 +159,39 @@ impl Scenario {
 
     /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
     /// the manoeuvre.
-    fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
-        written.adopt_modes()?;
-        let offers = written.offers(&model);
-        let unmet = written.unmet_requirements(&offers);
-        written.validate_compatibility(&model, &offers, &unmet)?;
-        if let Some(conflict) = written.topic_conflict() {
-            return Err(conflict);
+    ///
+    /// # Errors
+    /// All errors of the keys and of their combination; of data that are resolved from consistent keys, the first.
+    fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, Vec<ConfigError>> {
+        let only = |error| vec![error];
+        written.adopt_modes().map_err(only)?;
+        let errors = written.conflicts(&model, &written.offers(&model));
+        if !errors.is_empty() {
+            return Err(errors);
         }
-        let scenario = Self::resolved(written, model, &unmet)?;
-        scenario.validate(&offers, &unmet)?;
-        scenario.planned_and_assessed()
+        let scenario = Self::resolved(written, model).map_err(only)?;
+        match scenario.conflicts_of_motion() {
+            errors if errors.is_empty() => scenario.planned().map_err(only),
+            errors => Err(errors),
+        }
     }
 
-    /// Resolves the data of all parts together, but for the plan and the requirements.
-    fn resolved(written: ScenarioSpec, model: BodyModel, unmet: &Requirements) -> Result<Self, ConfigError> {
-        let study = ResolvedScenario::resolve(&written, &model, unmet)?;
-        Ok(Self { written, model, plan: None, linear: None, study })
+    /// Resolves the data of all parts together, but for the plan.
+    fn resolved(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
+        let mut study = ResolvedScenario::resolve(&written, &model)?;
+        let mut errors = Vec::new();
+        study.requirements =
+            requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
+        match errors.into_iter().next() {
+            None => Ok(Self { written, model, plan: None, linear: None, study }),
+            Some(error) => Err(error),
+        }
     }
 
-    /// Plans the manoeuvre, and adds the exact flow and the requirements.
-    fn planned_and_assessed(mut self) -> Result<Self, ConfigError> {
-        self.plan = self.planned()?;
+    /// Plans the manoeuvre, and adds the exact flow.
+    fn planned(mut self) -> Result<Self, ConfigError> {
+        self.plan = self.plan()?;
         self.linear = self.linear_flow()?;
-        let period = self.study.assessment_period;
-        self.study.requirements = requirement_checks::assessed(&self.written, &self.model, period)?;
         Ok(self)
     }
 
@@ -207,7 +213,7 @@ impl Scenario {
     }
 
     /// Plans the manoeuvre, if there is one.
-    fn planned(&self) -> Result<Option<Plan>, ConfigError> {
+    fn plan(&self) -> Result<Option<Plan>, ConfigError> {
         let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.one_axis()) else { return Ok(None) };
         let body = manoeuvre.planned_for(own);
         if body.drive != own.drive {

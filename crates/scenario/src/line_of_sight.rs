@@ -57,7 +57,7 @@ impl LineOfSight {
     }
 
     /// Checks the line of sight on a three-axis body; returns the inconsistent key and the reason.
-    pub(super) fn fault(&self, body: &ThreeAxisModel, offers: &Offers) -> Option<ConfigError> {
+    pub(super) fn validate(&self, body: &ThreeAxisModel, offers: &Offers) -> Option<ConfigError> {
         let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         if body.point(&self.point).is_none() {
             let points = body.point_names();

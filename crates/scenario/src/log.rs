@@ -69,7 +69,7 @@ impl SceneSpec {
     }
 
     /// Checks that the magnifications are not too large; returns the error at the key.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
+    pub fn validate(&self) -> Option<ConfigError> {
         let factors = [("bending", self.bending), ("turning", self.turning)];
         let (key, factor) = factors.into_iter().find(|(_, f)| f.is_some_and(|f| f.get() > LARGEST_FACTOR))?;
         Some(ConfigError::new(

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use flexsc_control::adaptation::{AdaptationFacts, AdaptationSpec};
 use flexsc_control::custom::Custom;
 use flexsc_control::law::{LawFacts, LawSpec};
-use flexsc_control::requirement::Requirements;
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::{Document, ScenarioError};
 use flexsc_record::Log;
@@ -155,8 +154,6 @@ impl Scenario {
         let document = Document::from_table(origin, table);
         let document = &*document.in_si(super::units)?;
         let (written, model) = Self::assembled(document, None, &own)?;
-        Self::resolved(written, model, &Requirements::default())
-            .and_then(Self::planned_and_assessed)
-            .map_err(|fault| document.at_key(&fault))
+        Self::resolved(written, model).and_then(Self::planned).map_err(|fault| document.at_key(&fault))
     }
 }

@@ -6,6 +6,8 @@ use flexsc_control::offers::Offers;
 use flexsc_control::operation::{ModeQuantity, ModeTarget, OperatingMode, Vocabulary};
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_spacecraft::body::craft::{Appendage, RateLimit};
 use flexsc_spacecraft::body::{AssembledSpacecraft, BodyModel};
 
 use super::ScenarioSpec;
@@ -19,64 +21,65 @@ impl ScenarioSpec {
     }
 
     /// Checks the modes of operation.
-    pub(super) fn validate_modes(&self, model: &BodyModel, offers: &Offers) -> Option<ConfigError> {
+    pub(super) fn validate_modes(&self, model: &BodyModel, offers: &Offers, errors: &mut Vec<ConfigError>) {
         if self.mode.is_empty() {
-            return None;
+            return;
         }
+        self.validate_mode_targets(model, errors);
         let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
         let names = self.mode.iter().map(|mode| mode.name.as_str()).collect();
         let known = Vocabulary { sensors: kinds.clone(), modes: names, numbers: None };
-        let listed = OperatingMode::fault(&self.mode, &kinds).map(|fault| fault.within("mode"));
-        listed.or_else(|| self.validate_mode_targets(model)).or_else(|| {
-            self.mode.iter().enumerate().find_map(|(index, mode)| {
-                let fault = self
-                    .mode_sensor_fault(index, mode)
-                    .or_else(|| self.mode_exit_fault(index, mode, &known, offers));
-                fault.map(|fault| fault.within(&format!("mode[{index}]")))
-            })
-        })
+        if let Some(error) = OperatingMode::fault(&self.mode, &kinds) {
+            // Sensors in use and conditions are found by their names.
+            errors.push(error.within("mode"));
+            return;
+        }
+        for (index, mode) in self.mode.iter().enumerate() {
+            let sensors = self.mode_sensor_error(index, mode);
+            let exits = self.mode_exit_errors(index, mode, &known, offers);
+            errors.extend(
+                sensors.into_iter().chain(exits).map(|error| error.within(&format!("mode[{index}]"))),
+            );
+        }
     }
 
-    fn validate_mode_targets(&self, model: &BodyModel) -> Option<ConfigError> {
-        let index = self.mode.iter().position(|mode| mode.target.is_some())?;
-        let at = |why: &str| Some(ConfigError::new(format!("mode[{index}].target"), why));
-        if self.axis_count() == 1 {
-            return at("is for a body with three axes: a `[manoeuvre]` turns a body with one angle");
-        }
-        if !self.target.is_empty() {
-            let why = "must be left out: the modes have targets of their own, from the start of each on";
-            return Some(ConfigError::new("target", why));
-        }
-        if model.three_axis().is_some_and(|body| body.small_angles.is_some()) {
-            return at("must be left out with `small_angles`, for which the target must stay fixed");
-        }
-        if self
-            .appendage
-            .iter()
-            .any(|appendage| appendage.drive.as_ref().is_some_and(|drive| drive.track.is_some()))
-        {
-            return at(
+    fn validate_mode_targets(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
+        let targets = self.mode.iter().enumerate();
+        let targets: Vec<_> =
+            targets.filter_map(|(index, mode)| Some((index, mode.target.as_ref()?))).collect();
+        let tracks = |of: &Appendage| of.drive.as_ref().is_some_and(|drive| drive.track.is_some());
+        let unknown = if model.three_axis().is_some_and(|body| body.small_angles.is_some()) {
+            Some("must be left out with `small_angles`, for which the target must stay fixed")
+        } else if self.appendage.iter().any(tracks) {
+            Some(
                 "must be left out with a drive that tracks the Sun, whose angle has to be known before the run",
-            );
+            )
+        } else {
+            None
+        };
+        if !targets.is_empty() && !self.target.is_empty() {
+            let why = "must be left out: the modes have targets of their own, from the start of each on";
+            errors.push(ConfigError::new("target", why));
         }
         let sky = self.orbit_environment();
         let limit = model.spacecraft().and_then(AssembledSpacecraft::rate_limit);
-        self.mode.iter().enumerate().find_map(|(index, mode)| {
-            let target = mode.target.as_ref()?;
-            let fault = target.fault(&sky).or_else(|| {
-                let limit = limit.as_ref()?;
-                let rate = target.rate_limit?.get();
-                (rate > limit.rate).then(|| {
-                    let why = format!("must be below {:.3e} rad/s, {}, got {rate}", limit.rate, limit.why);
-                    ConfigError::new("rate_limit", why)
-                })
-            });
-            fault.map(|fault| fault.within(&format!("mode[{index}].target")))
-        })
+        for (index, target) in targets {
+            let fast = || {
+                let RateLimit { rate: limit, why } = limit.as_ref()?;
+                let rate = target.rate_limit.map(Positive::get).filter(|rate| rate > limit)?;
+                let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
+                Some(ConfigError::new("rate_limit", why))
+            };
+            let error = match unknown {
+                Some(why) => Some(ConfigError::new("", why)),
+                None => target.fault(&sky).or_else(fast),
+            };
+            errors.extend(error.map(|error| error.within(&format!("mode[{index}].target"))));
+        }
     }
 
     /// Checks that the sensors that the law of a mode needs are in use.
-    fn mode_sensor_fault(&self, index: usize, mode: &OperatingMode) -> Option<ConfigError> {
+    fn mode_sensor_error(&self, index: usize, mode: &OperatingMode) -> Option<ConfigError> {
         let in_use = self.sensors_in_use(index);
         let missing = |wanted: &dyn Fn(usize, &SensorKind) -> bool| {
             let all = self.sensor.iter().enumerate();
@@ -117,13 +120,13 @@ impl ScenarioSpec {
     }
 
     /// Checks that the quantities of a mode's conditions are known in it, and that something tests them.
-    fn mode_exit_fault(
+    fn mode_exit_errors(
         &self,
         index: usize,
         mode: &OperatingMode,
         known: &Vocabulary<'_>,
         offers: &Offers,
-    ) -> Option<ConfigError> {
+    ) -> Vec<ConfigError> {
         let in_use = self.sensors_in_use(index);
         let used = |wanted: &dyn Fn(&SensorKind) -> bool| {
             self.sensor.iter().zip(&in_use).any(|(sensor, in_use)| *in_use && wanted(sensor))
@@ -166,13 +169,15 @@ impl ScenarioSpec {
             }
         };
         let samples = offers.law_period.or(offers.sample_period).is_some();
-        mode.leave.iter().enumerate().find_map(|(place, exit)| {
+        let leave = mode.leave.iter().enumerate();
+        let errors = leave.filter_map(|(place, exit)| {
             let read = exit.read(known).ok()?;
-            let fault = read.leaves().into_iter().find_map(|(quantity, _)| why(quantity)).or_else(|| {
+            let error = read.leaves().into_iter().find_map(|(quantity, _)| why(quantity)).or_else(|| {
                 let why = "is tested at the samples of a law or of a sensor, and here neither has a period: give the sensor one";
                 (!samples && !read.reads_truth()).then_some(why)
             });
-            fault.map(|why| ConfigError::new(format!("leave[{place}].when"), why))
-        })
+            error.map(|why| ConfigError::new(format!("leave[{place}].when"), why))
+        });
+        errors.collect()
     }
 }

@@ -42,7 +42,7 @@ impl Pointing {
     }
 
     /// Checks the requirement for a body with `axes` axes; returns the error at its key.
-    pub fn fault(&self, axes: usize) -> Option<ConfigError> {
+    pub fn validate(&self, axes: usize) -> Option<ConfigError> {
         let [from, to] = self.window.map(Time::get);
         if axes == 1 {
             return Some(ConfigError::new(

@@ -25,16 +25,14 @@ const ROUNDING: f64 = 1e-6;
 /// Quantities that are sampled.
 const SAMPLED: [&str; 3] = ["pointing_error", "rate_error", "line_of_sight"];
 
-/// Returns the requirements of a scenario, that of `reference.pointing.rms` first; `period` is the default sampling
-/// period.
-///
-/// # Errors
-/// Fails with the first inconsistent key, and the reason.
+/// Returns the requirements of a scenario, that of `reference.pointing.rms` first, and adds the errors of those that are
+/// inconsistent; `period` is the default sampling period.
 pub fn assessed(
     written: &ScenarioSpec,
     model: &BodyModel,
     period: Span,
-) -> Result<Vec<AssessedRequirement>, ConfigError> {
+    errors: &mut Vec<ConfigError>,
+) -> Vec<AssessedRequirement> {
     let pointing = written.reference.pointing.as_ref().and_then(|pointing| pointing.rms);
     let pointing = pointing.map(|most| AssessedRequirement {
         name: POINTING_RMS.to_owned(),
@@ -49,20 +47,22 @@ pub fn assessed(
     let mut all: Vec<AssessedRequirement> = pointing.into_iter().collect();
     if written.requirement.len() > MOST_REQUIREMENTS {
         let why = format!("has at most {MOST_REQUIREMENTS} tables, got {}", written.requirement.len());
-        return Err(ConfigError::new("requirement", why));
+        errors.push(ConfigError::new("requirement", why));
+        return all;
     }
+    let context = Context { written, model, period };
     for (index, requirement) in written.requirement.iter().enumerate() {
-        let context = Context { written, model, period };
-        let judged = context.assess(requirement).and_then(|judged| {
-            if judged.name.is_empty() || all.iter().any(|other| other.name == judged.name) {
-                let why = format!("must be a name of its own, got `{}`", judged.name);
-                return Err(ConfigError::new("name", why));
-            }
-            Ok(judged)
-        });
-        all.push(judged.map_err(|fault| fault.within(&format!("requirement[{index}]")))?);
+        let (key, name) = (format!("requirement[{index}]"), &requirement.name);
+        if name.is_empty() || all.iter().any(|other| other.name == *name) {
+            let why = format!("must be a name of its own, got `{name}`");
+            errors.push(ConfigError::new("name", why).within(&key));
+        }
+        match context.assess(requirement) {
+            Ok(judged) => all.push(judged),
+            Err(error) => errors.push(error.within(&key)),
+        }
     }
-    Ok(all)
+    all
 }
 
 /// Scenario of the requirements.

@@ -7,7 +7,6 @@ use flexsc_control::actuator::{
 };
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, ErrorBand, Stage, TorqueDistribution};
-use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
@@ -24,8 +23,6 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{AppendageDrives, AssessedRequirement, Scenario, ScenarioSpec, plate_mounts};
 
-/// Period of the cycles if neither law nor sensors have a period (s).
-const DEFAULT_CYCLE: f64 = 1.0;
 /// Tolerance for rounded shares.
 const ROUNDING: f64 = 1e-9;
 
@@ -96,16 +93,13 @@ impl ResolvedScenario {
     ///
     /// # Errors
     /// Fails with a key that is inconsistent with the others, and the reason.
-    pub(super) fn resolve(
-        written: &ScenarioSpec,
-        model: &BodyModel,
-        unmet: &Requirements,
-    ) -> Result<Self, ConfigError> {
+    pub(super) fn resolve(written: &ScenarioSpec, model: &BodyModel) -> Result<Self, ConfigError> {
         let cycle = written.law.period();
         let mut study = Self {
             law_period: cycle,
             drift: written.drift.as_ref().map(Into::into),
             sample_period: written.sample_period(),
+            assessment_period: written.assessment_period(),
             profile: AttitudeProfile::new(
                 written.targets(),
                 &written.orbit_environment(),
@@ -117,11 +111,9 @@ impl ResolvedScenario {
             jets_alone: written.actuator.only_actuator().is_some_and(|kind| kind.offers().has_jets),
             ..Self::default()
         };
-        study.assessment_period =
-            study.law_period.or(study.sample_period).unwrap_or(Span::from_seconds(DEFAULT_CYCLE));
         match model.axes() {
             BodyAxes::One(body) => study.axes.push(body.clone()),
-            BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body, unmet)?,
+            BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body)?,
         }
         let last_stage = written.law.stages().last();
         let axes = 0..study.axes.len();
@@ -131,9 +123,6 @@ impl ResolvedScenario {
             let in_stages =
                 |axis| stages.iter().map(|stage| study.authority(written, axis, Some(stage))).collect();
             study.stage_authorities = axes.map(in_stages).collect();
-        }
-        if let Some(fault) = unmet.first(Rule::ObserverInputs) {
-            return Err(fault);
         }
         if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::adaptive) {
             let Some(period) = study.sample_period else {
@@ -152,9 +141,6 @@ impl ResolvedScenario {
             let setting = spec.setup(&written.sensor, &written.orbit_environment(), cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
-        if let Some(fault) = unmet.first(Rule::ElasticRates) {
-            return Err(fault);
-        }
         study.set_damping_thresholds(written)?;
         study.mode_bands = study.mode_bands(written);
         study.expected_bands =
@@ -168,22 +154,11 @@ impl ResolvedScenario {
         written: &ScenarioSpec,
         model: &BodyModel,
         body: &ThreeAxisModel,
-        unmet: &Requirements,
     ) -> Result<(), ConfigError> {
-        let first = body.points.first().map_or(String::new(), |point| point.name.clone());
-        let named = |key: &str, point: Option<&str>| {
-            let Some(name) = point else { return Ok(first.clone()) };
-            if body.point(name).is_some() {
-                return Ok(name.to_owned());
-            }
-            let points = body.point_names();
-            Err(ConfigError::new(key, format!("must be one of the body's points, {points}, got `{name}`")))
-        };
-        for (index, sensor) in written.sensor.iter().enumerate() {
-            let key = format!("{}.{}.point", written.sensor.key("sensor", index), sensor.kind());
-            self.sensor_points.push(named(&key, sensor.point())?);
-        }
-        self.torque_point.clone_from(&first);
+        let first = body.points.first().map_or("", |point| &point.name);
+        let points = written.sensor.iter().map(|sensor| sensor.point().unwrap_or(first).to_owned());
+        self.sensor_points = points.collect();
+        first.clone_into(&mut self.torque_point);
         for member in written.actuator.members() {
             let Some(jets) = member.kind.jets() else { continue };
             let (acts, groups) = match &member.task {
@@ -197,9 +172,6 @@ impl ResolvedScenario {
         if let Some((wheels, of)) = written.actuator.wheels() {
             let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
             self.wheels = Some(allocation);
-            if let Some(fault) = unmet.first_of(Rule::Bearings..=Rule::TachometerBearings) {
-                return Err(fault);
-            }
             let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
             if model.is_two_way() && is_observed {
                 let bearings = wheels.bearings(body);
@@ -208,15 +180,9 @@ impl ResolvedScenario {
         }
         if let Some((gyros, of)) = written.actuator.control_moment_gyros() {
             self.gimbals = gyros.axes().map_err(|fault| fault.within(&of))?;
-            if let Some(fault) = unmet.first(Rule::GimbalBody) {
-                return Err(fault);
-            }
         }
         self.surroundings = surroundings(written, model, body)?;
         self.drives = written.drives(model)?;
-        for (index, disturbance) in written.disturbance.iter().enumerate() {
-            named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
-        }
         let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
         let craft = model.spacecraft().filter(|_| pushed);
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));

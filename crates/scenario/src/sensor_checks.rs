@@ -8,31 +8,32 @@ use super::ScenarioSpec;
 
 impl ScenarioSpec {
     /// Checks that the sensors measure the motion that a law reads, each quantity once unless an estimator fuses them.
-    pub(super) fn validate_sensor_set(&self, offers: &Offers) -> Option<ConfigError> {
-        let at = |index: usize, why: &str| Some(ConfigError::new(self.sensor_key(index), why));
+    pub(super) fn require_sensor_set(&self, offers: &Offers, errors: &mut Vec<ConfigError>) {
         if self.estimator.as_ref().is_some_and(|estimator| estimator.fuses_sensors()) {
-            return None;
+            return;
         }
         let is_read = offers.laws.iter().any(|law| law.offers.reads_motion());
         if is_read && self.sensor.iter().all(|sensor| sensor.measures_vector()) {
             let why = "gives neither attitude nor rate, which the law needs: add a `gyro` and an `[estimator.attitude]`";
-            return at(0, why);
+            errors.push(ConfigError::new(self.sensor_key(0), why));
+            return;
         }
         if offers.sensors.motion_sensors == 1 {
-            return None;
+            return;
         }
         if let Some(estimator) = self.estimator.as_ref().filter(|estimator| !estimator.estimates_rates_only())
         {
             let why = "takes the samples of one sensor, and there are several";
-            return Some(ConfigError::new(format!("estimator.{}", estimator.kind()), why));
+            errors.push(ConfigError::new(format!("estimator.{}", estimator.kind()), why));
+            return;
         }
         let of =
             |measures: &dyn Fn(usize) -> bool| (0..self.sensor.len()).filter(|index| measures(*index)).nth(1);
         let rates = of(&|index| self.sensor[index].rate_noise(0).is_some());
         if let Some(index) = rates.or(of(&|index| self.sensor.provides_attitude(index))) {
-            return at(index, "measures what another sensor measures too, and no estimator combines them");
+            let why = "measures what another sensor measures too, and no estimator combines them";
+            errors.push(ConfigError::new(self.sensor_key(index), why));
         }
-        None
     }
 
     /// Returns the error of a sensor that linear loop analysis cannot represent: delayed rates, and mean attitudes.

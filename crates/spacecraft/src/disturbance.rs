@@ -102,38 +102,30 @@ impl Disturbance {
         }
     }
 
-    /// Checks that the disturbances of a one-axis body are torques without an axis; returns a key within the list and the reason.
-    pub fn validate_one_axis(list: &[Self]) -> Option<ConfigError> {
-        let forced = |disturbance: &Self| disturbance.force.is_some() || disturbance.point.is_some();
-        if let Some(index) = list.iter().position(forced) {
+    /// Checks that the disturbance of a one-axis body is a torque without an axis; returns the inconsistent key and the reason.
+    pub fn validate_one_axis(&self) -> Option<ConfigError> {
+        if self.force.is_some() || self.point.is_some() {
             let why = "acts on a body with three axes: use a `torque` for a body with one angle";
-            return Some(ConfigError::new(format!("[{index}].force"), why));
+            return Some(ConfigError::new("force", why));
         }
-        let about = list.iter().position(|disturbance| disturbance.about.is_some())?;
         let why = "names one of three axes, and the body has one angle";
-        Some(ConfigError::new(format!("[{about}].about"), why))
+        self.about.map(|_| ConfigError::new("about", why))
     }
 
-    /// Checks that the times of disturbances are in order, and within their periods; returns a key within the list and the
-    /// reason.
-    pub fn validate_times(list: &[Self]) -> Option<ConfigError> {
-        let ordered = |d: &Self| d.to.is_none_or(|to| d.from < to);
-        if let Some(index) = list.iter().position(|d| !ordered(d)) {
-            let (from, to) = (list[index].from.get(), list[index].to.map_or(f64::NAN, Time::get));
-            let why = format!("must be later than `from`, {from} s, got {to}");
-            return Some(ConfigError::new(format!("[{index}].to"), why));
+    /// Checks that the times are in order, and within their periods; returns the inconsistent key and the reason.
+    pub fn validate_times(&self) -> Option<ConfigError> {
+        if let Some(to) = self.to.filter(|to| self.from >= *to) {
+            let why = format!("must be later than `from`, {} s, got {}", self.from.get(), to.get());
+            return Some(ConfigError::new("to", why));
         }
-        let heldless = |d: &Self| d.noise.get() > 0.0 && d.period.is_none();
-        if let Some(index) = list.iter().position(heldless) {
+        if self.noise.get() > 0.0 && self.period.is_none() {
             let why = "must be given: how long (s) each draw of the noise is held";
-            return Some(ConfigError::new(format!("[{index}].period"), why));
+            return Some(ConfigError::new("period", why));
         }
-        list.iter().enumerate().find_map(|(index, disturbance)| {
-            let Pulses { period, on } = disturbance.pulse.filter(|pulse| pulse.on >= pulse.period)?;
-            let (period, on) = (period.seconds(), on.seconds());
-            let why = format!("must be shorter than the period of {period} s, got {on}");
-            Some(ConfigError::new(format!("[{index}].pulse.on"), why))
-        })
+        let Pulses { period, on } = self.pulse.filter(|pulse| pulse.on >= pulse.period)?;
+        let (period, on) = (period.seconds(), on.seconds());
+        let why = format!("must be shorter than the period of {period} s, got {on}");
+        Some(ConfigError::new("pulse.on", why))
     }
 
     /// Returns true if `now` is between the start and the end of the disturbance.

@@ -15,7 +15,7 @@ use super::{
     ControlMomentGyrosState, FailingComponent, Failure,
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Single-gimbal control moment gyros, identical except for their axes and gimbal angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -96,8 +96,7 @@ impl ActuatorSpec for ControlMomentGyros {
     }
 
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
-        needs.require(
-            Rule::GimbalAxes,
+        needs.require_axes(
             offers.body.axes == 3,
             "",
             "turn a body about three axes, and the body has one angle: use `[actuator.wheel]`",
@@ -105,13 +104,11 @@ impl ActuatorSpec for ControlMomentGyros {
         place
             .require_single(needs, "write all of them in one `control_moment_gyros`, by their `gimbal_axes`");
         needs.require(
-            Rule::GimbalPeriod,
             self.period.is_some() || !offers.laws.iter().any(|law| law.offers.finds_crossings),
             "period",
             "must be given with a law `relay`, which holds its torque: gimbals at constant rates turn theirs",
         );
         needs.require(
-            Rule::GimbalBody,
             offers.body.is_two_way,
             "",
             "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
 use crate::part::{Occasion, Part, ReportContext};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -137,13 +137,11 @@ impl ActuatorSpec for Wheel {
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let is_passive = self.back_emf.get() <= 0.0;
         needs.require(
-            Rule::BackEmf,
             is_passive || offers.body.axes == 1,
             "back_emf",
             "couples the modes of one angle: leave it out for a body with three axes",
         );
         needs.require(
-            Rule::Repetition,
             self.rotor.is_none() || place.members <= 1,
             "rotor",
             "gets its speed from the rate of the body, which other actuators change too: leave it out, or use \
@@ -156,13 +154,11 @@ impl ActuatorSpec for Wheel {
         let crosses =
             offers.sample_period.is_none() && offers.laws.iter().any(|law| law.offers.finds_crossings);
         needs.require(
-            Rule::Crossings,
             !(is_limited && crosses),
             "rotor.speed_limit",
             "is checked at the law's commands: with a law `relay` it needs a `[sensor.sampled]`",
         );
         needs.require(
-            Rule::EnvelopeBackEmf,
             is_passive || offers.estimator.is_none_or(|of| !of.is_envelope),
             "back_emf",
             "must be 0 with an `[estimator.envelope]`, which follows each mode on its own",

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// The ideal actuator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,7 +37,6 @@ impl ActuatorSpec for Ideal {
     fn requires(&self, _: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let Some(matrix) = &offers.body.damping_matrix else { return };
         needs.require_elsewhere(
-            Rule::DampingMatrix,
             !offers.body.has_manoeuvre,
             matrix,
             "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \

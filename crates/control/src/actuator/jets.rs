@@ -14,7 +14,7 @@ use super::{
     FailingComponent, Failure, Ideal, JetsState, PulseWidth, jet_allocation,
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
-use crate::requirement::{OFF_HUB, Requirements, Rule};
+use crate::requirement::{OFF_HUB, Requirements};
 
 /// Standard gravity (m/s²), to which the specific impulse refers.
 const G_0: f64 = 9.806_65;
@@ -191,15 +191,14 @@ impl ActuatorSpec for Jets {
         // With wheels about three axes, the wheels are reported.
         if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
             let instead = ": `[actuator.thrusters]` push a body with one angle";
-            offers.require_three_axes(needs, Rule::JetAxes, "", instead);
+            offers.require_three_axes(needs, "", instead);
         }
         place.require_single(needs, "write all thrusters in one `jets`");
         let moves = |thruster: &Thruster| !offers.body.has_motion_at(&thruster.point);
         if let Some(index) = self.thrusters.iter().position(moves) {
-            needs.require(Rule::FixedJets, false, &format!("thrusters[{index}].point"), OFF_HUB);
+            needs.require(false, &format!("thrusters[{index}].point"), OFF_HUB);
         }
         needs.require(
-            Rule::JetCycle,
             place.executes || self.burns.is_empty(),
             "burns",
             "must be left out of jets that unload wheels: they execute no commands",
@@ -234,24 +233,21 @@ impl Jets {
         let first = periods.next().or(offers.laws.first().map(|law| law.offers.period)).flatten();
         let Some(period) = self.period.or(first) else {
             let why = "must be given with a law that has none of its own";
-            return needs.require(Rule::JetCycle, false, "period", why);
+            return needs.require(false, "period", why);
         };
         needs.require(
-            Rule::JetCycle,
             self.period.is_some() || periods.all(|other| other == first),
             "period",
             "must be given where the laws of the axes have periods that differ",
         );
         let period = period.seconds();
         for (key, value) in [("minimum_on", self.minimum_on.get()), ("quantum", self.quantum.get())] {
-            needs.require_with(Rule::JetCycle, value <= period, key, || {
+            needs.require_with(value <= period, key, || {
                 let whose = if self.period.is_some() { "" } else { "law's " };
                 format!("must be at most the {whose}period of {period} s, got {value}")
             });
         }
-        needs.require_with(Rule::JetCycle, self.delay <= 1, "delay", || {
-            format!("must be 0 or 1 cycles, got {}", self.delay)
-        });
+        needs.require_with(self.delay <= 1, "delay", || format!("must be 0 or 1 cycles, got {}", self.delay));
     }
 
     /// Returns the effect of each thruster on a body that has the thrusters' points.

@@ -20,7 +20,7 @@ use super::{
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::{Occasion, Part, ReportContext};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,11 +57,10 @@ impl ActuatorSpec for Magnetorquers {
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         // With wheels about three axes, the wheels are reported.
         if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
-            offers.require_three_axes(needs, Rule::MagnetorquerAxes, "", "");
+            offers.require_three_axes(needs, "", "");
         }
         place.require_single(needs, "they act along all three axes: write one `magnetorquers`");
         needs.require(
-            Rule::MagneticField,
             offers.environment.magnetic_field,
             "",
             "need the field of `[environment.magnetic_field]`, and there is none",

@@ -5,7 +5,7 @@ use flexsc_numerics::quantity::Time;
 use super::{ActuatorKind, AssignedActuator, Ideal, Jets, Wheels};
 use crate::offers::{ActuatorMember, ActuatorOffers, ActuatorPlace, Offers};
 use crate::one_or_many::OneOrMany;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 impl ActuatorKind {
     /// Returns the offers of the actuator to the other parts of a scenario.
@@ -23,21 +23,18 @@ impl ActuatorKind {
     fn require_phase(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let Some(phase) = self.phase() else { return };
         needs.require(
-            Rule::Phase,
             self.period().is_some(),
             "phase",
             "applies only to jets with a `period` of their own: without one they act with the law",
         );
         let is_late = phase != Time::ZERO;
         needs.require(
-            Rule::Phase,
             !is_late || !offers.body.has_manoeuvre,
             "phase",
             "must be 0 with a `[manoeuvre]`, whose begin it would miss",
         );
         let is_planned = offers.laws.iter().any(|law| law.offers.plans_pulses);
         needs.require(
-            Rule::Phase,
             !is_late || !is_planned || !place.shares.iter().any(|share| *share > 0.0),
             "phase",
             "must be 0 with a law `phase_plane`, whose pulses begin with the law's periods",

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{ONE_NUMBER, Requirements, Rule};
+use crate::requirement::{ONE_NUMBER, Requirements};
 
 /// A pair of thrusters for each direction, with pulse-width modulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -78,10 +78,10 @@ impl ActuatorSpec for Thrusters {
 
     fn requires(&self, _: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
         let is_one = offers.body.axes == 3 || !self.torque.is_three();
-        needs.require(Rule::OneNumber, is_one, "torque", ONE_NUMBER);
+        needs.require_axes(is_one, "torque", ONE_NUMBER);
         let period = self.period.seconds();
         for (key, value) in [("minimum_on", self.minimum_on.get()), ("quantum", self.quantum.get())] {
-            needs.require_with(Rule::PulseLength, value <= period, key, || {
+            needs.require_with(value <= period, key, || {
                 format!("must be at most the period of {period} s, got {value}")
             });
         }

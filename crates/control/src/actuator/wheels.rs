@@ -19,7 +19,7 @@ use super::{
     FailingComponent, Failure, Friction, Ideal, Imbalance, WheelsState,
 };
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
-use crate::requirement::{ROTATION, Requirements, Rule};
+use crate::requirement::{ROTATION, Requirements};
 
 /// Reaction wheels, identical except for their axes and initial speeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -136,22 +136,21 @@ impl ActuatorSpec for Wheels {
     }
 
     fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
-        needs.require(
-            Rule::WheelAxes,
+        needs.require_axes(
             offers.body.axes == 3,
             "",
             "are for three axes: use `[actuator.wheel]` for a body with one angle",
         );
         place.require_single(needs, "write all wheels in one `wheels`, by their `axes`");
         if let Some(key) = self.bearing_key() {
-            needs.require(Rule::Bearings, offers.body.is_two_way, key, ROTATION);
+            needs.require(offers.body.is_two_way, key, ROTATION);
         }
         if offers.body.turns_appendages
             && let Some(key) = self.friction_or_imbalance_key()
         {
             let why = "needs appendages that do not turn, on drives or hinges: the instants at which wheels stick, and the excitation of modes by \
                        imbalance, are searched for with constant modes";
-            needs.require(Rule::FixedBearings, false, key, why);
+            needs.require(false, key, why);
         }
     }
 

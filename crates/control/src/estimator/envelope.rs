@@ -10,7 +10,7 @@
 use super::pass_through::PassThrough;
 use super::{Estimator, EstimatorContext, EstimatorSpec};
 use crate::offers::{BodyOffers, EstimatorOffers, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_dynamics::three_axis_model::ThreeAxisMode;
@@ -50,13 +50,12 @@ impl EstimatorSpec for Envelope {
     }
 
     fn requires(&self, offers: &Offers, needs: &mut Requirements) {
-        let (body, rule) = (&offers.body, Rule::EnvelopeModes);
+        let body = &offers.body;
         if let Some(matrix) = &body.damping_matrix {
             let why = "couples modes, and an `[estimator.envelope]` treats each mode on its own";
-            needs.require_elsewhere(Rule::DampingMatrix, false, matrix, why);
+            needs.require_elsewhere(false, matrix, why);
         }
         needs.require(
-            Rule::EnvelopeTorques,
             !offers.follows_waveform(),
             "",
             "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
@@ -64,7 +63,6 @@ impl EstimatorSpec for Envelope {
         );
         if body.axes == 1 {
             needs.require(
-                rule,
                 self.form != EnvelopeMethod::Truth || self.modes.is_none(),
                 "modes",
                 "must be left out for the form `truth`, which reads the body's",
@@ -72,20 +70,17 @@ impl EstimatorSpec for Envelope {
             return self.require_oscillation(body, needs);
         }
         needs.require(
-            rule,
             self.modes.is_none(),
             "modes",
             "apply only to one angle: about three axes the monitor uses the body's",
         );
-        needs.require(rule, body.modes > 0, "", "has no modes to follow: the body has none");
+        needs.require(body.modes > 0, "", "has no modes to follow: the body has none");
         needs.require(
-            rule,
             !body.turns_appendages,
             "",
             "needs constant modes, and an appendage that turns changes them",
         );
         needs.require(
-            rule,
             !offers.lists_actuator(|actuator| actuator.turns_with_gimbals),
             "",
             "needs torques that are constant between commands, and those of control moment gyros change with the gimbal \
@@ -107,10 +102,10 @@ impl Envelope {
             let mut ratios = modes.iter().map(|mode| mode.damping.get()).enumerate();
             if let Some((index, ratio)) = ratios.find(|(_, ratio)| *ratio >= 1.0) {
                 let key = format!("modes[{index}].damping");
-                needs.require_with(Rule::EnvelopeModes, false, &key, || why(ratio));
+                needs.require_with(false, &key, || why(ratio));
             }
         } else if let Some((key, ratio)) = &body.overdamped {
-            needs.require_elsewhere(Rule::EnvelopeModes, false, key, &why(*ratio));
+            needs.require_elsewhere(false, key, &why(*ratio));
         }
     }
 }

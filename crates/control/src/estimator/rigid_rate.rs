@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::{AppliedPulses, Estimator, EstimatorContext, EstimatorSpec, SampleContext};
 use crate::offers::{EstimatorOffers, Offers};
 use crate::part::Part;
-use crate::requirement::{ONE_NUMBER, Requirements, Rule};
+use crate::requirement::{ONE_NUMBER, Requirements};
 use crate::state_estimate::StateEstimate;
 
 /// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
@@ -54,7 +54,7 @@ impl EstimatorSpec for RigidRate {
 
     fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         let is_one = offers.body.axes == 3 || !self.rate.is_three();
-        needs.require(Rule::Filter, is_one, "rate", ONE_NUMBER);
+        needs.require(is_one, "rate", ONE_NUMBER);
     }
 }
 

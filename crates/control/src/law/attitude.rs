@@ -20,7 +20,7 @@ use super::{
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// The attitude law.
@@ -112,7 +112,6 @@ impl LawSpec for AttitudeLaw {
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         needs.require(
-            Rule::Law,
             self.inertia.is_none() || offers.body.axes == 3 && !place.is_per_axis,
             "inertia",
             "is the tensor for one law about three axes: it needs a `[law.attitude]` for all of them",

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// The B-dot law.
@@ -43,15 +43,13 @@ impl LawSpec for BDot {
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
-        offers.require_three_axes(needs, Rule::MomentAxes, "", "");
+        offers.require_three_axes(needs, "", "");
         needs.require(
-            Rule::Law,
             offers.sensors.magnetic_field,
             "",
             "reads the field of a `[sensor.magnetometer]`, and there is none",
         );
         needs.require(
-            Rule::Law,
             offers.has_actuator(|actuator| actuator.turns_with_field),
             "",
             "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them",

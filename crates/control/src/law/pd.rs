@@ -17,7 +17,7 @@ use super::{
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// The PD law.
@@ -83,6 +83,11 @@ pub struct ScheduledGain {
 }
 
 impl Pd {
+    /// Checks the settings against each other; returns a key within the law and the reason.
+    pub fn validate(&self) -> Option<ConfigError> {
+        Some(self.extra.as_ref()?.validate()?.within("extra.schedule"))
+    }
+
     /// Returns the gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
     pub fn extra_gain(&self, frequency: f64) -> f64 {
         self.extra.as_ref().map_or(0.0, |extra| extra.gain(frequency))
@@ -91,7 +96,7 @@ impl Pd {
 
 impl Extra {
     /// Checks that the points of a schedule are in order; returns a key within the schedule and the reason.
-    fn disorder(&self) -> Option<ConfigError> {
+    fn validate(&self) -> Option<ConfigError> {
         let Self::Schedule(points) = self else { return None };
         if points.is_empty() {
             return Some(ConfigError::new("", "must have at least one point"));
@@ -179,8 +184,6 @@ impl LawSpec for Pd {
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_measure(self.error, offers, needs);
-        let disorder = self.extra.as_ref().and_then(Extra::disorder);
-        needs.report(Rule::GainSchedule, disorder.map(|fault| fault.within("extra.schedule")));
     }
 
     fn tunable(&self) -> Vec<Tunable> {

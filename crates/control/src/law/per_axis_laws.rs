@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Authority, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
 use crate::offers::{LawOffers, LawPlace, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// A law of one angle for each of three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -52,7 +52,7 @@ impl LawSpec for PerAxisLaws {
     }
 
     fn requires(&self, _: &LawPlace, _: &Offers, needs: &mut Requirements) {
-        needs.require(Rule::Law, false, "", "must be a law of one axis");
+        needs.require(false, "", "must be a law of one axis");
     }
 
     fn tunable(&self) -> Vec<Tunable> {

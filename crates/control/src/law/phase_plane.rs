@@ -21,7 +21,7 @@ use super::{
 };
 use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::{DampingStatus, StateEstimate};
 
 /// The phase-plane law.
@@ -183,23 +183,20 @@ impl PhasePlane {
         let Some(actuator) = offers.serving(axis).map(|member| member.offers) else { return };
         if actuator.pulses {
             let is_met = actuator.period.is_none_or(|own| own == self.period);
-            return needs.require(Rule::Law, is_met, "", "needs thrusters with the law's own period");
+            return needs.require(is_met, "", "needs thrusters with the law's own period");
         }
         needs.require(
-            Rule::Law,
             !actuator.is_delayed,
             "",
             "needs a wheel without delay, whose commands it does not see",
         );
         let limit = actuator.limits[axis];
         needs.require(
-            Rule::Law,
             limit != TorqueLimit::Varying,
             "",
             "needs a largest torque that is constant, and that of control moment gyros changes with their gimbal angles",
         );
         needs.require(
-            Rule::Law,
             limit != TorqueLimit::Unlimited,
             "",
             "needs the largest torque, on which its switching lines depend: thrusters, jets, a wheel with a \
@@ -244,21 +241,18 @@ impl LawSpec for PhasePlane {
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         let has_targets = !self.targets.is_empty();
-        needs.require(
-            Rule::Law,
+        needs.require_axes(
             !has_targets || offers.body.axes == 3,
             "targets",
             "are for a body with three axes: a `[manoeuvre]` turns a body with one angle",
         );
         needs.require(
-            Rule::Law,
             !has_targets || !place.is_per_axis,
             "targets",
             "are those of all axes: write them as `[[target]]`",
         );
         self.require_torque(place.axis, offers, needs);
         needs.require(
-            Rule::ElasticRates,
             self.damping.is_none() || offers.estimator.is_some_and(|of| of.elastic_rates),
             "damping",
             "needs the elastic rates of an `[estimator.adaptive]`, and there is none",

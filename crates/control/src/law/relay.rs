@@ -17,7 +17,7 @@ use super::{
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// Steps of the crossing search per radian of the fastest mode, for the estimate of computing time. Runs in batches need half
@@ -106,26 +106,22 @@ impl LawSpec for Relay {
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         let (body, is_continuous) = (&offers.body, offers.sample_period.is_none());
         needs.require(
-            Rule::Law,
             body.axes == 1 || body.has_small_angles || !offers.sensors.is_continuous,
             "",
             "finds its crossings in closed form, which three axes have only as `small_angles` of the body: give it those, or a \
              `[sensor.sampled]`",
         );
         needs.require(
-            Rule::Crossings,
             !body.has_manoeuvre,
             "",
             "holds the angle at 0: with a `[manoeuvre]` use the law `pd`, or none",
         );
         needs.require_elsewhere(
-            Rule::Crossings,
             !(body.is_chain && is_continuous),
             "body.panels.kinematics",
             "must be \"linear\" for a law `relay`, whose crossings are found in closed form; or use a `[sensor.sampled]`",
         );
         needs.require(
-            Rule::Crossings,
             !(body.drifts && is_continuous),
             "",
             "finds its crossings in closed form: with a drift it needs a `[sensor.sampled]`",

@@ -24,7 +24,7 @@ use super::{
     Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, ThreeAxisLaw, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Largest number of states.
 const MOST: usize = 64;
@@ -318,9 +318,8 @@ impl LawSpec for StateSpace {
             return;
         }
         let key = if self.inputs.is_empty() { "outputs" } else { "inputs" };
-        offers.require_three_axes(needs, Rule::AxisLaws, key, ": leave them out");
+        offers.require_three_axes(needs, key, ": leave them out");
         needs.require(
-            Rule::Law,
             !place.is_per_axis,
             key,
             "make one law about three axes together: use `[law.state_space]`, or leave them out",
@@ -328,7 +327,7 @@ impl LawSpec for StateSpace {
         let wheels: usize = offers.actuators.iter().map(|member| member.offers.wheels).sum();
         for (index, input) in self.named_inputs().unwrap_or_default().into_iter().enumerate() {
             if let CompensatorInput::WheelSpeed(wheel) = input {
-                needs.require_with(Rule::Law, wheel < wheels, &format!("inputs[{index}]"), || {
+                needs.require_with(wheel < wheels, &format!("inputs[{index}]"), || {
                     let found = match wheels {
                         0 => "there is no `[actuator.wheels]`".to_owned(),
                         _ => format!("the last of {wheels} wheels is `wheel{}`", wheels - 1),

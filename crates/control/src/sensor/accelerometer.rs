@@ -16,7 +16,7 @@ use super::tachometer::NoMeasurement;
 use super::{MeasuredQuantity, Sensor, SensorFailure, SensorSpec, Subject, stream};
 use crate::offers::Offers;
 use crate::quantity::QuantityShape;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// An accelerometer on a `[spacecraft]` in free fall. It measures the acceleration of its mounting point due to forces,
 /// rotation and vibration.
@@ -100,19 +100,16 @@ impl SensorSpec for Accelerometer {
 
     fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         needs.require(
-            Rule::Accelerometer,
             offers.body.is_spacecraft,
             "",
             "measures at a point of a `[spacecraft]`, whose mass and centre of mass are known, and whose modes act back on it",
         );
         needs.require(
-            Rule::Accelerometer,
             offers.sensors.motion_sensors > 0,
             "",
             "is not used by the law: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion",
         );
         needs.require(
-            Rule::FixedSensors,
             !offers.body.turns_appendages,
             "",
             "cannot be used with appendages that turn, on drives or hinges: the acceleration by their modes is not computed",

@@ -18,7 +18,7 @@ use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{FieldOfView, MeasuredQuantity, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject};
 use crate::offers::{EnvironmentOffers, Offers};
 use crate::quantity::QuantityShape;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Body to which a sensor measures the direction.
 pub trait SensedBody: Copy + Default + PartialEq + fmt::Debug + Send + Sync + JsonSchema + 'static {
@@ -130,7 +130,7 @@ impl<B: SensedBody> SensorSpec for DirectionSensor<B> {
 
     fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_attitude(offers, needs);
-        needs.require(Rule::Sensor, B::is_defined(offers.environment), "", B::UNDEFINED);
+        needs.require(B::is_defined(offers.environment), "", B::UNDEFINED);
     }
 
     fn field_of_view(&self) -> Option<FieldOfView> {

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::SensorKind;
 use crate::offers::Offers;
 use crate::one_or_many::OneOrMany;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Angles between the boresight and bright bodies below which a star tracker gives no measurement.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -51,25 +51,21 @@ impl Exclusion {
     pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         let around = &offers.environment;
         needs.require(
-            Rule::Sensor,
             self.sun.is_none() || around.sun,
             "exclusion.sun",
             "is an angle to `environment.sun`, and there is none",
         );
         needs.require(
-            Rule::Sensor,
             self.moon.is_none() || around.moon,
             "exclusion.moon",
             "is an angle to the Moon at the date: it needs the scenario's `epoch` and an `[environment]`",
         );
         needs.require(
-            Rule::Sensor,
             self.limb.is_none() || around.orbit,
             "exclusion.limb",
             "is an angle to the limb of the planet of `environment.orbit`, and there is none",
         );
         needs.require(
-            Rule::Sensor,
             self.moon.is_none() || around.is_below_moon,
             "exclusion.moon",
             "is an angle to the Moon as seen from an orbit about the Earth, within 1e8 m of its centre",

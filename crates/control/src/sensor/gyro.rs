@@ -17,7 +17,7 @@ use super::rate_integrator::{self, RateIntegrator};
 use super::{LinearMeasurement, Reading, Sensor, SensorFailure, SensorSpec, Truth, stream};
 use crate::offers::Offers;
 use crate::part::Part;
-use crate::requirement::{ONE_NUMBER, Requirements, Rule};
+use crate::requirement::{ONE_NUMBER, Requirements};
 
 /// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
 /// rounded (\[Timakov14\]). A gyro with a random walk integrates: its output is the mean rate over each of its periods.
@@ -162,7 +162,7 @@ impl SensorSpec for Gyro {
 
     fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         if let Some(key) = self.three_axis_key() {
-            needs.require(Rule::OneNumber, offers.body.axes == 3, key, ONE_NUMBER);
+            needs.require_axes(offers.body.axes == 3, key, ONE_NUMBER);
         }
     }
 

@@ -7,7 +7,7 @@ use super::linear_noise::KeyNoise;
 use super::{LinearMeasurement, Reading, Sensor, SensorSpec, Truth};
 use crate::offers::Offers;
 use crate::part::Part;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Settings of the ideal sensor: none.
 #[derive(Copy, Clone, Debug)]
@@ -33,7 +33,7 @@ impl SensorSpec for Continuous {
         } else {
             "gives the motion at every instant, so other sensors add nothing"
         };
-        needs.require(Rule::Sensor, is_alone, "", why);
+        needs.require(is_alone, "", why);
     }
 
     fn linear_measurement(&self) -> Option<LinearMeasurement> {

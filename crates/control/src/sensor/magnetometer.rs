@@ -14,7 +14,7 @@ use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{MeasuredQuantity, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject};
 use crate::offers::Offers;
 use crate::quantity::QuantityShape;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// A magnetometer on a body with three axes. The body's own magnetorquers do not disturb it.
 ///
@@ -81,7 +81,6 @@ impl SensorSpec for Magnetometer {
     fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_attitude(offers, needs);
         needs.require(
-            Rule::Sensor,
             offers.environment.magnetic_field,
             "",
             "measures the field of `[environment.magnetic_field]`, and there is none",

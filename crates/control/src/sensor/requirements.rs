@@ -5,22 +5,21 @@ use flexsc_numerics::time::Span;
 use super::SensorKind;
 use crate::offers::{Offers, SensorOffers};
 use crate::one_or_many::OneOrMany;
-use crate::requirement::{OFF_HUB, Requirements, Rule};
+use crate::requirement::{OFF_HUB, Requirements};
 
 impl SensorKind {
     /// Adds the requirements of the sensor on the other parts of a scenario; `ordinal` counts earlier sensors of its kind.
     fn add_requirements(&self, ordinal: usize, offers: &Offers, needs: &mut Requirements) {
         if let Some(point) = self.point() {
-            offers.require_three_axes(needs, Rule::SensorPoint, "point", "");
-            needs.require(Rule::FixedSensors, offers.body.has_motion_at(point), "point", OFF_HUB);
+            offers.require_three_axes(needs, "point", "");
+            needs.require(offers.body.has_motion_at(point), "point", OFF_HUB);
         }
         needs.require(
-            Rule::Sensor,
             self.is_continuous() || !self.measures_motion() || self.period(offers.law_period).is_some(),
             "",
             "must have a `period` with a law that has none of its own",
         );
-        needs.report(Rule::Sensor, self.validate());
+        needs.report(self.validate());
         self.requires(ordinal, offers, needs);
     }
 }
@@ -54,8 +53,7 @@ impl OneOrMany<SensorKind> {
 
 /// Adds the requirement of three axes for a sensor of the attitude or of a vector.
 pub(super) fn require_attitude(offers: &Offers, needs: &mut Requirements) {
-    needs.require(
-        Rule::SensorAxes,
+    needs.require_axes(
         offers.body.axes == 3,
         "",
         "measures three axes: use a `sampled` sensor for a body with one angle",

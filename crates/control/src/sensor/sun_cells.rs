@@ -25,7 +25,7 @@ use super::{
 use crate::offers::Offers;
 use crate::part::Part;
 use crate::quantity::QuantityShape;
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Least determinant of the sum of n n' over the lit cells, at which they still give a direction.
 const LEAST_SPREAD: f64 = 1e-3;
@@ -134,7 +134,7 @@ impl SensorSpec for SunCells {
 
     fn requires(&self, _: usize, offers: &Offers, needs: &mut Requirements) {
         super::requirements::require_attitude(offers, needs);
-        needs.require(Rule::Sensor, offers.environment.sun, "", SensedSun::UNDEFINED);
+        needs.require(offers.environment.sun, "", SensedSun::UNDEFINED);
     }
 
     fn reference(&self) -> Option<(Span, ReferenceNoise)> {

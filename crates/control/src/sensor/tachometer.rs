@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::{MeasuredQuantity, Reading, Sensor, SensorFailure, SensorSpec, Subject, Truth};
 use crate::offers::Offers;
 use crate::part::Part;
-use crate::requirement::{ROTATION, Requirements, Rule};
+use crate::requirement::{ROTATION, Requirements};
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
 ///
@@ -70,20 +70,14 @@ impl SensorSpec for Tachometer {
 
     fn requires(&self, ordinal: usize, offers: &Offers, needs: &mut Requirements) {
         let has_wheels = offers.lists_actuator(|actuator| actuator.has_reaction_wheels);
+        needs.require(has_wheels, "", "is on the wheels of `[actuator.wheels]`, and there are none");
         needs.require(
-            Rule::Tachometer,
-            has_wheels,
-            "",
-            "is on the wheels of `[actuator.wheels]`, and there are none",
-        );
-        needs.require(
-            Rule::Tachometer,
             offers.sensors.motion_sensors > 0,
             "",
             "measures only wheels: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion",
         );
-        needs.require(Rule::Tachometer, ordinal == 0, "", "is on each wheel already: list only one");
-        needs.require(Rule::TachometerBearings, offers.body.is_two_way, "", ROTATION);
+        needs.require(ordinal == 0, "", "is on each wheel already: list only one");
+        needs.require(offers.body.is_two_way, "", ROTATION);
     }
 
     fn measured_quantities(&self, _: bool, _: usize) -> Vec<MeasuredQuantity> {

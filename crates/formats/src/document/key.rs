@@ -108,6 +108,24 @@ pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
     })
 }
 
+/// Returns the places of the steps of a path in the tables of a document, by which keys are in its order. Keys that are not there
+/// come last.
+pub fn rank(table: &Table, path: &str) -> Vec<usize> {
+    let (mut table, mut value) = (Some(table), None::<&Value>);
+    let rank = |step: PathStep<'_>| {
+        let (rank, inner) = match step {
+            PathStep::Key(key) => {
+                let place = table.and_then(|table| table.iter().position(|(name, _)| name == key));
+                (place.unwrap_or(usize::MAX), table.and_then(|table| table.get(key)))
+            }
+            PathStep::Index(index) => (index, value.and_then(|value| value.get(index))),
+        };
+        (table, value) = (inner.and_then(Value::as_table), inner);
+        rank
+    };
+    steps(path).unwrap_or_default().into_iter().map(rank).collect()
+}
+
 /// Sets the value at a path. Missing tables are created; array elements must exist.
 pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
     let not_a_path = || "not the path of a key, such as `law.relay.k_t` or `body.planar.modes[0].gain`";

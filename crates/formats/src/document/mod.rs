@@ -14,6 +14,7 @@ mod units;
 
 use std::borrow::Cow;
 use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -71,6 +72,13 @@ fn join_diagnostics(mistakes: &[Diagnostic]) -> String {
 }
 
 impl ScenarioError {
+    /// Creates the error of keys that are not those of a text.
+    pub fn without_places(origin: &str, errors: Vec<ConfigError>) -> Self {
+        let diagnostic =
+            |ConfigError { key, why, .. }| Diagnostic::new(origin, format!("{key}: {why}")).about(key);
+        Self::Invalid(errors.into_iter().map(diagnostic).collect())
+    }
+
     /// Returns all errors.
     pub fn mistakes(&self) -> Vec<Diagnostic> {
         match self {
@@ -205,10 +213,7 @@ impl Document {
         let mut converted = self.clone();
         match &quantity::to_si(&mut converted.table, schema())[..] {
             [] => Ok(Cow::Owned(converted)),
-            faults => {
-                let mistakes = faults.iter().flat_map(|fault| self.at_key(fault).mistakes());
-                Err(ScenarioError::Invalid(mistakes.collect()))
-            }
+            faults => Err(self.at_keys(faults)),
         }
     }
 
@@ -252,15 +257,29 @@ impl Document {
 
     /// Returns the error of a fault, with the place of its value if the text has it.
     pub fn at_key(&self, fault: &ConfigError) -> ScenarioError {
-        let key = &fault.key;
-        let mistake = Diagnostic::new(&self.origin, fault.to_string()).about(key);
-        if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
-            let table = DeTable::parse(text).ok();
-            if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
-                return mistake.at(text, &fault.span_in(text, span)).single_error();
+        self.at_keys(std::slice::from_ref(fault))
+    }
+
+    /// Returns the error of faults, in the order of the text and with the places of their values; those without a place
+    /// stand at the end, in the order of the keys.
+    pub fn at_keys(&self, faults: &[ConfigError]) -> ScenarioError {
+        let text = self.text.as_deref().unwrap_or_default();
+        let table = DeTable::parse(text).ok();
+        let place = |fault: &ConfigError| {
+            let written = table.as_ref().filter(|_| !self.changed.contains(&fault.key))?;
+            Some(fault.span_in(text, span_of(written.get_ref(), &fault.key)?))
+        };
+        let mut placed: Vec<_> = faults.iter().map(|fault| (place(fault), fault)).collect();
+        let start = |place: &Option<Range<usize>>| place.as_ref().map_or(usize::MAX, |span| span.start);
+        placed.sort_by_key(|(place, fault)| (start(place), key::rank(&self.table, &fault.key)));
+        let diagnostic = |(place, fault): (Option<Range<usize>>, &ConfigError)| {
+            let diagnostic = Diagnostic::new(&self.origin, fault.to_string()).about(&fault.key);
+            match place {
+                Some(span) => diagnostic.at(text, &span),
+                None => diagnostic,
             }
-        }
-        mistake.single_error()
+        };
+        ScenarioError::Invalid(placed.into_iter().map(diagnostic).collect())
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {

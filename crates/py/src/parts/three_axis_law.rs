@@ -7,7 +7,7 @@ use flexsc_core::control::law::{
 };
 use flexsc_core::control::offers::{LawOffers, LawPlace, Offers};
 use flexsc_core::control::part::{Part, ReportContext};
-use flexsc_core::control::requirement::{Requirements, Rule};
+use flexsc_core::control::requirement::Requirements;
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::attitude::{Vector, rotation};
 use flexsc_core::numerics::time::{Instant as Exact, Span};
@@ -259,7 +259,7 @@ impl LawSpec for PythonThreeAxisLaw {
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
-        offers.require_three_axes(needs, Rule::AxisLaws, "", ": use a flexsc.Law");
+        offers.require_three_axes(needs, "", ": use a flexsc.Law");
     }
 
     fn expected_band(&self) -> ErrorBand {

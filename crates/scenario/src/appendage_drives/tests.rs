@@ -5,6 +5,7 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_spacecraft::environment::to_body;
 
 use super::*;
+use crate::Scenario;
 
 /// Returns a spacecraft on an orbit whose panel tracks the Sun from the local axes.
 fn tracker(extra: &str) -> Scenario {

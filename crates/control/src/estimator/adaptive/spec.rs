@@ -12,7 +12,7 @@ use crate::estimator::requirements::require_modes;
 use crate::estimator::sample_cost::ADAPTIVE_S;
 use crate::estimator::{Estimator, EstimatorContext, EstimatorSpec};
 use crate::offers::{EstimatorOffers, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Tolerance of rounded shares of the demand.
 const ROUNDING: f64 = 1e-9;
@@ -143,7 +143,6 @@ impl EstimatorSpec for Adaptive {
 
     fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         needs.require(
-            Rule::ObserverInputs,
             !offers.has_actuator(|actuator| actuator.programs_pulses),
             "",
             "predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`",
@@ -151,7 +150,6 @@ impl EstimatorSpec for Adaptive {
         let is_part = |share: &f64| *share > 0.0 && *share < 1.0 - ROUNDING;
         let mut jets = offers.actuators.iter().filter(|member| member.offers.has_jets);
         needs.require(
-            Rule::ObserverInputs,
             !jets.any(|member| member.shares.iter().any(is_part)),
             "",
             "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",

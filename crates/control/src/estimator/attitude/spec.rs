@@ -20,7 +20,7 @@ use crate::estimator::requirements::require_window;
 use crate::estimator::sample_cost::{ATTITUDE_FILTER_S, ELASTIC_PRODUCTS, products_s};
 use crate::estimator::{Estimator, EstimatorContext, EstimatorSpec};
 use crate::offers::{EstimatorOffers, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 use crate::sensor::{Gyro, ReferenceNoise, SensorKind, SensorSpec};
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
@@ -149,8 +149,7 @@ impl EstimatorSpec for AttitudeFilter {
 
     /// Adds the requirements of the filter except those on its sensors.
     fn requires(&self, offers: &Offers, needs: &mut Requirements) {
-        needs.require(
-            Rule::AttitudeAxes,
+        needs.require_axes(
             offers.body.axes == 3,
             "",
             "is for three axes: use `[estimator.kalman]` for a body with one angle",

@@ -11,7 +11,7 @@ use crate::estimator::sample_cost::{KALMAN_S, products_s};
 use crate::estimator::sampled::AxisEstimators;
 use crate::estimator::{EstimateOutputs, Estimator, EstimatorContext, EstimatorSpec};
 use crate::offers::{EstimatorOffers, Offers};
-use crate::requirement::{Requirements, Rule};
+use crate::requirement::Requirements;
 
 /// Settings of a Kalman filter of measured angles and rates.
 pub trait MeasurementFilter: Send + Sync {
@@ -70,7 +70,7 @@ impl<F: MeasurementFilter> EstimatorSpec for F {
     fn requires(&self, offers: &Offers, needs: &mut Requirements) {
         if let (Some(_), Some(matrix)) = (self.keys().ratios, &offers.body.damping_matrix) {
             let why = "couples modes, and a filter of their frequencies predicts each mode on its own: use `kalman`";
-            needs.require_elsewhere(Rule::DampingMatrix, false, matrix, why);
+            needs.require_elsewhere(false, matrix, why);
         }
         require_modes(self, offers, needs);
     }
