@@ -7,7 +7,9 @@ use flexsc_dynamics::axis_model::CommandedQuantity;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::Span;
 use flexsc_spacecraft::body::{Body, BodyAxes, BodyModel};
+use flexsc_spacecraft::disturbance::Disturbance;
 
+use super::consistency::errors_in;
 use super::{ScenarioSpec, requirement_checks};
 
 /// Period of the cycles if neither law nor sensors have a period (s).
@@ -193,11 +195,7 @@ impl ScenarioSpec {
             let why = format!("is for a body with three axes: {turned}");
             errors.push(ConfigError::new(format!("mode[{index}].target"), why));
         }
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            errors.extend(
-                disturbance.validate_one_axis().map(|error| error.within(&format!("disturbance[{index}]"))),
-            );
-        }
+        errors.extend(errors_in("disturbance", &self.disturbance, Disturbance::validate_one_axis));
         for (index, _) in self.actuator.iter().enumerate().filter(|(_, of)| of.axes.is_some()) {
             let key = self.actuator.key("actuator", index);
             // An actuator for three axes has to go with its axes.

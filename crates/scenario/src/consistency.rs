@@ -10,9 +10,20 @@ use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
 use flexsc_spacecraft::body::craft::RateLimit;
 use flexsc_spacecraft::body::{BodyAxes, BodyModel};
+use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::uncertain::{Correlated, Distribution};
-use super::{Scenario, ScenarioSpec, file_name, meant};
+use super::{BoundSpec, Scenario, ScenarioSpec, file_name, meant};
+
+/// Returns the errors of the parts of a list, with their keys in it.
+pub fn errors_in<T>(
+    list: &str,
+    parts: &[T],
+    validate: impl Fn(&T) -> Option<ConfigError>,
+) -> impl Iterator<Item = ConfigError> {
+    let parts = parts.iter().enumerate();
+    parts.filter_map(move |(index, part)| Some(validate(part)?.within(&format!("{list}[{index}]"))))
+}
 
 impl ScenarioSpec {
     /// Checks the keys of tables that depend on no other part.
@@ -28,16 +39,11 @@ impl ScenarioSpec {
             errors.push(ConfigError::new("duration", why));
         }
         errors.extend(self.log.scene.validate().map(|error| error.within("log.scene")));
-        for (index, bound) in self.bound.iter().enumerate() {
-            errors.extend(bound.validate().map(|error| error.within(&format!("bound[{index}]"))));
-        }
+        errors.extend(errors_in("bound", &self.bound, BoundSpec::validate));
+        errors.extend(errors_in("disturbance", &self.disturbance, Disturbance::validate_times));
         if let Some(pointing) = &self.reference.pointing {
             let error = pointing.validate(self.axis_count());
             errors.extend(error.map(|error| error.within("reference.pointing")));
-        }
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            let error = disturbance.validate_times();
-            errors.extend(error.map(|error| error.within(&format!("disturbance[{index}]"))));
         }
         self.validate_assignments(errors);
         for (index, group) in self.correlated.iter().enumerate() {
@@ -57,12 +63,9 @@ impl ScenarioSpec {
         table.remove("correlated");
         for (key, distribution) in &self.uncertain {
             let nominal = key::get(&table, key);
-            let Some(mut why) = distribution.validate(nominal) else { continue };
-            if let Some(near) =
-                Some(&table).filter(|_| nominal.is_none()).and_then(|table| meant::number(table, key))
-            {
-                why = format!("{why}; did you mean `{near}`?");
-            }
+            let Some(why) = distribution.validate(nominal) else { continue };
+            let near = if nominal.is_none() { meant::number(&table, key) } else { None };
+            let why = near.map_or(why.clone(), |near| format!("{why}; did you mean `{near}`?"));
             errors.push(ConfigError::new(format!("uncertain.\"{key}\""), why));
         }
     }
@@ -90,16 +93,10 @@ impl ScenarioSpec {
         errors: &mut Vec<ConfigError>,
     ) {
         self.validate_points(body, offers, errors);
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            let error = disturbance.validate_three_axis();
-            errors.extend(error.map(|error| error.within(&format!("disturbance[{index}]"))));
-        }
+        errors.extend(errors_in("disturbance", &self.disturbance, Disturbance::validate_three_axis));
+        errors.extend(errors_in("line_of_sight", &self.line_of_sight, |line| line.validate(body, offers)));
         if body.small_angles.is_some() {
             self.require_small_angles(model, body, errors);
-        }
-        for (index, line) in self.line_of_sight.iter().enumerate() {
-            let error = line.validate(body, offers);
-            errors.extend(error.map(|error| error.within(&format!("line_of_sight[{index}]"))));
         }
     }
 

@@ -5,6 +5,7 @@ use flexsc_formats::document::ConfigError;
 use flexsc_spacecraft::body::{BodyModel, Drift, DriftProfile};
 
 use super::ScenarioSpec;
+use super::consistency::errors_in;
 
 impl ScenarioSpec {
     pub(super) fn validate_drift(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
@@ -25,10 +26,7 @@ impl ScenarioSpec {
                         format!("must have a profile for each of {}, got {count}", counted(modes, "mode"));
                     errors.push(ConfigError::new("drift.each", why));
                 }
-                let each = profiles.iter().enumerate();
-                errors.extend(each.filter_map(|(index, profile)| {
-                    Some(validate_profile(profile)?.within(&format!("drift.each[{index}]")))
-                }));
+                errors.extend(errors_in("drift.each", profiles, validate_profile));
             }
         }
     }

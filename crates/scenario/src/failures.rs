@@ -8,6 +8,7 @@ use flexsc_numerics::attitude::AXES;
 use flexsc_spacecraft::body::BodyModel;
 
 use super::ScenarioSpec;
+use super::consistency::errors_in;
 
 /// Failure of a part with its interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,11 +57,8 @@ impl ScenarioSpec {
     /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
     pub(super) fn validate_failures(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
         for (number, sensor) in self.sensor.iter().enumerate() {
-            let failures = sensor.faults().iter().enumerate();
-            errors.extend(failures.filter_map(|(index, failure)| {
-                let error = failure.interval().validate()?;
-                Some(error.within(&format!("{}.faults[{index}]", self.sensor_key(number))))
-            }));
+            let key = format!("{}.faults", self.sensor_key(number));
+            errors.extend(errors_in(&key, sensor.faults(), |failure| failure.interval().validate()));
         }
         let members = self.actuator.members();
         errors.extend(members.iter().filter_map(|member| member.failure_fault(self.axis_count())));
