@@ -286,7 +286,7 @@ impl FrequencyTracking {
     }
 
     /// Creates the filter for a setting, extended or unscented by `prediction`; `draws` supplies a drawn prior.
-    fn filter(
+    pub fn filter(
         &self,
         setting: &FilterContext<'_>,
         prediction: Prediction,
