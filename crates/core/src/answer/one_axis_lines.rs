@@ -2,7 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use flexsc_control::estimator::EstimatorKind;
 use flexsc_formats::reader_units::{number, percent, time};
 
 use super::lines::{Lines, RunData};
@@ -136,7 +135,7 @@ impl RunData<'_> {
         if self.metrics.number("lock_lost").is_none() {
             return;
         }
-        if self.scenario.estimator.as_ref().is_some_and(EstimatorKind::is_assessed_only) {
+        if self.scenario.estimator.as_ref().is_some_and(|estimator| estimator.is_assessed_only()) {
             lines.other("filter", "not used by the law");
         }
         let Some(consistency) = self.consistency() else {
