@@ -151,6 +151,7 @@ mod typos;
 mod units;
 
 // Command: verbs, campaigns, figures, limits and live runs.
+mod answers;
 mod campaign_figures;
 mod campaigns;
 mod check;

@@ -13,11 +13,11 @@ mod scheduler;
 use std::io::Write;
 use std::ops::Range;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::answer::Answer;
+use flexsc_core::answer::{Answer, Observed};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
@@ -97,6 +97,8 @@ pub struct CampaignJob<'a> {
     pub json: bool,
     /// Options of the answer.
     pub answer: AnswerArgs,
+    /// What an observer saw, of a campaign of one run.
+    pub observed: Arc<Mutex<Option<Observed>>>,
     /// Address of the scheduler whose workers make the runs, if any.
     pub scheduler: Option<&'a str>,
     /// True if runs are simulated without a log: many of them are then simulated together in batches.
@@ -125,14 +127,15 @@ pub fn run(
         );
     }
     if !job.json {
-        let (name, took) = (&campaign.scenario().name, began.elapsed().as_secs_f64());
+        let took = began.elapsed().as_secs_f64();
         if let Some(only) = &reported.only {
-            job.answer.print(&job.answer.answer(campaign.scenario(), only, None), took, None);
+            let observed = job.observed.lock().unwrap_or_else(PoisonError::into_inner).take();
+            job.answer.print(&job.answer.answer(campaign.scenario(), only, observed), took, None);
             if let Some(path) = &reported.table {
                 say!("  table {}", path.display());
             }
         } else {
-            reported.say(name, Some(took), &job.answer);
+            reported.say(campaign.scenario(), Some(took), &job.answer);
         }
     }
     match reported.failed {
@@ -251,6 +254,11 @@ fn accepted(outcome: RunOutcome) -> Result<RunOutcome, CliError> {
 }
 
 impl CampaignJob<'_> {
+    /// Returns true for a campaign of one run, which is answered as a run.
+    pub fn is_single(&self) -> bool {
+        self.range.end - self.range.start == 1
+    }
+
     fn threads(&self) -> usize {
         usize::from(self.jobs.unwrap_or(0))
     }

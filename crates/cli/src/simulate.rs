@@ -293,8 +293,10 @@ fn several(
         jobs: args.jobs,
         json: args.json,
         answer: args.answer,
+        observed: Arc::default(),
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
-        plain: detail.is_none(),
+        // One run is observed.
+        plain: detail.is_none() && runs.range.end - runs.range.start > 1,
     };
     logs::run(campaign, &job, detail)
 }

@@ -239,6 +239,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         jobs: args.jobs,
         json: args.json,
         answer: AnswerArgs::of_units(args.units),
+        observed: Arc::default(),
         scheduler,
         plain: detail.is_none(),
     };

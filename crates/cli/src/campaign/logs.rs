@@ -2,10 +2,11 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 
 use clap::ValueEnum;
 use flexsc_core::SimulationError;
+use flexsc_core::answer::RunObserver;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, ExistingLog, LogFile, Record, RecordError, RunEnd, existing_log};
@@ -56,9 +57,16 @@ pub fn run(
     let log = move |number: u64| -> PathBuf { directory.join(format!("{name}-{number}.mcap")) };
     let verdicts = run_all(campaign, job, {
         let (log, selection) = (log.clone(), job.selection.clone());
+        let (observed, is_single) = (Arc::clone(&job.observed), job.is_single());
         move |run| match detail {
             // Runs that had not started before the interruption have no log.
             _ if stop::stop_requested() => Err(stop::interrupted().into()),
+            None if is_single => {
+                let mut observer = RunObserver::new(&run.scenario);
+                let metrics = Campaign::simulate_metrics(run, &selection, (stop_flag(), &mut observer))?;
+                *observed.lock().unwrap_or_else(PoisonError::into_inner) = Some(observer.finish());
+                Ok(metrics)
+            }
             None => Ok(Campaign::simulate_metrics(run, &selection, stop_flag())?),
             Some(detail) => {
                 Ok(selection.select(simulate_to_log(run, &log(run.number), (detail, force), stop_flag())?.0))

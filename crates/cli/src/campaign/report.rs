@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use flexsc_core::Scenario;
 use flexsc_core::answer::real_time;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{Units, percent, percent_beside};
@@ -65,8 +66,8 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 impl CampaignReport {
     /// Prints the points of a sweep, or the verdict, the requirements and the statistics of another campaign, which took
     /// some real time (s).
-    pub fn say(&self, name: &str, took: Option<f64>, args: &AnswerArgs) {
-        let runs = counted(self.runs, "run");
+    pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: &AnswerArgs) {
+        let (name, runs) = (&scenario.name, counted(self.runs, "run"));
         let took = took.map_or_else(String::new, |took| format!(" in {}", real_time(took)));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         if let (Some(points), true) = (&self.points, self.runs > 0) {
@@ -74,7 +75,7 @@ impl CampaignReport {
             table.into_iter().for_each(|table| say!("  {table}"));
             return;
         }
-        let verdict = self.verdict();
+        let verdict = self.verdict(scenario.reference.band.is_some());
         say!("{}", args.style(&format!("{name}   {verdict}   {runs}{took}")));
         if self.runs == 0 {
             return;
@@ -116,8 +117,8 @@ impl CampaignReport {
         self.statistics.iter().filter(move |s| s.runs > 0 && !is_verdict(s) && !is_idle(s) && !is_late(s))
     }
 
-    /// Returns the verdict in words: how many runs meet all requirements, or the goal.
-    fn verdict(&self) -> String {
+    /// Returns the verdict in words: how many runs meet all requirements, or the goal that the scenario gives.
+    fn verdict(&self, has_goal: bool) -> String {
         let share = |name: &str, what: &str| {
             let own = self.statistics.iter().find(|s| s.name == name && s.runs > 0)?;
             let met = (own.mean * own.runs as f64).round() as u64;
@@ -132,7 +133,10 @@ impl CampaignReport {
             ))
         };
         let what = match self.requirements.len() {
-            0 => return share(GOAL, "the goal").unwrap_or_else(|| "no requirement".to_owned()),
+            0 => {
+                let goal = share(GOAL, "the goal").filter(|_| has_goal);
+                return goal.unwrap_or_else(|| "no requirement".to_owned());
+            }
             1 => "the requirement".to_owned(),
             all => format!("all {all} requirements"),
         };
