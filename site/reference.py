@@ -240,7 +240,7 @@ GROUPS = {
     "sensitivities Sensitivities WorstCase PointingBudget IndexBudget "
     "BudgetLevel",
     "Linear models, margins and noise": "Linear Signal Margins LoopMargins StabilityMargins NoiseSpectrum "
-    "OutputNoise WheelSpectrum WheelLines OutputBound Witness TunedScenario "
+    "OutputNoise SettlingTime WheelSpectrum WheelLines OutputBound Witness TunedScenario "
     "TunedPlant TunedMeasure rigid_cycles gain_region stability_map "
     "robust_gains",
     "Your own parts": "Law ThreeAxisLaw CompiledLaw Sensor Estimator Actuator Adaptation "

@@ -206,6 +206,7 @@ mod wheel_figures;
 #[cfg(feature = "fmu")]
 mod export_fmu;
 mod extending;
+mod extending_verbs;
 mod frozen;
 mod habits;
 #[cfg(feature = "handover")]

@@ -100,7 +100,7 @@ fn the_command_tells_regions_schedules_and_maps() {
     assert!((rows[1]["midpoint"].as_f64().expect("a gain") - 0.1).abs() < 1e-9);
     assert_eq!(reported["schedule"][1]["gain"], rows[1]["midpoint"]);
     assert_eq!(reported["schedule"][1]["frequency"], rows[1]["frequency_rad_s"]);
-    let words = ["rad/s", " 0.2 ", "1.000", "180.3"];
+    let words = ["rad/s", "0.2    -0.8        1     0.1       183", "180.3"];
     dir.run(&format!("tune fitted.toml {few} --units si")).exits(0).says(&words);
     // The schedule is one that a scenario takes.
     let known = "[sensor.sampled]\nperiod = 0.3\n[estimator.truth]\n";

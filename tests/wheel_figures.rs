@@ -172,7 +172,7 @@ fn tuned_gains_are_drawn() {
         "tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures --units si {FITTED_OPTIONS} --set sensor.sampled.period=0.3"
     ))
     .exits(0)
-    .says(&["wheel-scheduled-gain-tune-region.png", "0.3    -0.900"]);
+    .says(&["wheel-scheduled-gain-tune-region.png", "0.3    -0.9"]);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
     region.shows(&["highest gain tried"]);
     assert!(!region.texts().iter().any(|text| text.contains("robust")));

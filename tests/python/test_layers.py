@@ -17,22 +17,21 @@ LAYERS = {
         _topic _units _values parts scenario
     """,
     "results": """
-        _budget _controllers _damping _design _flight_code _frequency_response _linear _loop_margins _margins
-        _model_state _noise _optimisation _output_bounds _plan _read _report _result _sampled_loop
-        _structured_tuning _worst_case
+        _axes_look _controllers _damping _design _flight_code _frequency_response _linear _margins
+        _model_state _noise _optimisation _plan _read _report _result _review_figures _sampled_loop results
     """,
     "scenario": """
         _campaign _copies _executor _log _own_parts_campaign _population _row _scenario _sensitivity
         _simulator _simulators _sources _table _threads
     """,
     "tools": """
-        __init__ __main__ _axes_look _episodes _frequency_figures _review_figures _stable_baselines _tutorials
-        _vector_env basilisk dask gym lockstep plot structure
+        __init__ __main__ _episodes _frequency_figures _stable_baselines _tutorials _vector_env basilisk
+        dask gym lockstep plot structure
     """,
 }
 LAYER = {module: rank for rank, modules in enumerate(LAYERS.values()) for module in modules.split()}
 # Results draw themselves by these, which import Matplotlib.
-DRAWING = {"_frequency_figures", "_review_figures", "plot"}
+DRAWING = {"_frequency_figures", "plot"}
 
 
 def imports(tree: ast.AST, within: bool = False) -> Iterator[tuple[str, bool]]:

@@ -15,6 +15,7 @@ use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::BodyAxes;
 use nalgebra::{DMatrix, Matrix3};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use flexsc_scenario::Scenario;
@@ -37,7 +38,8 @@ pub struct LinearModel {
 }
 
 /// Name and unit of a state, an input or an output.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[schemars(extend("x-main" = "name"))]
 pub struct Signal {
     /// Name of the signal.
     pub name: String,

@@ -4,6 +4,7 @@
 use std::fmt;
 
 use flexsc_formats::document::ConfigError;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::margins::{StabilityMargins, UnstableLoop, common_delay};
@@ -12,7 +13,7 @@ use super::settling_time::SettlingTime;
 use flexsc_scenario::Scenario;
 
 /// Margins of the loop of a scenario, cut open at a point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct ScenarioMargins {
     /// Margins of the signals.
     #[serde(flatten)]
@@ -20,9 +21,11 @@ pub struct ScenarioMargins {
     /// Loop, cut open.
     #[serde(skip)]
     pub cut: OpenLoop,
-    /// Smallest additional delay of all actuators together that makes the loop unstable (s); none if there is none.
+    /// Smallest additional delay (s) of all actuators together that makes the loop unstable.
+    #[schemars(extend("x-name" = "delay", "x-null" = "infinite"))]
     pub common_delay_s: Option<f64>,
     /// Settling times of each angle after a step of the target about each axis; none if they cannot be computed.
+    #[schemars(extend("x-name" = "settling_times"))]
     pub settling: Vec<SettlingTime>,
 }
 

@@ -9,6 +9,7 @@ use flexsc_control::law::LAST_ANGLE;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use nalgebra::{Complex, DMatrix};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::eigenvalues::eigenvalues;
@@ -35,13 +36,15 @@ const FASTEST: f64 = 700.0;
 const HALVINGS: usize = 200;
 
 /// Settling time of an angle after a step about an axis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SettlingTime {
     /// Axis of the step: `roll`, `pitch` or `yaw`, and `angle` for a body with one axis.
     pub step: &'static str,
     /// Axis of the angle, in the same words.
     pub angle: &'static str,
-    /// Time after which the angle stays within [`SETTLING_BAND`] of the step (s); infinite if a part does not decay.
+    /// Time (s) after which the angle stays within 5 % of the step, a bound by the poles of the loop; infinite if a part does
+    /// not decay.
+    #[schemars(extend("x-null" = "infinite"))]
     pub time_s: f64,
 }
 

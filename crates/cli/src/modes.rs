@@ -14,9 +14,10 @@ use flexsc_core::spacecraft::body::{BodyAxes, Drive};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::human::{Units, UnitsArgs, digits};
 use crate::number::unsigned_zero;
 use crate::results::{Results, show, with_scenario_name};
+use crate::row_table::print_table;
 use crate::{say, scenario};
 
 /// Largest number of modes for which the weights of outputs are printed side by side.
@@ -81,13 +82,6 @@ pub fn results(scenario: &Scenario, args: &ModesArgs) -> Box<dyn Results> {
 
 pub fn run(args: &ModesArgs) -> Result<(), CliError> {
     show(&*results(&args.scenario.load()?, args), None, args.scenario.json)
-}
-
-/// Prints rows of text in columns.
-fn print_table(rows: &[Vec<String>], left_aligned: usize) {
-    for line in columns(rows, left_aligned) {
-        say!("  {line}");
-    }
 }
 
 fn texts(words: &[&str]) -> Vec<String> {

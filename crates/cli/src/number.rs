@@ -5,11 +5,6 @@ pub fn number_or_none(value: Option<f64>, format: impl Fn(f64) -> String) -> Str
     value.map_or_else(|| "none".to_owned(), format)
 }
 
-/// Formats a number with `decimals` decimals, or as missing.
-pub fn fixed(value: Option<f64>, decimals: usize) -> String {
-    number_or_none(value, |value| format!("{value:.decimals$}"))
-}
-
 /// Formats a number with `decimals` decimals, without the sign of one that is rounded to 0.
 pub fn unsigned_zero(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");

@@ -21,6 +21,22 @@ impl NumberTable {
         Self { columns, rows }
     }
 
+    /// Returns the table of groups of structs, with the number of the group as the first column. The fields of a struct
+    /// within a struct have its name before theirs.
+    pub fn from_groups<T: Serialize>(group: &str, groups: &[Vec<T>]) -> Self {
+        let mut table = Self { columns: Vec::new(), rows: Vec::new() };
+        for (number, rows) in groups.iter().enumerate() {
+            for row in rows {
+                let mut cells = vec![(group.to_owned(), Some(number as f64))];
+                flatten("", &json!(row), &mut cells);
+                let (columns, row) = cells.into_iter().unzip();
+                table.columns = columns;
+                table.rows.push(row);
+            }
+        }
+        table
+    }
+
     /// Returns the table as CSV.
     ///
     /// # Errors
@@ -34,6 +50,16 @@ impl NumberTable {
             writer.write_record(row.iter().copied().map(text))?;
         }
         Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
+    }
+}
+
+/// Appends the names and the numbers of an object's fields.
+fn flatten(before: &str, object: &Json, cells: &mut Vec<(String, Option<f64>)>) {
+    for (name, value) in object.as_object().into_iter().flatten() {
+        match value {
+            Json::Object(_) => flatten(&format!("{before}{name}_"), value, cells),
+            value => cells.push((format!("{before}{name}"), value.as_f64())),
+        }
     }
 }
 

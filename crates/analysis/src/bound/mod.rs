@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::enclosure::Enclosure;
 use flexsc_numerics::quantity::{Finite, Positive};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::linear_model::{LinearModel, Signal};
@@ -42,7 +43,7 @@ const MOST_INSTANTS: f64 = 1e6;
 const MOST_ROWS: usize = 2000;
 
 /// Outcome of a claim.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The output stays within its limits.
@@ -56,7 +57,7 @@ pub enum Verdict {
 }
 
 /// Range of an output at one instant.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RangeRow {
     /// Time (s).
     pub time_s: f64,
@@ -67,25 +68,26 @@ pub struct RangeRow {
 }
 
 /// Guaranteed range of an output, and the verdict about its limits.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct OutputBound {
-    /// Output.
+    /// Name of the output.
+    #[schemars(extend("x-flat" = "{}"))]
     pub output: Signal,
     /// True if the output is without the rigid motion.
     pub elastic: bool,
-    /// Limits of the claim.
+    /// Limits of the claim, in the unit of the output.
     pub limits: Option<[f64; 2]>,
     /// End of the interval of time (s).
     pub until_s: f64,
-    /// Outcome.
+    /// Outcome; `unlimited` without limits.
     pub verdict: Verdict,
-    /// Guaranteed range over the whole interval.
+    /// Guaranteed range over the whole interval, rounded outwards.
     pub range: [f64; 2],
     /// Range that is attained by states and inputs that are known.
     pub attained: [f64; 2],
     /// Times (s) at which the range is attained.
     pub attained_at_s: [f64; 2],
-    /// Time (s) before which no limit is passed: `until_s` if the claim is proved.
+    /// Time (s) before which no limit is passed: the end of the interval if the claim is proved.
     pub safe_until_s: Option<f64>,
     /// First time (s) at which a limit is passed for a state and inputs of the sets.
     pub violated_at_s: Option<f64>,

@@ -1,6 +1,7 @@
 //! Witness of a violation: a state at the start and inputs over time that bring the output beyond its limits.
 
 use flexsc_numerics::enclosure::Enclosure;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::exact_tube::ExactTube;
@@ -9,13 +10,13 @@ use super::reach::Side;
 use super::sets::InputSets;
 
 /// State at the start and inputs that bring the output to an end of its range.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Witness {
     /// Time (s) at which the output has this value.
     pub time_s: f64,
-    /// Value of the output.
+    /// Value of the output, in its unit.
     pub value: f64,
-    /// Value in a run of the engine from this state under these inputs; `None` if no run is possible.
+    /// Value in a run of the engine from this state under these inputs, if a run is possible.
     pub simulated: Option<f64>,
     /// Factor on every natural frequency of the scenario.
     pub frequency_factor: f64,
@@ -23,14 +24,20 @@ pub struct Witness {
     pub damping_factor: f64,
     /// Names of the states, in the order of the linear model.
     pub states: Vec<String>,
-    /// State at the start.
+    /// State at the start, of the states in their order.
     pub start: Vec<f64>,
-    /// Each input over time.
+    /// Times (s) from which each value of an input acts, and the values, by the name of the input.
+    #[schemars(extend("x-key" = "name"))]
     pub inputs: Vec<InputHistory>,
+    /// Scenario of the body from this state, under these inputs as disturbances; none if no file can have them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-type" = "Scenario"))]
+    pub scenario: Option<String>,
 }
 
 /// Input that is constant between instants.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-tuple" = true))]
 pub struct InputHistory {
     /// Name of the input.
     pub name: String,
@@ -80,6 +87,7 @@ pub fn extreme_inputs(
         frequency_factor: 1.0,
         damping_factor: 1.0,
         states: Vec::new(),
+        scenario: None,
         inputs: inputs.collect(),
         start: start.iter().zip(&sets.start).map(|(response, range)| chosen(*range, *response)).collect(),
     }

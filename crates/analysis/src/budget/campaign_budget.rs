@@ -5,6 +5,8 @@ use super::run_sources::{IndexRun, ValueTimes, fit_sources};
 use super::{ErrorSources, LEVELS};
 use flexsc_numerics::order_statistics::order_statistic;
 use flexsc_scenario::{AssessedRequirement, Interpretation, SampledError};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 /// Interpretations of a level, in the order in which they are reported.
 pub const INTERPRETATIONS: [Interpretation; 3] =
@@ -30,13 +32,13 @@ pub struct CampaignBudget {
 }
 
 /// Level of the magnitude of an index at a probability, in three ways.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct BudgetLevel {
     /// Order statistic of the runs; NaN without values.
     pub campaign: f64,
-    /// Convolution of the distributions of the sources.
+    /// Level of the sum of the error sources by convolution.
     pub convolution: Option<f64>,
-    /// Rule of k sigma.
+    /// Level by the rule of k sigma.
     pub rule: Option<f64>,
 }
 

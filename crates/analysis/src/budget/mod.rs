@@ -9,6 +9,7 @@ mod campaign_budget;
 mod convolution;
 mod linear_noise;
 mod linear_sources;
+mod report;
 mod run_sources;
 
 use flexsc_scenario::Interpretation;
@@ -18,6 +19,7 @@ pub use convolution::Mixture;
 use convolution::Sum;
 pub use linear_noise::{linear_noise, noise_cycle};
 pub use linear_sources::{DisturbedLoop, linear_sources, sine_frequencies};
+pub use report::{IndexBudget, LevelsAtProbability, LinearLevel, PointingBudget, SourceNumbers};
 pub use run_sources::IndexRun;
 
 /// Levels at which a budget is stated: those of one, two and three standard deviations of a Gaussian number.

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use flexsc_numerics::scalar_search::root;
 use nalgebra::{Complex, DMatrix, DVector};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frequency_response::{FrequencyResponse, modulus, unit_circle};
@@ -17,18 +18,18 @@ const SMALLEST: f64 = 1e-9;
 const LARGEST: f64 = 1e9;
 
 /// Frequency at which the loop gain is 1.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct GainCrossing {
     /// Frequency (rad/s).
     pub frequency_rad_s: f64,
     /// Phase margin (rad), from -pi to pi: positive if the loop may lag by it, negative if it may lead.
     pub phase_rad: f64,
-    /// Delay that uses up the phase (s); none for several samples in a period, where a delay is more than a phase.
+    /// Delay (s) that uses up the phase; none for several samples in a period, where a delay is more than a phase.
     pub delay_s: Option<f64>,
 }
 
 /// Frequency at which the loop transfer is real and negative.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseCrossing {
     /// Frequency (rad/s).
     pub frequency_rad_s: f64,
@@ -37,11 +38,13 @@ pub struct PhaseCrossing {
 }
 
 /// Crossings of a loop, each in increasing order of frequency.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, JsonSchema)]
 pub struct Crossings {
-    /// Crossings of the unit circle.
+    /// Crossings of the unit circle, where the loop gain is 1, in increasing order of frequency.
+    #[schemars(extend("x-name" = "gain_crossings"))]
     pub gain: Vec<GainCrossing>,
-    /// Crossings of the negative real axis.
+    /// Crossings of the negative real axis, in increasing order of frequency.
+    #[schemars(extend("x-name" = "phase_crossings"))]
     pub phase: Vec<PhaseCrossing>,
 }
 

@@ -20,7 +20,8 @@ use std::f64::consts::PI;
 
 use flexsc_numerics::scalar_search::maximum;
 use nalgebra::{Complex, DMatrix};
-use serde::{Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::Serialize;
 
 pub use common_factor::{CommonMargins, NoMargins};
 pub use crossings::{Crossings, GainCrossing, PhaseCrossing};
@@ -47,25 +48,26 @@ use loci::loci;
 const REFINED: usize = 3;
 
 /// Margins of a stable loop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct StabilityMargins {
     /// Largest magnitude of a pole of the closed loop.
     pub spectral_radius: f64,
     /// Point at which the loop is cut open.
-    #[serde(rename = "loop", serialize_with = "break_name")]
+    #[serde(rename = "loop")]
     pub opened: LoopBreak,
-    /// Period after which the loop repeats (s).
+    /// Period (s) after which the loop repeats.
     pub period_s: f64,
     /// Samples of the law in a period.
     pub samples: usize,
     /// Margins of each signal at the break, with the loops of the others closed.
+    #[schemars(extend("x-key" = "signal"))]
     pub loops: Vec<SignalMargins>,
-    /// Modulus margin of all signals together.
+    /// Modulus margin of all signals together: the inverse of the largest gain of the sensitivity.
     pub modulus: PeakMargin,
-    /// Disk margin of all signals together, for any perturbation of the matrix of loop gains.
+    /// Disk margin alpha of all signals together, for any perturbation of the matrix of loop gains.
     pub disk: DiskMargin,
-    /// Disk margin of all signals together, each with a perturbation of its own; none for one signal, and for several
-    /// samples in a period.
+    /// Disk margin alpha of all signals together, each with a perturbation of its own; it is not computed for one signal, nor
+    /// for several samples of the law in a period.
     pub independent_disk: Option<DiskMargin>,
     /// Largest singular values over frequency.
     #[serde(skip)]
@@ -73,9 +75,10 @@ pub struct StabilityMargins {
 }
 
 /// Largest singular values of all signals together at a frequency.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SingularValues {
-    /// Frequency (rad/s).
+    /// Frequencies (rad/s) of the singular values, up to pi over the period, which follow the resonances. With several
+    /// samples of the law in a period, the motion at a frequency also has its aliases.
     pub frequency_rad_s: f64,
     /// Largest singular value of the sensitivity S = (1 + L)^-1.
     pub sensitivity: f64,
@@ -83,13 +86,9 @@ pub struct SingularValues {
     pub complementary: f64,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
-fn break_name<S: Serializer>(opened: &LoopBreak, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(opened.name())
-}
-
-/// Margins of one signal at the break.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// Margins of one signal at the break, with the loops of the other signals closed.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "LoopMargins")]
 pub struct SignalMargins {
     /// Name of the signal.
     pub signal: String,
@@ -98,15 +97,17 @@ pub struct SignalMargins {
     pub crossings: Crossings,
     /// Largest factor below 1 on the loop gain at which the loop is at the limit of stability; 0 if there is none.
     pub gain_below: f64,
-    /// Smallest factor above 1 on the loop gain at which the loop is at the limit of stability; none if there is none.
+    /// Smallest factor above 1 on the loop gain at which the loop is at the limit of stability.
+    #[schemars(extend("x-null" = "infinite"))]
     pub gain_above: Option<f64>,
-    /// Smallest phase, of either sign, that makes the loop unstable (rad); pi if there is none.
+    /// Smallest phase (rad), of either sign, that makes the loop unstable; pi if there is none.
     pub phase_rad: f64,
-    /// Smallest delay that makes the loop unstable (s); none if there is none, or for several samples in a period.
+    /// Smallest delay (s) that makes the loop unstable; it is not computed for several samples of the law in a period.
+    #[schemars(extend("x-null" = "infinite"))]
     pub delay_s: Option<f64>,
     /// Modulus margin: smallest distance of the loop transfer from -1.
     pub modulus: PeakMargin,
-    /// Disk margin.
+    /// Disk margin alpha: gains of (2 - alpha)/(2 + alpha) to its inverse, and phases up to 2 atan(alpha/2), at once.
     pub disk: DiskMargin,
     /// Loop transfer over frequency: its value, or its eigenvalues for several samples in a period.
     #[serde(skip)]
@@ -114,24 +115,26 @@ pub struct SignalMargins {
 }
 
 /// Margin that is the inverse of a largest value over frequency.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-main" = "margin"))]
 pub struct PeakMargin {
     /// Margin.
     pub margin: f64,
-    /// Frequency at which it is attained (rad/s).
+    /// Frequency (rad/s) at which it is attained.
     pub frequency_rad_s: f64,
 }
 
 /// Symmetric disk margin: gain and phase may be off together.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-main" = "alpha"))]
 pub struct DiskMargin {
     /// Margin alpha, at most 2.
     pub alpha: f64,
-    /// Frequency at which it is attained (rad/s).
+    /// Frequency (rad/s) at which it is attained.
     pub frequency_rad_s: f64,
     /// Factors on the loop gain within which the loop is stable.
     pub gains: [f64; 2],
-    /// Phase of either sign up to which the loop is stable (rad).
+    /// Phase (rad) of either sign up to which the loop is stable.
     pub phase_rad: f64,
 }
 

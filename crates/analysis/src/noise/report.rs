@@ -1,7 +1,9 @@
 //! Noise of the outputs of a loop in numbers: rms by source, densities, and indices over windows.
 
 use flexsc_formats::document::ConfigError;
+use schemars::JsonSchema;
 use serde::Serialize;
+use serde_json::Value as Json;
 
 use super::density::cumulative_rms;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
@@ -26,11 +28,12 @@ pub struct NoiseRequest {
 }
 
 /// Noise of some outputs of a loop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "NoiseSpectrum")]
 pub struct NoiseReport {
     /// Largest magnitude of a pole of the closed loop over a period.
     pub spectral_radius: f64,
-    /// Period after which the loop repeats (s).
+    /// Period (s) after which the loop repeats.
     pub period_s: f64,
     /// Samples of the law in a period.
     pub samples: usize,
@@ -38,17 +41,20 @@ pub struct NoiseReport {
     pub nyquist_hz: f64,
     /// Sources of noise: keys of the scenario.
     pub sources: Vec<String>,
-    /// Frequencies of the densities (Hz).
+    /// Frequencies of the densities (Hz), up to the Nyquist frequency.
+    #[schemars(extend("x-name" = "frequency"))]
     pub frequency_hz: Vec<f64>,
     /// Noise of each output.
+    #[schemars(extend("x-key" = "output"))]
     pub outputs: Vec<OutputNoise>,
     /// Lines of the imbalance of the wheels, if they have one.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<Json>", extend("x-type" = "WheelSpectrum | None"))]
     pub wheels: Option<WheelSpectrum>,
 }
 
 /// Noise of an output, in its unit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct OutputNoise {
     /// Name of the output.
     pub output: String,
@@ -59,10 +65,12 @@ pub struct OutputNoise {
     /// Rms at the samples of the law.
     pub sample_rms: f64,
     /// Rms over time from each source.
+    #[schemars(extend("x-names" = "sources"))]
     pub rms_by_source: Vec<f64>,
     /// One-sided power spectral density at the samples (unit² per Hz).
     pub density: Vec<f64>,
     /// Density from each source (unit² per Hz).
+    #[schemars(extend("x-names" = "sources"))]
     pub density_by_source: Vec<Vec<f64>>,
     /// Rms up to each frequency.
     pub cumulative_rms: Vec<f64>,

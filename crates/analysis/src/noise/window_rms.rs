@@ -1,5 +1,6 @@
 //! Pointing indices over windows as rms: of the noise of a loop, and of lines.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::lines::SpectralLine;
@@ -8,7 +9,8 @@ use super::windows::{Window, WindowVariances, WindowWeights};
 
 /// Rms of an output over windows, in the unit of the output: of noise over those that begin at a sample of the law, of the
 /// lines of wheels over those that begin at any time.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-dict" = true))]
 pub struct WindowRms {
     /// Length of the window (s).
     pub window_s: f64,

@@ -20,6 +20,8 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::inverse::inverse;
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 pub use transfer::TransferMatrices;
 
@@ -29,12 +31,13 @@ use super::state_space::StateSpaceModel;
 use flexsc_scenario::Scenario;
 
 /// Point at which a loop is cut open.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum LoopBreak {
-    /// Command of the law.
+    /// Commands of the law.
     #[default]
     Command,
-    /// Output of the actuator.
+    /// Torques of the actuator.
     Torque,
     /// Measured angles and rates.
     Measurement,

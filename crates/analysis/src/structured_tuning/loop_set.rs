@@ -1,6 +1,8 @@
 //! Loops of a tuning: that of each plant, with the quantities of the goal and their derivatives in the parameters.
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use super::goal::TuningGoal;
 use super::linear_step::{PENALTY, Slope};
@@ -37,13 +39,14 @@ pub struct LoopSet<'a> {
 }
 
 /// Margin of a plant.
-#[derive(Copy, Clone, Debug, PartialEq)]
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct PlantMargin {
     /// Index of the plant.
+    #[serde(skip)]
     pub plant: usize,
     /// Modulus margin of all signals together; 0 if the loop is not stable.
     pub margin: f64,
-    /// Frequency at which it is attained (rad/s).
+    /// Frequency (rad/s) at which it is attained; it is often attained at several, of which this is one.
     pub frequency_rad_s: f64,
     /// Largest magnitude of a pole of the closed loop.
     pub spectral_radius: f64,

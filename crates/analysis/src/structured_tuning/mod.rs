@@ -22,7 +22,9 @@ use flexsc_formats::document::ConfigError;
 pub use goal::{TunedMeasure, TuningGoal, TuningLimit, TuningObjective};
 pub use loop_set::{LoopSet, PlantMargin, TunedPlant};
 pub use scenario_loops::{MOST_UNCERTAIN, ScenarioLoops};
-pub use scenario_tuning::{MOST_TUNED, ScenarioTuning, TunedScenario};
+pub use scenario_tuning::{
+    KeyChange, MOST_TUNED, MeasureChange, PlantChange, ScenarioTuning, TunedScenario, TuningReport,
+};
 pub use sensitivity_minima::LoopSensitivity;
 
 use loop_set::Evaluation;

@@ -1,6 +1,10 @@
 //! Tuning of keys of a scenario over its plants.
 
+use std::collections::BTreeMap;
+
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 use toml::Value;
 
@@ -8,7 +12,7 @@ use super::goal::{TunedMeasure, TuningGoal, TuningLimit, TuningObjective};
 use super::loop_set::{LoopSet, PlantMargin};
 use super::scenario_loops::ScenarioLoops;
 use super::scenario_measure::ScenarioMeasure;
-use super::{TunedLoop, TunedParameter, TuningFault, TuningPoint, tune};
+use super::{TunedLoop, TunedParameter, TuningFault, tune};
 use crate::open_loop::LoopBreak;
 use flexsc_scenario::Scenario;
 
@@ -30,6 +34,86 @@ pub struct ScenarioTuning {
     pub bandwidth: Option<f64>,
     /// True for the nominal plant alone, without the corners of the uncertain keys.
     pub is_nominal: bool,
+}
+
+/// Tuned keys, with the margins of the plants before and after.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "TunedScenario")]
+pub struct TuningReport {
+    /// Point at which the loops are cut open.
+    #[serde(rename = "loop")]
+    pub opened: LoopBreak,
+    /// Quantities besides the margins that were minimised or limited.
+    #[schemars(extend("x-key" = "name"))]
+    pub measures: Vec<MeasureChange>,
+    /// Least modulus margin that every plant was to keep.
+    pub margin_limit: Option<f64>,
+    /// Least modulus margin of all plants with the keys of the scenario.
+    pub least_margin_before: f64,
+    /// Least modulus margin of all plants with the tuned keys.
+    pub least_margin: f64,
+    /// Least loop gain of the nominal plant at the bandwidth, with the keys of the scenario.
+    pub bandwidth_gain_before: Option<f64>,
+    /// Least loop gain of the nominal plant at the bandwidth, with the tuned keys.
+    pub bandwidth_gain: Option<f64>,
+    /// Number of steps of the search.
+    pub steps: usize,
+    /// Value of each tuned key.
+    #[schemars(extend("x-key" = "key"))]
+    pub keys: Vec<KeyChange>,
+    /// Plants: the nominal one, then the corners of the uncertain keys.
+    pub plants: Vec<PlantChange>,
+}
+
+/// Tuned key.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(extend("x-main" = "after"))]
+pub struct KeyChange {
+    /// Key of the scenario, such as `law.pd.k_d`.
+    pub key: String,
+    /// Value in the scenario that was tuned.
+    pub before: f64,
+    /// Tuned value.
+    pub after: f64,
+    /// Least and largest value.
+    pub range: [f64; 2],
+}
+
+/// Quantity besides the margins that a tuning minimised or limited, with its largest value of all plants.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "TunedMeasure")]
+pub struct MeasureChange {
+    /// Name: `settling`, or that of a requirement.
+    pub name: String,
+    /// Unit of the values and of the limit.
+    pub unit: &'static str,
+    /// True if it was minimised.
+    pub is_objective: bool,
+    /// Largest value with the keys of the scenario; infinite if it has no bound.
+    #[schemars(extend("x-null" = "infinite"))]
+    pub before: f64,
+    /// Largest value with the tuned keys; infinite if it has no bound.
+    #[schemars(extend("x-name" = "value", "x-null" = "infinite"))]
+    pub after: f64,
+    /// Limit that was to be kept.
+    pub limit: Option<f64>,
+    /// Index of the plant with the largest value.
+    pub worst_plant: usize,
+}
+
+/// Margins of a plant before and after tuning.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(rename = "TunedPlant")]
+pub struct PlantChange {
+    /// Values of the uncertain keys at its corner; none for the nominal plant.
+    #[schemars(with = "BTreeMap<String, f64>")]
+    pub values: Map<String, Json>,
+    /// With the keys of the scenario.
+    #[schemars(extend("x-flat" = "{}_before"))]
+    pub before: PlantMargin,
+    /// With the tuned keys.
+    #[schemars(extend("x-flat" = "{}"))]
+    pub after: PlantMargin,
 }
 
 /// Tuned scenario.
@@ -166,59 +250,47 @@ impl TunedScenario {
     }
 
     /// Returns the keys with their values, and the plants with their margins, before and after.
-    pub fn to_json(&self) -> Json {
-        let points = self.tuned.before.values.iter().zip(&self.tuned.after.values);
-        let key = |(parameter, (before, after)): (&TunedParameter, (&f64, &f64))| json!({"key": parameter.key, "before": before, "after": after, "range": parameter.range});
-        let keys: Vec<Json> = self.parameters.iter().zip(points).map(key).collect();
-        let plants: Vec<Json> = (0..self.loops.plants())
-            .map(|plant| {
-                let values =
-                    self.loops.plant(plant).into_iter().map(|(key, value)| (key.to_owned(), json!(value)));
-                let margin = |point: &TuningPoint| margin_json(&point.plants[plant]);
-                json!({
-                    "values": values.collect::<Map<String, Json>>(),
-                    "before": margin(&self.tuned.before),
-                    "after": margin(&self.tuned.after),
-                })
-            })
-            .collect();
+    pub fn report(&self) -> TuningReport {
+        let TunedLoop { before, after, steps } = &self.tuned;
+        let keys = self.parameters.iter().zip(before.values.iter().zip(&after.values));
         let measures = self.goal.measures.iter().enumerate().map(|(index, measure)| {
-            let (before, after) = (self.tuned.before.measures[index], self.tuned.after.measures[index]);
-            json!({
-                "name": measure.name,
-                "unit": measure.unit,
-                "is_objective": self.goal.minimised == Some(index),
-                "before": finite(before.0),
-                "after": finite(after.0),
-                "limit": measure.limit,
-                "worst_plant": after.1,
-            })
+            let ((was, _), (is, worst_plant)) = (before.measures[index], after.measures[index]);
+            MeasureChange {
+                name: measure.name.clone(),
+                unit: measure.unit,
+                is_objective: self.goal.minimised == Some(index),
+                before: was,
+                after: is,
+                limit: measure.limit,
+                worst_plant,
+            }
         });
-        let measures: Vec<Json> = measures.collect();
-        json!({
-            "loop": self.opened.name(),
-            "measures": measures,
-            "margin_limit": self.goal.least_margin,
-            "least_margin_before": self.tuned.before.least(),
-            "least_margin": self.tuned.after.least(),
-            "bandwidth_gain_before": self.tuned.before.bandwidth_gain,
-            "bandwidth_gain": self.tuned.after.bandwidth_gain,
-            "steps": self.tuned.steps,
-            "keys": keys,
-            "plants": plants,
-        })
+        let plant = |index: usize| {
+            let values = self.loops.plant(index).into_iter();
+            PlantChange {
+                values: values.map(|(key, value)| (key.to_owned(), json!(value))).collect(),
+                before: before.plants[index],
+                after: after.plants[index],
+            }
+        };
+        TuningReport {
+            opened: self.opened,
+            measures: measures.collect(),
+            margin_limit: self.goal.least_margin,
+            least_margin_before: before.least(),
+            least_margin: after.least(),
+            bandwidth_gain_before: before.bandwidth_gain,
+            bandwidth_gain: after.bandwidth_gain,
+            steps: *steps,
+            keys: keys
+                .map(|(parameter, (before, after))| KeyChange {
+                    key: parameter.key.clone(),
+                    before: *before,
+                    after: *after,
+                    range: parameter.range,
+                })
+                .collect(),
+            plants: (0..self.loops.plants()).map(plant).collect(),
+        }
     }
-}
-
-/// Returns a number as JSON, with null for one that is not finite.
-fn finite(value: f64) -> Json {
-    if value.is_finite() { json!(value) } else { Json::Null }
-}
-
-fn margin_json(margin: &PlantMargin) -> Json {
-    json!({
-        "margin": margin.margin,
-        "frequency_rad_s": margin.frequency_rad_s,
-        "spectral_radius": margin.spectral_radius,
-    })
 }

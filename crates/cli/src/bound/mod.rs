@@ -163,13 +163,8 @@ impl Results for OutputBounds {
     }
 
     fn table(&self) -> Option<NumberTable> {
-        let columns = ["claim", "time_s", "low", "high"].map(str::to_owned).to_vec();
-        let claims = self.bounds.iter().enumerate();
-        let rows = claims.flat_map(|(index, bound)| {
-            let rows = bound.rows.iter();
-            rows.map(move |row| vec![Some(index as f64), Some(row.time_s), Some(row.low), Some(row.high)])
-        });
-        Some(NumberTable { columns, rows: rows.collect() })
+        let rows: Vec<_> = self.bounds.iter().map(|bound| bound.rows.clone()).collect();
+        Some(NumberTable::from_groups("claim", &rows))
     }
 
     fn print(&self) -> Result<(), CliError> {

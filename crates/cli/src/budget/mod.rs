@@ -9,7 +9,7 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use flexsc_core::analysis::budget::{
-    CampaignBudget, DisturbedLoop, ErrorSources, INTERPRETATIONS, IndexRun, LEVELS, linear_noise,
+    CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_noise,
     linear_sources, noise_cycle, sine_frequencies,
 };
 use flexsc_core::campaign::{Campaign, Design};
@@ -23,10 +23,11 @@ use serde_json::{Value as Json, json};
 use self::ensemble::Ensemble;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::human::{Units, UnitsArgs, digits};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
-use crate::results::{Results, print_lines};
+use crate::results::{Results, print_lines, with_scenario_name};
+use crate::row_table::{column, print_rows};
 use crate::stop::{self, stop_flag};
 use crate::{requirements, say, scenario};
 
@@ -76,15 +77,15 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
     requirements::validate([(budgets.name.as_str(), &budgets.verdicts[..])])
 }
 
-/// Returns the budgets of a scenario as JSON, as `--json` prints them.
+/// Computes the budgets of a scenario.
 ///
 /// # Errors
 /// A scenario without a requirement on a pointing index, and a run that fails.
-pub fn pointing_budget(scenario: Scenario, runs: u64, jobs: u16) -> Result<Json, String> {
+pub fn pointing_budget(scenario: Scenario, runs: u64, jobs: u16) -> Result<PointingBudget, String> {
     let name = scenario.name.clone();
     let setup = CampaignSetup { origin: name, runs, jobs, units: Units::Si, consent: None };
     let budgets = setup.budgets(scenario).map_err(|failure| failure.to_string())?;
-    Ok(budgets.json().remove(0))
+    Ok(budgets.report())
 }
 
 /// Runs the campaign, and computes the budgets.
@@ -211,50 +212,7 @@ impl CampaignSetup {
 
 impl Results for Budgets {
     fn json(&self) -> Vec<Json> {
-        let budget = |budget: &CampaignBudget| {
-            let level = |(probability, levels): (&f64, &[_; 3])| {
-                let mut object = json!({ "level": probability });
-                for (interpretation, level) in INTERPRETATIONS.iter().zip(levels) {
-                    let level: &flexsc_core::analysis::budget::BudgetLevel = level;
-                    object[interpretation.word()] = json!({
-                        "campaign": level.campaign,
-                        "convolution": level.convolution,
-                        "rule": level.rule,
-                    });
-                }
-                object
-            };
-            let sources = |of: &ErrorSources| {
-                json!({
-                    "bias": of.bias(),
-                    "bias_spread": of.bias_spread(),
-                    "largest_bias": of.largest_bias(),
-                    "amplitudes": of.amplitudes(),
-                    "noise": of.noise(),
-                })
-            };
-            let linear_level = |(level, value): (&f64, f64)| json!({ "level": level, "convolution": value });
-            let linear_levels = budget
-                .linear_levels
-                .map(|levels| LEVELS.iter().zip(levels).map(linear_level).collect::<Vec<_>>());
-            json!({
-                "name": budget.requirement.name,
-                "description": budget.requirement.description(),
-                "unit": budget.requirement.unit,
-                "limit": budget.requirement.limit,
-                "sources": budget.sources.as_ref().map(sources),
-                "linear_noise": budget.linear_noise,
-                "linear_sources": budget.linear_sources.as_ref().map(sources),
-                "linear_levels": linear_levels,
-                "levels": LEVELS.iter().zip(&budget.levels).map(level).collect::<Vec<_>>(),
-            })
-        };
-        vec![json!({
-            "scenario": self.name,
-            "runs": self.runs,
-            "budgets": self.indices.iter().map(budget).collect::<Vec<_>>(),
-            "requirements": requirements::json(&self.verdicts),
-        })]
+        vec![with_scenario_name(&self.name, json!(self.report()))]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -262,24 +220,8 @@ impl Results for Budgets {
     }
 
     fn table(&self) -> Option<NumberTable> {
-        let mut names = vec!["budget".to_owned(), "level".to_owned()];
-        for interpretation in INTERPRETATIONS {
-            names.extend(
-                ["campaign", "convolution", "rule"].map(|way| format!("{}_{way}", interpretation.word())),
-            );
-        }
-        let mut rows = Vec::new();
-        for (index, budget) in self.indices.iter().enumerate() {
-            for (probability, levels) in LEVELS.iter().zip(&budget.levels) {
-                let cells =
-                    levels.iter().flat_map(|level| [Some(level.campaign), level.convolution, level.rule]);
-                let finite = |cell: Option<f64>| cell.filter(|value| value.is_finite());
-                rows.push(
-                    [Some(index as f64), Some(*probability)].into_iter().chain(cells).map(finite).collect(),
-                );
-            }
-        }
-        Some(NumberTable { columns: names, rows })
+        let rows: Vec<_> = self.indices.iter().map(|budget| IndexBudget::from(budget).levels).collect();
+        Some(NumberTable::from_groups("budget", &rows))
     }
 
     fn print(&self) -> Result<(), CliError> {
@@ -293,6 +235,14 @@ impl Results for Budgets {
 }
 
 impl Budgets {
+    fn report(&self) -> PointingBudget {
+        PointingBudget {
+            runs: self.runs,
+            budgets: self.indices.iter().map(IndexBudget::from).collect(),
+            requirements: self.verdicts.iter().map(RequirementVerdict::to_json).collect(),
+        }
+    }
+
     /// Prints the levels of an index in one unit.
     fn print_budget(&self, budget: &CampaignBudget) {
         let requirement = &budget.requirement;
@@ -309,35 +259,20 @@ impl Budgets {
             let levels = levels.map(|level| digits(factor * level)).join(", ");
             say!("  linear loop under its disturbances: {}: {levels} (mixed)", source_text(sources, factor));
         }
-        let mut rows = vec![
-            ["level", "temporal", "", "", "ensemble", "", "", "mixed", "", ""].map(str::to_owned).to_vec(),
-            [
-                "%",
-                "runs",
-                "convolved",
-                "k sigma",
-                "runs",
-                "convolved",
-                "k sigma",
-                "runs",
-                "convolved",
-                "k sigma",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
+        let level = |field, header| column(field, header).scaled(factor, "");
+        let shown = [
+            column("level", "level").percent(),
+            level("temporal.campaign", "temporal\nruns"),
+            level("temporal.convolution", "\nconvolved"),
+            level("temporal.rule", "\nk sigma"),
+            level("ensemble.campaign", "ensemble\nruns"),
+            level("ensemble.convolution", "\nconvolved"),
+            level("ensemble.rule", "\nk sigma"),
+            level("mixed.campaign", "mixed\nruns"),
+            level("mixed.convolution", "\nconvolved"),
+            level("mixed.rule", "\nk sigma"),
         ];
-        for (probability, levels) in LEVELS.iter().zip(&budget.levels) {
-            let text =
-                |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| digits(value * factor));
-            let mut row = vec![digits(100.0 * probability)];
-            for level in levels {
-                row.extend([Some(level.campaign), level.convolution, level.rule].map(text));
-            }
-            rows.push(row);
-        }
-        for line in columns(&rows, 0) {
-            say!("  {line}");
-        }
+        print_rows(&IndexBudget::from(budget).levels, &shown, self.units);
     }
 }
 

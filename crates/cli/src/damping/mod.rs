@@ -11,12 +11,12 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::grid::{PositiveGrid, grid_in};
-use crate::human::{Units, UnitsArgs, columns, digits};
-use crate::number::number_or_none;
+use crate::human::{Units, UnitsArgs, digits};
 use crate::number_table::NumberTable;
 use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show};
+use crate::row_table::{Column, column, print_rows};
 use crate::say;
 
 #[derive(clap::Args)]
@@ -54,6 +54,19 @@ pub struct DampingArgs {
     #[arg(long)]
     json: bool,
 }
+
+/// Columns of the text.
+const COLUMNS: [Column<'_>; 9] = [
+    column("frequency_rad_s", "frequency"),
+    column("phase_factor", "part"),
+    column("slope_rad_s2", "slope"),
+    column("delay_limit_s", "delay limit"),
+    column("gain_limit_1_s", "gain limit"),
+    column("limit_cycle_rate_rad_s", "cycle"),
+    column("limit_cycle_frequency_rad_s", "at"),
+    column("decay_s", "decay"),
+    column("thrust_s", "thrust"),
+];
 
 /// Effect of a relay of thrusters on elastic modes.
 pub struct DampingResults {
@@ -133,35 +146,7 @@ impl Results for DampingResults {
         } else {
             say!("relay   all the time, {delay} s late: {damps}");
         }
-        let head = [
-            ["frequency", unit],
-            ["part", ""],
-            ["slope", "rad/s²"],
-            ["delay", "limit, s"],
-            ["gain", "limit, 1/s"],
-            ["cycle", "rad/s"],
-            ["at", unit],
-            ["decay", "s"],
-            ["thrust", "s"],
-        ];
-        let mut rows: Vec<Vec<String>> =
-            [0, 1].map(|line| head.iter().map(|words| words[line].to_owned()).collect()).into();
-        for row in &self.rows {
-            rows.push(vec![
-                digits(row.frequency_rad_s * factor),
-                digits(row.phase_factor),
-                digits(row.slope_rad_s2),
-                digits(row.delay_limit_s),
-                number_or_none(row.gain_limit_1_s, digits),
-                number_or_none(row.limit_cycle_rate_rad_s, digits),
-                number_or_none(row.limit_cycle_frequency_rad_s, |frequency| digits(frequency * factor)),
-                number_or_none(row.decay_s, digits),
-                number_or_none(row.thrust_s, digits),
-            ]);
-        }
-        for line in columns(&rows, 0) {
-            say!("  {line}");
-        }
+        print_rows(&self.rows, &COLUMNS, self.units);
         Ok(())
     }
 }

@@ -10,15 +10,16 @@ use flexsc_core::analysis::identification::{CYCLE, IdentificationRow, Identifica
 use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::quantity::NonNegative;
 use flexsc_figure::Named;
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::human::{Units, UnitsArgs};
-use crate::number::{fixed, number_or_none};
 use crate::quantity::in_unit;
 use crate::results::{Results, show};
+use crate::row_table::{Column, column, print_rows};
 use crate::{progress, say};
 
 /// Default sets: those of the study behind \[Timakov14\]'s scenarios, in hertz, each with its identification rate.
@@ -159,14 +160,43 @@ pub fn run(args: &IdentifyArgs) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 
+/// Row of the trials from one initial error.
+#[derive(Serialize)]
+struct TrialRow<'a> {
+    frequencies_rad_s: Vec<f64>,
+    influences: Vec<f64>,
+    found: &'a IdentificationRow,
+}
+
+/// Columns of the text.
+const COLUMNS: [Column<'_>; 9] = [
+    column("frequencies_rad_s", "frequencies"),
+    column("found.off", "off by").percent(),
+    column("found.converged", "found"),
+    column("found.runs", "of runs"),
+    column("found.time_median_s", "median"),
+    column("found.time_longest_s", "longest"),
+    column("found.frequency_error", "frequency"),
+    column("found.influence_error", "influence"),
+    column("found.persistence", "persistence"),
+];
+
+impl IdentifyResults {
+    /// Returns the rows of all sets.
+    fn rows(&self) -> Vec<TrialRow<'_>> {
+        let each = self.sets.iter().flat_map(|set| set.rows.iter().map(move |found| (set, found)));
+        each.map(|(ModeSetResults { modes, .. }, found)| TrialRow {
+            frequencies_rad_s: modes.iter().map(|mode| mode.0).collect(),
+            influences: modes.iter().map(|mode| mode.1).collect(),
+            found,
+        })
+        .collect()
+    }
+}
+
 impl Results for IdentifyResults {
     fn json(&self) -> Vec<Json> {
-        let reported = |set: &ModeSetResults| -> Vec<Json> {
-            let (frequencies, influences): (Vec<f64>, Vec<f64>) = set.modes.iter().copied().unzip();
-            let row = |row| json!({"frequencies_rad_s": frequencies, "influences": influences, "found": row});
-            set.rows.iter().map(row).collect()
-        };
-        vec![json!({"rows": self.sets.iter().flat_map(reported).collect::<Vec<_>>()})]
+        vec![json!({"rows": self.rows()})]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -174,38 +204,13 @@ impl Results for IdentifyResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { sets, runs, whole, influence_off, units } = self;
-        let (factor, unit) = units.frequency();
+        let Self { runs, whole, influence_off, units, .. } = self;
         say!(
             "identification   {} of {whole:.0} s a row; influences off by {} %; found is within 2 %",
             counted(runs, "run"),
             100.0 * influence_off
         );
-        say!(
-            "  {:<26}{:>10}{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-            format!("frequencies, {unit}"),
-            "off by",
-            "found",
-            "median, s",
-            "longest, s",
-            "frequency",
-            "influence",
-            "persistence"
-        );
-        let small = |value: Option<f64>| number_or_none(value, |value| format!("{value:.1e}"));
-        for (set, row) in sets.iter().flat_map(|set| set.rows.iter().map(move |row| (set, row))) {
-            say!(
-                "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",
-                set.frequencies(factor),
-                100.0 * row.off,
-                format!("{}/{}", row.converged, row.runs),
-                fixed(row.time_median_s, 1),
-                fixed(row.time_longest_s, 1),
-                small(row.frequency_error),
-                small(row.influence_error),
-                small(row.persistence),
-            );
-        }
+        print_rows(&self.rows(), &COLUMNS, *units);
         Ok(())
     }
 }

@@ -2,11 +2,10 @@
 
 mod figures;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 use std::io::Write;
 
-use clap::ValueEnum;
-use flexsc_core::analysis::margins::{DiskMargin, PeakMargin, SignalMargins, StabilityMargins};
+use flexsc_core::analysis::margins::{SignalMargins, StabilityMargins};
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::settling_time::SETTLING_BAND;
@@ -15,13 +14,16 @@ use flexsc_core::formats::document::ConfigError;
 use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase, uncertain_box};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 
+use crate::choice::choice;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::human::{Units, UnitsArgs, digits};
 use crate::number::number_or_none;
 use crate::results::{Results, show, with_scenario_name};
+use crate::row_table::{Column, column, print_rows};
 use crate::stop::stop_requested;
 use crate::{say, scenario};
 
@@ -33,8 +35,8 @@ pub struct MarginsArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
     /// Point at which each loop is cut open
-    #[arg(long = "loop", value_name = "POINT", default_value = "command")]
-    opened: BreakPoint,
+    #[arg(long = "loop", value_name = "POINT", default_value = "command", value_parser = choice(&LoopBreak::ALL, LoopBreak::name))]
+    opened: LoopBreak,
     /// Search for the least of each margin over the uncertain keys too, as `flexsc worst --margin` does
     #[arg(long)]
     worst: bool,
@@ -42,28 +44,6 @@ pub struct MarginsArgs {
     units: UnitsArgs,
     #[command(flatten)]
     pub drawing: FigureOutput,
-}
-
-/// Point at which a loop is cut open.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum BreakPoint {
-    /// Commands of the law
-    #[default]
-    Command,
-    /// Torques of the actuator
-    Torque,
-    /// Measured angles and rates
-    Measurement,
-}
-
-impl BreakPoint {
-    pub fn loop_break(self) -> LoopBreak {
-        match self {
-            Self::Command => LoopBreak::Command,
-            Self::Torque => LoopBreak::Torque,
-            Self::Measurement => LoopBreak::Measurement,
-        }
-    }
 }
 
 /// Margins of the loop of a scenario.
@@ -85,14 +65,13 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
     if args.worst {
         uncertain_box(scenario).map_err(key)?;
     }
-    let margins =
-        ScenarioMargins::from_scenario(scenario, args.opened.loop_break()).map_err(|fault| match fault {
-            MarginsFault::Key(fault) => key(fault),
-            MarginsFault::Unstable(unstable) => CliError::Arguments(format!("{name}: {unstable}")),
-        })?;
+    let margins = ScenarioMargins::from_scenario(scenario, args.opened).map_err(|fault| match fault {
+        MarginsFault::Key(fault) => key(fault),
+        MarginsFault::Unstable(unstable) => CliError::Arguments(format!("{name}: {unstable}")),
+    })?;
     let kinds = MarginKind::ALL.into_iter().filter(|_| args.worst);
     let least = |kind: MarginKind| {
-        let search = MarginSearch { kind, opened: args.opened.loop_break(), most_loops: WORST_POINTS };
+        let search = MarginSearch { kind, opened: args.opened, most_loops: WORST_POINTS };
         let found = search.run(scenario, stop_requested).map_err(|fault| CliError::worst_case(&name, fault));
         found.map(|case| (kind, case))
     };
@@ -105,98 +84,70 @@ pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
     show(&results(&args.scenario.load()?, args)?, Some(&args.drawing), args.scenario.json)
 }
 
-/// Prints rows of text in columns.
-pub fn print_table(rows: &[Vec<String>]) {
-    for line in columns(rows, 0) {
-        say!("  {line}");
-    }
-}
+/// Smallest margins of each loop.
+const MARGINS: [Column<'_>; 11] = [
+    column("signal", "loop"),
+    column("gain_below", "gain\ndown").gain(),
+    column("gain_above", "gain\nup").gain(),
+    column("phase_rad", "phase"),
+    column("delay_s", "delay"),
+    column("modulus.margin", "modulus"),
+    column("modulus.frequency_rad_s", "at"),
+    column("disk.alpha", "disk"),
+    column("disk.frequency_rad_s", "at"),
+    column("disk.gains", "gain\nin the disk").gain(),
+    column("disk.phase_rad", "phase\nin the disk"),
+];
 
-pub fn texts(words: &[&str]) -> Vec<String> {
-    words.iter().map(|word| (*word).to_owned()).collect()
-}
+/// Least margins over the uncertain keys.
+const WORST: [Column<'_>; 4] = [
+    column("margin", "margin"),
+    column("nominal", "nominal").unit_of_row(),
+    column("worst", "worst").unit_of_row(),
+    column("keys", "keys"),
+];
+
+/// Crossings of all loops.
+const CROSSINGS: [Column<'_>; 6] = [
+    column("loop", "loop"),
+    column("crossing", "crossing"),
+    column("frequency_rad_s", "frequency"),
+    column("phase_rad", "phase"),
+    column("delay_s", "delay"),
+    column("factor", "gain").gain(),
+];
 
 impl LoopMargins {
-    /// Returns the unit of factors on a gain, and a factor in that unit.
-    fn gain(&self, factor: Option<f64>) -> String {
-        let text = |factor: f64| match self.units {
-            Units::Engineering => digits(20.0 * factor.log10()),
-            Units::Si => digits(factor),
-        };
-        number_or_none(factor.filter(|factor| *factor > 0.0), text)
-    }
-
-    fn gain_unit(&self) -> &'static str {
-        match self.units {
-            Units::Engineering => "dB",
-            Units::Si => "",
+    /// Returns an object without its delay for several samples in a period, where a delay is more than a phase.
+    fn row(&self, of: impl Serialize) -> Json {
+        let mut row = json!(of);
+        if self.margins.stability.samples > 1
+            && let Some(fields) = row.as_object_mut()
+        {
+            fields.remove("delay_s");
         }
-    }
-
-    /// Returns the factor from rad, and the unit, of phases.
-    fn phase(&self) -> (f64, &'static str) {
-        match self.units {
-            Units::Engineering => (360.0 / TAU, "deg"),
-            Units::Si => (1.0, "rad"),
-        }
-    }
-
-    /// Returns a phase; none if it is half a turn, which is no limit.
-    fn phase_text(&self, phase: f64) -> String {
-        number_or_none((phase.abs() < PI).then_some(phase), |phase| digits(phase * self.phase().0))
-    }
-
-    /// Returns a delay; nothing for several samples in a period, where a delay is more than a phase.
-    fn delay(&self, delay: Option<f64>) -> String {
-        if self.margins.stability.samples > 1 { String::new() } else { number_or_none(delay, digits) }
-    }
-
-    /// Returns the cells of the modulus margin and the disk margin, with their frequencies.
-    fn peaks(&self, modulus: &PeakMargin, disk: &DiskMargin) -> Vec<String> {
-        let (factor, _) = self.units.frequency();
-        vec![
-            digits(modulus.margin),
-            digits(modulus.frequency_rad_s * factor),
-            digits(disk.alpha),
-            digits(disk.frequency_rad_s * factor),
-            format!("{} to {}", self.gain(Some(disk.gains[0])), self.gain(Some(disk.gains[1]))),
-            digits(disk.phase_rad * self.phase().0),
-        ]
+        row
     }
 
     /// Prints the smallest margins of each loop, and of all together.
     fn print_margins(&self) {
-        let (frequency, gain, phase) = (self.units.frequency().1, self.gain_unit(), self.phase().1);
-        let mut rows = vec![
-            texts(&[
-                "loop", "gain", "gain", "phase", "delay", "modulus", "at", "disk", "at", "gain", "phase",
-            ]),
-            texts(&["", "down", "up", "", "", "", "", "", "", "in the disk", "in the disk"]),
-            texts(&["", gain, gain, phase, "s", "", frequency, "", frequency, gain, phase]),
-        ];
-        for one in &self.margins.stability.loops {
-            let mut row = vec![
-                one.signal.clone(),
-                self.gain(Some(one.gain_below)),
-                self.gain(one.gain_above),
-                self.phase_text(one.phase_rad),
-                self.delay(one.delay_s),
-            ];
-            row.extend(self.peaks(&one.modulus, &one.disk));
-            rows.push(row);
+        let StabilityMargins { loops, modulus, disk, independent_disk, samples, .. } =
+            &self.margins.stability;
+        let own = loops.iter().map(|one| {
+            let mut row = self.row(one);
+            // Half a turn is no limit.
+            if one.phase_rad.abs() >= PI {
+                row["phase_rad"] = Json::Null;
+            }
+            row
+        });
+        let mut rows: Vec<Json> = own.collect();
+        if rows.len() > 1 {
+            rows.push(json!({"signal": "all together", "modulus": modulus, "disk": disk}));
         }
-        if self.margins.stability.loops.len() > 1 {
-            let mut row = texts(&["all together", "", "", "", ""]);
-            row.extend(self.peaks(&self.margins.stability.modulus, &self.margins.stability.disk));
-            rows.push(row);
-        }
-        if let Some(disk) = &self.margins.stability.independent_disk {
-            let mut row = texts(&["all, independent", "", "", "", "", "", ""]);
-            row.extend(self.peaks(&self.margins.stability.modulus, disk).into_iter().skip(2));
-            rows.push(row);
-        }
-        print_table(&rows);
-        if rows.len() > 4 || self.margins.stability.samples > 1 {
+        rows.extend(independent_disk.map(|disk| json!({"signal": "all, independent", "disk": disk})));
+        print_rows(&rows, &MARGINS, self.units);
+        if rows.len() > 1 || *samples > 1 {
             let delay = number_or_none(self.margins.common_delay_s, |delay| format!("{} s", digits(delay)));
             say!("  delay that all actuators together may add: {delay}");
         }
@@ -226,59 +177,48 @@ impl LoopMargins {
 
     /// Prints the crossings of all loops, by frequency.
     fn print_crossings(&self) {
-        let (factor, unit) = self.units.frequency();
-        let mut rows = vec![
-            texts(&["loop", "crossing", "frequency", "phase", "delay", "gain"]),
-            texts(&["", "", unit, self.phase().1, "s", self.gain_unit()]),
-        ];
-        for one in &self.margins.stability.loops {
-            let mut crossings = self.crossings(one);
-            crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (frequency, mut cells) in crossings {
-                cells.insert(1, digits(frequency * factor));
-                cells.insert(0, one.signal.clone());
-                rows.push(cells);
-            }
+        let mut rows = Vec::new();
+        for SignalMargins { signal, crossings, .. } in &self.margins.stability.loops {
+            let gain =
+                crossings.gain.iter().map(|crossing| (crossing.frequency_rad_s, "gain", self.row(crossing)));
+            let phase =
+                crossings.phase.iter().map(|crossing| (crossing.frequency_rad_s, "phase", json!(crossing)));
+            let mut own: Vec<_> = gain.chain(phase).collect();
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            rows.extend(own.into_iter().map(|(_, kind, mut row)| {
+                (row["loop"], row["crossing"]) = (json!(signal), json!(kind));
+                row
+            }));
         }
         say!("  crossings, with the phase and the delay, or the gain, that the loop tolerates there");
-        print_table(&rows);
+        print_rows(&rows, &CROSSINGS, self.units);
     }
 
     /// Prints the least margins over the uncertain keys, with the keys where they are attained.
     fn print_worst(&self) {
-        let mut rows = vec![texts(&["margin", "nominal", "worst", "keys"])];
-        for (kind, case) in &self.worst {
-            let text = |value: f64| match kind {
-                MarginKind::Gain => self.gain(Some(value).filter(|value| value.is_finite())),
-                MarginKind::Phase => number_or_none(Some(value).filter(|value| value.is_finite()), |phase| {
-                    digits(phase * self.phase().0)
-                }),
-                _ => number_or_none(Some(value).filter(|value| value.is_finite()), digits),
+        let row = |(kind, case): &(MarginKind, WorstCase)| {
+            let (scale, unit): (fn(f64) -> f64, &str) = match (kind, self.units) {
+                (MarginKind::Gain, Units::Engineering) => (|factor| 20.0 * factor.log10(), "dB"),
+                _ => (|value| value, kind.unit()),
             };
-            let worst = if case.is_unstable { "unstable".to_owned() } else { text(case.value()) };
             let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));
             let keys: Vec<String> =
                 keys.map(|(own, value)| format!("{} = {}", own.key, digits(value))).collect();
-            rows.push(vec![kind.word().to_owned(), text(case.nominal()), worst, keys.join(", ")]);
-        }
+            let mut row = json!({
+                "margin": kind.word(),
+                "nominal": scale(case.nominal()),
+                "worst": scale(case.value()),
+                "unit": unit,
+                "keys": keys.join(", "),
+            });
+            if case.is_unstable {
+                row["worst"] = json!("unstable");
+            }
+            row
+        };
+        let rows: Vec<Json> = self.worst.iter().map(row).collect();
         say!("  least margins that a search of {WORST_POINTS} loops each finds over the uncertain keys");
-        for line in columns(&rows, 1) {
-            say!("  {line}");
-        }
-    }
-
-    /// Returns the crossings of a loop with their frequencies (rad/s): kind, phase, delay and gain.
-    fn crossings(&self, one: &SignalMargins) -> Vec<(f64, Vec<String>)> {
-        let gain = one.crossings.gain.iter().map(|crossing| {
-            let phase = digits(crossing.phase_rad * self.phase().0);
-            let delay = self.delay(crossing.delay_s);
-            (crossing.frequency_rad_s, vec!["gain".to_owned(), phase, delay, String::new()])
-        });
-        let phase = one.crossings.phase.iter().map(|crossing| {
-            let factor = self.gain(Some(crossing.factor));
-            (crossing.frequency_rad_s, vec!["phase".to_owned(), String::new(), String::new(), factor])
-        });
-        gain.chain(phase).collect()
+        print_rows(&rows, &WORST, self.units);
     }
 }
 
@@ -286,7 +226,7 @@ impl Results for LoopMargins {
     fn json(&self) -> Vec<Json> {
         let mut margins = json!(self.margins);
         if !self.worst.is_empty() {
-            let least = self.worst.iter().map(|(kind, case)| (kind.word().to_owned(), case.to_json()));
+            let least = self.worst.iter().map(|(kind, case)| (kind.word().to_owned(), json!(case.report())));
             margins["worst"] = Json::Object(least.collect());
         }
         vec![with_scenario_name(&self.name, margins)]

@@ -7,11 +7,12 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::attitude::AXES;
 use serde_json::{Value as Json, json};
 
-use super::{SMALL, Style, frequency, print_influences, print_table, texts};
+use super::{SMALL, Style, frequency, print_influences, texts};
 use crate::error::CliError;
 use crate::human::digits;
 use crate::number::unsigned_zero;
 use crate::results::{Results, with_scenario_name};
+use crate::row_table::print_table;
 use crate::say;
 
 /// Modes of a spacecraft, and the influence of its actuator on them.

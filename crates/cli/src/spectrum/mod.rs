@@ -17,11 +17,12 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::grid::{PositiveGrid, grid_in};
-use crate::human::{Units, UnitsArgs, columns, digits};
+use crate::human::{Units, UnitsArgs, digits};
 use crate::number_table::NumberTable;
 use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
+use crate::row_table::{Column, column, print_rows, print_table};
 use crate::{say, scenario};
 use welch::{LogPart, WelchEstimate, estimates};
 
@@ -113,12 +114,17 @@ pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
     show(&results, None, args.scenario.json)
 }
 
-/// Prints rows of text in columns.
-fn print_table(rows: &[Vec<String>], left_aligned: usize) {
-    for line in columns(rows, left_aligned) {
-        say!("  {line}");
-    }
-}
+/// Columns of the indices of outputs over windows.
+const INDICES: [Column<'_>; 8] = [
+    column("output", "output"),
+    column("mpe", "MPE").unit_of_row(),
+    column("rpe_uniform", "RPE\nuniform").unit_of_row(),
+    column("rpe_end", "RPE\nend").unit_of_row(),
+    column("rpe_middle", "RPE\nmiddle").unit_of_row(),
+    column("smear", "smear").unit_of_row(),
+    column("beyond_smear", "jitter\nwithout smear").unit_of_row(),
+    column("pde", "PDE").unit_of_row(),
+];
 
 impl SpectrumResults {
     /// Returns the text of values in the unit that fits the largest of some.
@@ -152,38 +158,16 @@ impl SpectrumResults {
         let apart =
             first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
         say!("  indices over windows of {} s{apart}, rms", first.window_s);
-        let mut rows = index_header();
-        for (output, window) in windows {
-            rows.push(index_row(&window, output, self.units));
-        }
-        print_table(&rows, 0);
+        let rows: Vec<Json> = windows.iter().map(|(output, window)| index_row(window, output)).collect();
+        print_rows(&rows, &INDICES, self.units);
     }
 }
 
-/// Returns the row of the indices of an output.
-fn index_row(window: &WindowRms, output: &OutputNoise, units: Units) -> Vec<String> {
-    let all = [window.mpe, window.rpe_uniform, window.rpe_end, window.rpe_middle];
-    let (factor, unit) = units.common(&all, &output.unit);
-    let quantity = |value: f64| format!("{} {unit}", digits(value * factor)).trim_end().to_owned();
-    vec![
-        output.output.clone(),
-        quantity(window.mpe),
-        quantity(window.rpe_uniform),
-        quantity(window.rpe_end),
-        quantity(window.rpe_middle),
-        quantity(window.smear),
-        quantity(window.beyond_smear),
-        window.pde.map_or_else(|| "-".to_owned(), quantity),
-    ]
-}
-
-/// Returns the header of a table of indices.
-fn index_header() -> Vec<Vec<String>> {
-    let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
-    vec![
-        texts(&["output", "MPE", "RPE", "RPE", "RPE", "smear", "jitter", "PDE"]),
-        texts(&["", "", "uniform", "end", "middle", "", "without smear", ""]),
-    ]
+/// Returns the indices of an output with its name and unit.
+fn index_row(window: &WindowRms, output: &OutputNoise) -> Json {
+    let mut row = json!(window);
+    (row["output"], row["unit"]) = (json!(output.output), json!(output.unit));
+    row
 }
 
 impl SpectrumResults {

@@ -3,10 +3,12 @@
 use std::io::Write;
 
 use flexsc_core::analysis::noise::{NoiseReport, SpectralLine, WheelLines, WheelSpectrum, WindowRms};
+use serde_json::{Value as Json, json};
 
-use super::{index_header, index_row, print_table};
-use crate::human::{Units, digits};
+use super::{INDICES, index_row};
+use crate::human::Units;
 use crate::number_table::NumberTable;
+use crate::row_table::{Column, column, print_rows};
 use crate::say;
 
 /// Selection of a line under a harmonic of a wheel.
@@ -15,14 +17,20 @@ type LineOf<'a> = &'a dyn Fn(&WheelLines) -> Option<SpectralLine>;
 /// Value of an index over windows.
 type IndexOf = fn(&WindowRms) -> Option<f64>;
 
+/// Columns of the largest lines.
+const LINES: [Column<'_>; 7] = [
+    column("output", "output"),
+    column("kind", "line"),
+    column("amplitude", "amplitude").unit_of_row(),
+    column("line.frequency_rad_s", "at"),
+    column("wheel", "wheel"),
+    column("order", "order"),
+    column("speed_rad_s", "speed"),
+];
+
 /// Prints the largest direct line and the largest alias of each output.
 pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
-    let (factor, unit) = units.frequency();
-    let texts = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
-    let mut rows = vec![
-        texts(&["output", "line", "amplitude", "at", "wheel", "order", "speed"]),
-        texts(&["", "", "", unit, "", "", ""]),
-    ];
+    let mut rows = Vec::new();
     for (index, output) in report.outputs.iter().enumerate() {
         let direct = |lines: &WheelLines| Some(lines.outputs[index].direct);
         let alias = |lines: &WheelLines| lines.outputs[index].aliases.first().copied();
@@ -31,44 +39,42 @@ pub fn print(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
             let all = wheels.lines.iter().filter_map(|lines| Some((lines, line_of(lines)?)));
             let largest = all.max_by(|a, b| a.1.amplitude.total_cmp(&b.1.amplitude));
             let Some((lines, line)) = largest else { continue };
-            rows.push(vec![
-                if kind == "direct" { output.output.clone() } else { String::new() },
-                kind.to_owned(),
-                units.quantity(line.amplitude, &output.unit),
-                digits(line.frequency_rad_s * factor),
-                lines.wheel.to_string(),
-                digits(lines.order),
-                units.speed(lines.speed_rad_s),
-            ]);
+            rows.push(json!({
+                "output": if kind == "direct" { &output.output } else { "" },
+                "kind": kind,
+                "line": line,
+                "unit": output.unit,
+                "amplitude": line.amplitude,
+                "wheel": lines.wheel,
+                "order": lines.order,
+                "speed_rad_s": lines.speed_rad_s,
+            }));
         }
     }
     let speeds = &wheels.speed_rad_s;
     let [first, last] =
         [speeds.first(), speeds.last()].map(|speed| units.speed(speed.copied().unwrap_or(0.0)));
     say!("  largest lines of the wheels' imbalance, {first} to {last}");
-    print_table(&rows, 0);
+    print_rows(&rows, &LINES, units);
     print_windows(report, wheels, units);
 }
 
 /// Prints the indices over windows at the speed at which the relative performance error is largest.
 fn print_windows(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
-    let mut rows = index_header();
-    rows[0].push("speed".to_owned());
-    rows[1].push(String::new());
-    for (output, over_speed) in report.outputs.iter().zip(&wheels.windows) {
+    let rows = report.outputs.iter().zip(&wheels.windows).filter_map(|(output, over_speed)| {
         let each = over_speed.iter().zip(&wheels.speed_rad_s);
-        let largest = each.max_by(|a, b| a.0.rpe_uniform.total_cmp(&b.0.rpe_uniform));
-        let Some((window, speed)) = largest else { continue };
-        let mut row = index_row(window, output, units);
-        row.push(units.speed(*speed));
-        rows.push(row);
-    }
+        let (window, speed) = each.max_by(|a, b| a.0.rpe_uniform.total_cmp(&b.0.rpe_uniform))?;
+        let mut row = index_row(window, output);
+        row["speed_rad_s"] = json!(speed);
+        Some(row)
+    });
+    let rows: Vec<Json> = rows.collect();
     let Some(window) = wheels.windows.first().and_then(|over_speed| over_speed.first()) else { return };
     say!(
         "  indices of these lines over windows of {} s, rms, at the speed of the largest RPE uniform",
         window.window_s
     );
-    print_table(&rows, 0);
+    print_rows(&rows, &[&INDICES[..], &[column("speed_rad_s", "speed")]].concat(), units);
 }
 
 /// Returns rms and indices of each output as a table over the speed of the wheels.

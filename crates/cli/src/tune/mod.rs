@@ -3,7 +3,6 @@
 
 mod figures;
 mod structured;
-mod table;
 mod tuned;
 mod tuning;
 

@@ -4,21 +4,23 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::structured_tuning::{
-    LoopSensitivity, PlantMargin, ScenarioTuning, TunedLoop, TunedScenario, TuningFault, TuningLimit,
-    TuningObjective, TuningPoint,
+    LoopSensitivity, ScenarioTuning, TunedScenario, TuningFault, TuningLimit, TuningObjective, TuningPoint,
+    TuningReport,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::{ConfigError, is_number};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
+use crate::choice::choice;
 use crate::error::CliError;
 use crate::human::{Units, digits};
-use crate::margins::{BreakPoint, print_table, texts};
 use crate::quantity::in_unit;
 use crate::results::{Results, with_scenario_name};
+use crate::row_table::{Column, column, print_rows};
 use crate::{files, out, say};
 
 /// Shortfall of the loop gain at the bandwidth that is rounding of the search.
@@ -48,8 +50,8 @@ pub struct StructuredArgs {
     #[arg(long, value_name = "LIMIT", requires = "vary")]
     keep: Vec<TuningLimit>,
     /// Point at which the loops are cut open
-    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "vary")]
-    opened: BreakPoint,
+    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "vary", value_parser = choice(&LoopBreak::ALL, LoopBreak::name))]
+    opened: LoopBreak,
     /// Frequency (rad/s) at which the loop gain stays 1 or more with the nominal plant
     #[arg(long, value_name = "FREQUENCY", requires = "vary", value_parser = in_unit("rad/s"))]
     bandwidth: Option<f64>,
@@ -97,6 +99,34 @@ impl VariedKey {
     }
 }
 
+/// Columns of the tuned keys.
+const KEYS: [Column<'_>; 5] = [
+    column("key", "key"),
+    column("before", "before"),
+    column("after", "after"),
+    column("range.0", "lowest"),
+    column("range.1", "highest"),
+];
+
+/// Columns of the measures besides the margins.
+const MEASURES: [Column<'_>; 6] = [
+    column("name", ""),
+    column("before", "before").unit_of_row(),
+    column("after", "after").unit_of_row(),
+    column("limit", "limit").unit_of_row(),
+    column("kept", ""),
+    column("plant", "worst plant"),
+];
+
+/// Columns of the plants.
+const PLANTS: [Column<'_>; 5] = [
+    column("before.margin", "margin before"),
+    column("before.frequency_rad_s", "at"),
+    column("after.margin", "margin after"),
+    column("after.frequency_rad_s", "at"),
+    column("plant", "plant"),
+];
+
 /// Result of a search over keys.
 pub struct StructuredResults {
     name: String,
@@ -119,7 +149,7 @@ impl StructuredArgs {
         }
         let tuning = ScenarioTuning {
             keys: self.vary.iter().map(|varied| varied.range_in(scenario)).collect::<Result<_, _>>()?,
-            opened: self.opened.loop_break(),
+            opened: self.opened,
             objective: self.objective.clone(),
             limits: self.keep.clone(),
             bandwidth: self.bandwidth,
@@ -182,77 +212,45 @@ impl StructuredResults {
         sensitivity.and_then(|sensitivity| sensitivity.margins()).unwrap_or_default()
     }
 
-    fn print_keys(&self) {
-        let mut rows = vec![texts(&["key", "before", "after", "lowest", "highest"])];
-        let points = self.found.tuned.before.values.iter().zip(&self.found.tuned.after.values);
-        for (parameter, (before, after)) in self.found.parameters.iter().zip(points) {
-            let [low, high] = parameter.range;
-            let numbers = [*before, *after, low, high].map(digits);
-            rows.push([vec![parameter.key.clone()], numbers.to_vec()].concat());
-        }
-        print_table(&rows);
-    }
-
     /// Prints the measures besides the margins, with their limits and the plants that have the largest values.
-    fn print_measures(&self) {
-        let goal = &self.found.goal;
-        if goal.measures.is_empty() && goal.least_margin.is_none() {
-            return;
+    fn print_measures(&self, report: &TuningReport) {
+        let mut rows = Vec::new();
+        let row = |name: String, of: Json, is_kept: bool, worst: usize| {
+            let mut row = of;
+            row["name"] = json!(name);
+            row["kept"] = json!(if is_kept { "" } else { "not kept" });
+            row["plant"] = json!(self.plant(worst));
+            row
+        };
+        if let Some(least) = report.margin_limit {
+            let worst = self.found.tuned.after.worst().map_or(0, |worst| worst.plant);
+            let (before, after) = (report.least_margin_before, report.least_margin);
+            let of = json!({"before": before, "after": after, "limit": least});
+            rows.push(row("margin".to_owned(), of, after >= least * (1.0 - LEAST_SHORTFALL), worst));
         }
-        let mut rows = vec![texts(&["", "before", "after", "limit", "", "worst plant"])];
-        let Self { found: TunedScenario { tuned: TunedLoop { before, after, .. }, .. }, .. } = self;
-        if let Some(least) = goal.least_margin {
-            let is_kept = after.least() >= least * (1.0 - LEAST_SHORTFALL);
-            let worst = after.worst().map_or(0, |worst| worst.plant);
-            let numbers = [before.least(), after.least(), least].map(digits);
-            rows.push(
-                [vec!["margin".to_owned()], numbers.to_vec(), vec![kept(is_kept), self.plant(worst)]]
-                    .concat(),
-            );
+        for measure in &report.measures {
+            let rms = if measure.unit == "s" { "" } else { " rms" };
+            let is_kept = measure.limit.is_none_or(|limit| measure.after <= limit * (1.0 + LEAST_SHORTFALL));
+            rows.push(row(format!("{}{rms}", measure.name), json!(measure), is_kept, measure.worst_plant));
         }
-        for (index, measure) in goal.measures.iter().enumerate() {
-            let ((was, _), (is, worst)) = (before.measures[index], after.measures[index]);
-            let quantity = self.units.common(&[was, is], measure.unit);
-            let cell = |value: f64| digits(value * quantity.0);
-            let is_kept = measure.limit.is_none_or(|limit| is <= limit * (1.0 + LEAST_SHORTFALL));
-            let name =
-                if measure.unit == "s" { measure.name.clone() } else { format!("{} rms", measure.name) };
-            rows.push(vec![
-                format!("{name} ({})", quantity.1),
-                cell(was),
-                cell(is),
-                measure.limit.map_or_else(|| "none".to_owned(), cell),
-                kept(is_kept),
-                self.plant(worst),
-            ]);
+        if !rows.is_empty() {
+            print_rows(&rows, &MEASURES, self.units);
         }
-        print_table(&rows);
     }
 
-    fn print_plants(&self) {
-        let (factor, unit) = self.units.frequency();
-        let mut rows = vec![
-            texts(&["margin", "at", "margin", "at", ""]),
-            texts(&["before", unit, "after", unit, "plant"]),
-        ];
-        let cells = |margin: &PlantMargin| [digits(margin.margin), digits(margin.frequency_rad_s * factor)];
-        for plant in self.printed() {
-            let (before, after) =
-                (&self.found.tuned.before.plants[plant], &self.found.tuned.after.plants[plant]);
-            rows.push([cells(before).as_slice(), &cells(after), &[self.plant(plant)]].concat());
-        }
-        print_table(&rows);
+    fn print_plants(&self, report: &TuningReport) {
+        let row = |index: usize| {
+            let mut row = json!(report.plants[index]);
+            row["plant"] = json!(self.plant(index));
+            row
+        };
+        print_rows(&self.printed().into_iter().map(row).collect::<Vec<_>>(), &PLANTS, self.units);
     }
-}
-
-/// Returns a mark for a limit that is not kept.
-fn kept(is_kept: bool) -> String {
-    if is_kept { String::new() } else { "not kept".to_owned() }
 }
 
 impl Results for StructuredResults {
     fn json(&self) -> Vec<Json> {
-        vec![with_scenario_name(&self.name, self.found.to_json())]
+        vec![with_scenario_name(&self.name, json!(self.found.report()))]
     }
 
     fn figures(&self) -> Vec<Named> {
@@ -293,19 +291,20 @@ impl Results for StructuredResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
+        let report = self.found.report();
         say!(
             "{}   least modulus margin of {}, cut open at the {}: {} before, {} tuned, {}",
             self.name,
             counted(self.found.loops.plants(), "plant"),
             self.found.opened().name(),
-            digits(self.found.tuned.before.least()),
-            digits(self.found.tuned.after.least()),
-            counted(self.found.tuned.steps, "step"),
+            digits(report.least_margin_before),
+            digits(report.least_margin),
+            counted(report.steps, "step"),
         );
-        self.print_keys();
-        self.print_measures();
-        self.print_plants();
-        if let Some(gain) = self.found.tuned.after.bandwidth_gain {
+        print_rows(&report.keys, &KEYS, self.units);
+        self.print_measures(&report);
+        self.print_plants(&report);
+        if let Some(gain) = report.bandwidth_gain {
             let reached = if gain < 1.0 - LEAST_SHORTFALL { ": the bandwidth is not reached" } else { "" };
             say!("  loop gain at the bandwidth {}{reached}", digits(gain));
         }

@@ -1,14 +1,39 @@
 //! Results of tuning: the region of the gains or the robust ones, and the resulting schedule.
 
-use flexsc_core::analysis::sampled_loop::{GainRegion, RobustGain, midpoints};
+use std::io::Write;
+
+use flexsc_core::analysis::sampled_loop::{GainRegion, Gains, RobustGain, midpoints};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use super::figures;
 use super::tuning::TuneSetup;
-use super::{figures, table};
 use crate::error::CliError;
 use crate::human::Units;
 use crate::results::Results;
+use crate::row_table::{Column, column, print_rows};
+use crate::say;
+
+/// Columns of a region of gains.
+const REGIONS: [Column<'_>; 7] = [
+    column("frequency_rad_s", "frequency"),
+    column("gain.0", "lowest"),
+    column("gain.1", "highest"),
+    column("midpoint", "middle"),
+    column("settling_s", "settling"),
+    column("spectral_radius", "radius").decimals(7),
+    column("settling_without_s", "without"),
+];
+
+/// Columns of robust gains.
+const ROBUST_GAINS: [Column<'_>; 6] = [
+    column("frequency_rad_s", "frequency"),
+    column("gain", "gain"),
+    column("settling_s", "settling"),
+    column("settling_quantile_s", "perturbed"),
+    column("spectral_radius", "radius").decimals(7),
+    column("settling_without_s", "without"),
+];
 
 /// Admissible gains.
 pub enum TuneMethodResults {
@@ -72,13 +97,18 @@ impl Results for TuneResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let TuneSetup { name, limit, gains, .. } = &self.tuning;
+        let TuneSetup { name, limit, gains: Gains { low, high, step }, .. } = &self.tuning;
         match &self.found {
             TuneMethodResults::Regions(regions) => {
-                table::print(name, *limit, *gains, regions, self.units);
+                say!(
+                    "{name}   gains of the extra loop that are stable and settle in {limit} s, of {low} to {high} by {step}"
+                );
+                print_rows(regions, &REGIONS, self.units);
             }
             TuneMethodResults::Robust { off, rows } => {
-                table::print_robust(name, *off, rows, self.units);
+                let off = off * 100.0;
+                say!("{name}   gains of the extra loop that settle soonest with the model off by {off} %");
+                print_rows(rows, &ROBUST_GAINS, self.units);
             }
         }
         Ok(())

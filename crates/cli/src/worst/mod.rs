@@ -5,23 +5,25 @@ mod figures;
 use std::io::Write;
 use std::path::Path;
 
-use clap::ValueEnum;
 use flexsc_core::Scenario;
+use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::campaign::{Campaign, Design};
 use flexsc_core::formats::count::counted;
 use flexsc_core::scenario::AssessedRequirement;
+use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::bound::{self, OutputBounds};
+use crate::choice::choice;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits};
-use crate::margins::{BreakPoint, print_table, texts};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
+use crate::row_table::{Column, column, print_rows};
 use crate::stop::{stop_flag, stop_requested};
 use crate::{files, say, scenario};
 
@@ -36,11 +38,11 @@ pub struct WorstArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "margin")]
     requirement: Option<String>,
     /// Stability margin, the least of all loops
-    #[arg(long, value_name = "MARGIN")]
-    margin: Option<WorstMargin>,
+    #[arg(long, value_name = "MARGIN", value_parser = choice(&MarginKind::ALL, MarginKind::word))]
+    margin: Option<MarginKind>,
     /// Point at which the loops are cut open
-    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "margin")]
-    opened: BreakPoint,
+    #[arg(long = "loop", value_name = "POINT", default_value = "command", requires = "margin", value_parser = choice(&LoopBreak::ALL, LoopBreak::name))]
+    opened: LoopBreak,
     /// Search for the smallest value of the metric instead of the largest
     #[arg(long, requires = "metric")]
     least: bool,
@@ -57,32 +59,14 @@ pub struct WorstArgs {
     consent: CostConfirmation,
 }
 
-/// Stability margin whose worst case is searched for.
-#[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
-enum WorstMargin {
-    /// Modulus margin of all signals together
-    Modulus,
-    /// Disk margin of all signals together
-    Disk,
-    /// Factor by which the loop gain may rise or fall
-    Gain,
-    /// Phase (rad)
-    Phase,
-    /// Delay (s)
-    Delay,
-}
-
-impl WorstMargin {
-    fn kind(self) -> MarginKind {
-        match self {
-            Self::Modulus => MarginKind::Modulus,
-            Self::Disk => MarginKind::Disk,
-            Self::Gain => MarginKind::Gain,
-            Self::Phase => MarginKind::Phase,
-            Self::Delay => MarginKind::Delay,
-        }
-    }
-}
+/// Columns of the uncertain keys.
+const KEYS: [Column<'_>; 5] = [
+    column("key", "key"),
+    column("nominal", "nominal"),
+    column("worst", "worst"),
+    column("range.0", "lowest"),
+    column("range.1", "highest"),
+];
 
 /// Worst cases of a scenario.
 pub struct WorstCases {
@@ -122,8 +106,8 @@ pub fn run(args: &WorstArgs) -> Result<(), CliError> {
 pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliError> {
     let name = scenario.name.clone();
     let most = args.points as usize;
-    if let Some(margin) = args.margin {
-        let search = MarginSearch { kind: margin.kind(), opened: args.opened.loop_break(), most_loops: most };
+    if let Some(kind) = args.margin {
+        let search = MarginSearch { kind, opened: args.opened, most_loops: most };
         let case =
             search.run(scenario, stop_requested).map_err(|error| CliError::worst_case(&name, error))?;
         return Ok(WorstCases { name, cases: vec![(case, None)], bounds: None, units: args.units.units });
@@ -255,15 +239,9 @@ impl WorstCases {
             text(values[0]),
             text(values[1])
         );
-        let mut rows = vec![texts(&["key", "nominal", "worst", "lowest", "highest"])];
-        for (own, value) in case.ranges.keys.iter().zip(case.key_values(case.worst)) {
-            let [low, high] = own.limits();
-            rows.push(
-                [vec![own.key.clone()], [own.nominal_number(), value, low, high].map(digits).to_vec()]
-                    .concat(),
-            );
-        }
-        print_table(&rows);
+        let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));
+        let row = |(own, value): (&UncertainKey, f64)| json!({"key": own.key, "nominal": own.nominal_number(), "worst": value, "range": own.limits()});
+        print_rows(&keys.map(row).collect::<Vec<_>>(), &KEYS, self.units);
         if case.failed > 0 {
             let why =
                 case.first_failure.as_ref().map_or_else(String::new, |why| format!("; the first: {why}"));
@@ -280,7 +258,7 @@ fn is_met(case: &WorstCase, requirement: &AssessedRequirement) -> bool {
 impl Results for WorstCases {
     fn json(&self) -> Vec<Json> {
         let case = |(case, requirement): &(WorstCase, Option<AssessedRequirement>)| {
-            let mut object = case.to_json();
+            let mut object = json!(case.report());
             if let Some(requirement) = requirement {
                 object["limit"] = json!(requirement.limit);
                 object["met"] = json!(is_met(case, requirement));

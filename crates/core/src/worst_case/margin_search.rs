@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
+use schemars::JsonSchema;
 
 use super::box_search::{Assessed, BoxSearch};
 use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
@@ -17,13 +18,14 @@ const UNSTABLE: f64 = 1e6;
 const AT_ONCE: usize = 64;
 
 /// Margin of a loop, the least of all its signals.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq, JsonSchema)]
+#[schemars(rename_all = "snake_case")]
 pub enum MarginKind {
     /// Modulus margin of all signals together.
     Modulus,
     /// Disk margin of all signals together.
     Disk,
-    /// Factor on the loop gain, above 1, by which it may rise or fall.
+    /// Factor, above 1, by which the loop gain may rise or fall.
     Gain,
     /// Phase (rad).
     Phase,

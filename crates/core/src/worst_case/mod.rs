@@ -9,9 +9,12 @@ mod box_search;
 mod margin_search;
 mod metric_search;
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use flexsc_formats::document::{ConfigError, ScenarioError};
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 pub use box_search::{Assessed, SearchPoint};
@@ -43,6 +46,32 @@ pub struct WorstCase {
     pub first_failure: Option<String>,
     /// Scenario with the keys of the worst point, and without uncertain ones.
     pub witness: Scenario,
+}
+
+/// Worst point of the ranges of the uncertain keys that a search found.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct WorstCaseReport {
+    /// Name of the metric, the requirement or the margin.
+    pub quantity: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// True if small values are bad.
+    pub least: bool,
+    /// Value with the keys of the scenario itself, or as near to them as their ranges are.
+    pub nominal: f64,
+    /// Value at the worst point.
+    #[schemars(extend("x-name" = "value"))]
+    pub worst: f64,
+    /// Value of each uncertain key at the worst point.
+    #[schemars(with = "BTreeMap<String, f64>")]
+    pub keys: Map<String, Json>,
+    /// True if the quantity is a margin and the loop is not stable at the worst point.
+    pub unstable: bool,
+    /// Number of points that were assessed.
+    #[schemars(extend("x-name" = "point_count"))]
+    pub points: usize,
+    /// Number of points without a value.
+    pub without_value: usize,
 }
 
 /// Reason for which there is no worst case.
@@ -88,22 +117,20 @@ impl WorstCase {
         self.ranges.keys.iter().zip(parts).map(|(own, part)| own.number_at(*part)).collect()
     }
 
-    /// Returns the values and the keys of the worst point as JSON.
-    pub fn to_json(&self) -> Json {
-        let names = self.ranges.keys.iter().map(|own| own.key.clone());
-        let keys: Map<String, Json> =
-            names.zip(self.key_values(self.worst)).map(|(name, value)| (name, json!(value))).collect();
-        json!({
-            "quantity": self.quantity,
-            "unit": self.unit,
-            "least": self.is_least,
-            "nominal": self.nominal(),
-            "worst": self.value(),
-            "keys": keys,
-            "unstable": self.is_unstable,
-            "points": self.points.len(),
-            "without_value": self.failed,
-        })
+    /// Returns the value at the worst point with its keys.
+    pub fn report(&self) -> WorstCaseReport {
+        let keys = self.ranges.keys.iter().zip(self.key_values(self.worst));
+        WorstCaseReport {
+            quantity: self.quantity.clone(),
+            unit: self.unit.clone(),
+            least: self.is_least,
+            nominal: self.nominal(),
+            worst: self.value(),
+            keys: keys.map(|(own, value)| (own.key.clone(), json!(value))).collect(),
+            unstable: self.is_unstable,
+            points: self.points.len(),
+            without_value: self.failed,
+        }
     }
 }
 

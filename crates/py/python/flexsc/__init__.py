@@ -62,19 +62,30 @@ from flexsc.parts import (
 )
 
 if TYPE_CHECKING:
-    from flexsc import parts, plot, scenario, structure
-    from flexsc._budget import BudgetLevel, IndexBudget, PointingBudget
+    from flexsc import parts, plot, results, scenario, structure
     from flexsc._linear import Linear
-    from flexsc._loop_margins import LoopMargins, StabilityMargins
     from flexsc._margins import Margins
-    from flexsc._noise import NoiseSpectrum, OutputNoise, WheelLines, WheelSpectrum
+    from flexsc._noise import WheelLines, WheelSpectrum
     from flexsc._optimisation import optimise
-    from flexsc._output_bounds import OutputBound, Witness
     from flexsc._result import Detail
     from flexsc._sensitivity import Sensitivities, sensitivities
     from flexsc._signal import Signal
-    from flexsc._structured_tuning import TunedMeasure, TunedPlant, TunedScenario
-    from flexsc._worst_case import WorstCase
+    from flexsc.results import (
+        BudgetLevel,
+        IndexBudget,
+        LoopMargins,
+        NoiseSpectrum,
+        OutputBound,
+        OutputNoise,
+        PointingBudget,
+        SettlingTime,
+        StabilityMargins,
+        TunedMeasure,
+        TunedPlant,
+        TunedScenario,
+        Witness,
+        WorstCase,
+    )
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -118,6 +129,7 @@ __all__ = [
     "ScenarioError",
     "Sensitivities",
     "Sensor",
+    "SettlingTime",
     "Signal",
     "SimulationError",
     "Simulator",
@@ -160,6 +172,7 @@ __all__ = [
     "read_log",
     "read_matrices",
     "relay_damping",
+    "results",
     "rigid_cycles",
     "robust_gains",
     "scenario",
@@ -173,23 +186,20 @@ __all__ = [
 ]
 
 # What is imported when it is first asked for, so that `import flexsc` stays quick.
-_MODULES = ("parts", "plot", "scenario", "structure")
+_MODULES = ("parts", "plot", "results", "scenario", "structure")
 # Modules that import a package which NumPy does not bring.
 _EXTRAS = ("dask", "gym")
 _LATER = {
     name: module
     for module, names in {
-        "_budget": "BudgetLevel IndexBudget PointingBudget",
         "_linear": "Linear",
-        "_loop_margins": "LoopMargins StabilityMargins",
         "_margins": "Margins",
-        "_noise": "NoiseSpectrum OutputNoise WheelLines WheelSpectrum",
+        "_noise": "WheelLines WheelSpectrum",
         "_optimisation": "optimise",
-        "_output_bounds": "OutputBound Witness",
         "_sensitivity": "Sensitivities sensitivities",
         "_signal": "Signal",
-        "_structured_tuning": "TunedMeasure TunedPlant TunedScenario",
-        "_worst_case": "WorstCase",
+        "results": "BudgetLevel IndexBudget LoopMargins NoiseSpectrum OutputBound OutputNoise PointingBudget "
+        "SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario Witness WorstCase",
         "structure": "StateSpace Structure appendage_from_matrices appendage_from_nastran "
         "from_csv from_nastran from_state_space read_matrices write_scenario",
     }.items()

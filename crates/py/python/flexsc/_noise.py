@@ -1,4 +1,4 @@
-"""Noise of the loop of a scenario: rms, spectral density, indices over windows, and lines of its wheels."""
+"""Noise of the loop of a scenario, and the lines of its wheels over their speed."""
 
 from __future__ import annotations
 
@@ -9,76 +9,12 @@ from typing import TYPE_CHECKING, Any
 from flexsc._analysis import analysis
 from flexsc._named import Brief
 from flexsc._numpy import np, npt
-from flexsc._read import read
+from flexsc.results import NoiseSpectrum
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from flexsc._scenario import Scenario
 
     Values = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class OutputNoise(Brief):
-    """Noise of one output of a loop, in the unit of the output.
-
-    >>> noise = flexsc.Scenario.example("attitude-hold").spectrum().outputs["roll"]
-    >>> max(noise.rms_by_source, key=noise.rms_by_source.get), noise.unit
-    ('sensor.sampled.rate_noise', 'rad')
-    """
-
-    unit: str
-    """Unit of the output.
-
-    >>> noise.unit
-    'rad'
-    """
-    rms: float
-    """Rms over time.
-
-    >>> round(noise.rms, 8)
-    2.525e-05
-    """
-    sample_rms: float
-    """Rms at the samples of the law.
-
-    >>> round(noise.sample_rms, 8)
-    2.525e-05
-    """
-    rms_by_source: dict[str, float]
-    """Rms over time from each source: a key of the scenario.
-
-    >>> list(noise.rms_by_source)
-    ['sensor.sampled.noise', 'sensor.sampled.rate_noise']
-    """
-    density: Values
-    """One-sided power spectral density at the samples (unit² per Hz), of shape (frequencies,).
-
-    >>> noise.density.ndim
-    1
-    """
-    density_by_source: dict[str, Values]
-    """Density from each source (unit² per Hz), each of shape (frequencies,).
-
-    >>> list(noise.density_by_source)
-    ['sensor.sampled.noise', 'sensor.sampled.rate_noise']
-    """
-    cumulative_rms: Values
-    """Rms up to each frequency, of shape (frequencies,).
-
-    >>> noise.cumulative_rms.ndim
-    1
-    """
-    window: dict[str, float] | None
-    """Rms over windows that begin at a sample of the law, if a window is given: `mpe`, of the mean over the
-    window, the displacement of an exposure; `rpe_uniform`, `rpe_end` and `rpe_middle`, of the output less
-    the mean at any time, at the end and in the middle; `smear`, of the straight line about its mean;
-    `beyond_smear`, of the rest; `pde`, of the difference of the means of two windows.
-
-    >>> noise.window is None
-    True
-    """
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -165,85 +101,7 @@ class WheelSpectrum(Brief):
     """
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class NoiseSpectrum(Brief):
-    """Noise of the loop of a scenario, exact from its linear model.
-
-    >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["pitch"], window=1.0)
-    >>> noise = spectrum.outputs["pitch"]
-    >>> noise.window["mpe"] < noise.rms < 1e-4
-    True
-    """
-
-    frequency: Values
-    """Frequencies of the densities (Hz), up to the Nyquist frequency, of shape (frequencies,).
-
-    >>> spectrum.frequency.shape == noise.density.shape
-    True
-    """
-    sources: tuple[str, ...]
-    """Sources of noise: keys of the scenario.
-
-    >>> spectrum.sources
-    ('sensor.sampled.noise', 'sensor.sampled.rate_noise')
-    """
-    outputs: dict[str, OutputNoise]
-    """Noise of each output.
-
-    >>> list(spectrum.outputs)
-    ['pitch']
-    """
-    wheels: WheelSpectrum | None
-    """Lines of the imbalance of the wheels; None without imbalance.
-
-    >>> spectrum.wheels is None
-    True
-    """
-    period: float
-    """Period (s) after which the loop repeats.
-
-    >>> round(spectrum.period, 4)
-    0.2
-    """
-    samples: int
-    """Samples of the law in a period.
-
-    >>> spectrum.samples
-    1
-    """
-    spectral_radius: float
-    """Largest magnitude of a pole of the closed loop over a period.
-
-    >>> round(spectrum.spectral_radius, 4)
-    0.9986
-    """
-
-    def plot(self, output: str | None = None, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
-        """Draw the density of an output by source, and its cumulative rms.
-
-        Args:
-            output: Name of the output; if omitted, the first.
-            axes: The axes for density and rms; if omitted, those of a new figure.
-
-        Returns:
-            The axes: frequency (Hz) against density (unit² per Hz), and against the rms up to it.
-
-        Raises:
-            KeyError: There is no output of this name.
-            ImportError: Matplotlib is not installed.
-
-        >>> import matplotlib; matplotlib.use("agg")
-        >>> density, rms = flexsc.Scenario.example("attitude-hold").spectrum().plot("yaw")
-        >>> density.get_ylabel(), rms.get_xlabel()
-        ('density ((rad)²/Hz)', 'frequency (Hz)')
-        """
-        from flexsc._review_figures import noise_density
-
-        return noise_density(self, output, axes)
-
-
-for _class in (NoiseSpectrum, OutputNoise, WheelSpectrum, WheelLines):
-    _class.__module__ = "flexsc"
+WheelSpectrum.__module__ = WheelLines.__module__ = "flexsc"
 
 
 def noise_spectrum(
@@ -261,32 +119,13 @@ def noise_spectrum(
     given = None if speeds is None else np.asarray(speeds, dtype=np.float64).ravel().tolist()
     options = {"signals": list(signals or ()), "window": window, "separation": separation, "speeds": given}
     found = analysis("spectrum", scenario, **options)
-    names = [each["output"] for each in found["outputs"]]
-    wheels = found.get("wheels")
-    return read(
-        NoiseSpectrum,
-        found,
-        outputs={each["output"]: _output(each, found["sources"]) for each in found["outputs"]},
-        wheels=None if wheels is None else _wheels(wheels, names),
-    )
+    if "wheels" in found:
+        found["wheels"] = _wheels(found["wheels"], [each["output"] for each in found["outputs"]])
+    return NoiseSpectrum._read(found)
 
 
 def _array(values: Sequence[float]) -> Values:
     return np.array(values, dtype=np.float64)
-
-
-def _output(found: dict[str, Any], sources: list[str]) -> OutputNoise:
-    window = found.get("window")
-    if window is not None:
-        window = _indices(window)
-    densities = map(_array, found["density_by_source"])
-    return read(
-        OutputNoise,
-        found,
-        rms_by_source=dict(zip(sources, found["rms_by_source"], strict=True)),
-        density_by_source=dict(zip(sources, densities, strict=True)),
-        window=window,
-    )
 
 
 def _indices(window: dict[str, Any]) -> dict[str, float]:

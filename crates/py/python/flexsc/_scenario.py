@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Mapping, Sequence
-from math import inf
+from math import inf, nan
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from flexsc import _keys
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._answer import Answer
 from flexsc._missing import reading
 from flexsc._named import no_such
@@ -24,18 +25,22 @@ if TYPE_CHECKING:
 
     from typing_extensions import Self, Unpack
 
-    from flexsc._budget import PointingBudget
     from flexsc._linear import Break, Linear
-    from flexsc._loop_margins import StabilityMargins
-    from flexsc._noise import NoiseSpectrum
-    from flexsc._output_bounds import OutputBound
     from flexsc._part import Part
-    from flexsc._structured_tuning import TunedScenario
-    from flexsc._worst_case import Margin, WorstCase
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
+    from flexsc.results import (
+        NoiseSpectrum,
+        OutputBound,
+        PointingBudget,
+        StabilityMargins,
+        TunedScenario,
+        WorstCase,
+    )
     from flexsc.scenario import Keys
 
 P = TypeVar("P", bound="Part")
+# Name of a stability margin.
+Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
 
 
 class Scenario:
@@ -541,9 +546,12 @@ class Scenario:
             ScenarioError: The loop is not linear: the key, and the reason.
             ValueError: The closed loop is not stable: its worst pole; or there is no such point.
         """
-        from flexsc._loop_margins import stability_margins
+        from flexsc.results import StabilityMargins
 
-        return stability_margins(self, loop)
+        found = analysis("margins", self, opened=loop)
+        for each in found["loops"] if found["samples"] > 1 else ():
+            each["delay_s"] = nan
+        return StabilityMargins._read(found)
 
     def tune(
         self,
@@ -581,9 +589,13 @@ class Scenario:
             ValueError: The loop of a plant is not stable with the keys of the scenario, or a text of
                 `objective` or `keep` is not one of these.
         """
-        from flexsc._structured_tuning import tune
+        from flexsc.results import TunedScenario
 
-        return tune(self, ranges, loop, (objective, keep), bandwidth, corners)
+        if isinstance(keep, str):
+            raise TypeError(f"keep: must be a sequence of texts, such as [{keep!r}], got a text")
+        keys = [(key, (float(low), float(high))) for key, (low, high) in ranges.items()]
+        options = {"opened": loop, "objective": objective, "keep": list(keep), "bandwidth": bandwidth}
+        return TunedScenario._read(analysis("tune", self, keys=keys, is_nominal=not corners, **options))
 
     def spectrum(
         self,
@@ -637,9 +649,11 @@ class Scenario:
         Raises:
             ValueError: The scenario has no requirement on a pointing index, or a run fails.
         """
-        from flexsc._budget import pointing_budget
+        from flexsc.results import PointingBudget
 
-        return pointing_budget(self, runs, jobs)
+        if runs < 1:
+            raise ValueError(f"runs must be 1 or more, got {runs}")
+        return PointingBudget._read(analysis("budget", self, runs=runs, jobs=jobs))
 
     def bound(self) -> list[OutputBound]:
         """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
@@ -655,9 +669,12 @@ class Scenario:
             ScenarioError: The scenario has no claims, or its body or a claim is not accepted: the key, and
                 the reason.
         """
-        from flexsc._output_bounds import output_bounds
+        from flexsc.results import OutputBound
 
-        return output_bounds(self)
+        found = analysis("bounds", self)
+        for witness in filter(None, (each["witness"] for each in found)):
+            witness["scenario"] = type(self).parse(witness["scenario"]) if "scenario" in witness else None
+        return [OutputBound._read(each) for each in found]
 
     def worst(
         self,
@@ -693,9 +710,17 @@ class Scenario:
             ScenarioError: The scenario has no uncertain keys, or no linear loop: the key, and the reason.
             ValueError: There is no such quantity, or it has no value at any point.
         """
-        from flexsc._worst_case import worst_case
+        from flexsc.results import WorstCase
 
-        return worst_case(self, metric, requirement, margin, loop, least, points, jobs)
+        given = {"metric": metric, "requirement": requirement, "margin": margin}
+        chosen = [(kind, name) for kind, name in given.items() if name is not None]
+        if len(chosen) != 1:
+            raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}")
+        if least and metric is None:
+            raise ValueError("least is for a metric: it is known of a requirement and of a margin")
+        [(kind, name)] = chosen
+        options = {"kind": kind, "name": name, "opened": loop, "is_least": least}
+        return WorstCase._read(analysis("worst", self, **options, points=points, jobs=jobs))
 
     def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:
         """Write a page for a design review, and return whether all its verdicts are good: `flexsc report`.

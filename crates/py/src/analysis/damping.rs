@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::sampled::all_positive;
-use super::{Analysis, Answer, Subject};
+use super::{Answer, Subject};
 use crate::aside::aside;
 use crate::error::allowed;
 
@@ -42,8 +42,8 @@ pub struct RelayDamping {
     threshold: f64,
 }
 
-impl Analysis for RelayDamping {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl RelayDamping {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let Self { frequencies, acceleration, period, delay, on_time, damping, amplitude, threshold } = self;
         let timing = PulseTiming { period, delay, on_time };
         let pulsed = PulsedDamping { timing, damping, acceleration, amplitude, threshold };
@@ -71,8 +71,8 @@ pub struct ObserverRegion {
     elastic: Vec<f64>,
 }
 
-impl Analysis for ObserverRegion {
-    fn run(self, _: &Subject<'_, '_>) -> PyResult<Answer> {
+impl ObserverRegion {
+    pub fn run(self, _: &Subject<'_, '_>) -> PyResult<Answer> {
         let convergence = convergence(self.observer)?;
         let edges = convergence.region(self.kappa, &self.elastic);
         Ok(json!({"edges": edges, "area": convergence.area(self.kappa)}).into())
@@ -87,8 +87,8 @@ pub struct ObserverMargin {
     kappas: Vec<f64>,
 }
 
-impl Analysis for ObserverMargin {
-    fn run(self, _: &Subject<'_, '_>) -> PyResult<Answer> {
+impl ObserverMargin {
+    pub fn run(self, _: &Subject<'_, '_>) -> PyResult<Answer> {
         let convergence = convergence(self.observer)?;
         let radii: Vec<f64> = self.kappas.iter().map(|kappa| convergence.spectral_radius(*kappa)).collect();
         Ok(json!({"margin": convergence.margin(), "spectral_radius": radii}).into())
@@ -109,8 +109,8 @@ pub struct Identify {
     yes: bool,
 }
 
-impl Analysis for Identify {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Identify {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let Self { modes, off, influence_off, rate, runs, cycles, seed, yes } = self;
         let squared = (modes.len() * modes.len()) as f64;
         let mut trial = IdentificationTrial::published(modes, off);

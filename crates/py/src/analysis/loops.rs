@@ -1,16 +1,19 @@
 //! Analyses of a scenario's linear body and loop: margins, tuning, noise, budgets and bounds.
 
 use flexsc_core::analysis::bound::{OutputBound, RangeRow};
+use flexsc_core::analysis::budget::PointingBudget;
 use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::margins::SingularValues;
 use flexsc_core::analysis::noise::{NoiseError, NoiseReport, NoiseRequest, Window};
 use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
-use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault};
+use flexsc_core::analysis::structured_tuning::{ScenarioTuning, TuningFault, TuningReport};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use schemars::JsonSchema;
+use serde::Serialize;
 use serde_json::json;
 
-use super::{Analysis, Answer, Scenario, Subject, loop_break};
+use super::{Answer, FoundScenario, Scenario, Subject, loop_break};
 use crate::aside::aside;
 
 /// Stability margins of the loop, cut open at a point.
@@ -20,8 +23,19 @@ pub struct Margins {
     opened: String,
 }
 
-impl Analysis for Margins {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+/// Margins of a stable loop: of each signal at the break, and of all together.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "StabilityMargins")]
+pub struct MarginsOverFrequency {
+    #[serde(flatten)]
+    margins: ScenarioMargins,
+    /// Largest singular values over frequency.
+    #[schemars(extend("x-flat" = "{}"))]
+    singular_values: Vec<SingularValues>,
+}
+
+impl Margins {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<MarginsOverFrequency>> {
         let scenario = on.scenario()?;
         let (inner, opened) = (scenario.inner.clone(), loop_break(&self.opened)?);
         let margins = aside(on.py, move |_| ScenarioMargins::from_scenario(&inner, opened))?;
@@ -29,16 +43,8 @@ impl Analysis for Margins {
             MarginsFault::Key(fault) => scenario.key_error(fault),
             MarginsFault::Unstable(unstable) => scenario.error(&unstable),
         })?;
-        let mut object = json!(margins);
-        let column = |of: fn(&SingularValues) -> f64| {
-            margins.stability.singular_values.iter().map(of).collect::<Vec<f64>>()
-        };
-        object["singular_values"] = json!({
-            "frequency": column(|at| at.frequency_rad_s),
-            "sensitivity": column(|at| at.sensitivity),
-            "complementary": column(|at| at.complementary),
-        });
-        Ok(object.into())
+        let singular_values = margins.stability.singular_values.clone();
+        Ok(MarginsOverFrequency { margins, singular_values }.into())
     }
 }
 
@@ -61,8 +67,18 @@ pub struct Tune {
     is_nominal: bool,
 }
 
-impl Analysis for Tune {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+/// Tuned scenario, with the margins of its plants before and after.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "TunedScenario")]
+pub struct Tuned {
+    /// Scenario with the tuned keys.
+    scenario: FoundScenario,
+    #[serde(flatten)]
+    report: TuningReport,
+}
+
+impl Tune {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<Tuned>> {
         let scenario = on.scenario()?;
         let Self { keys, opened, objective, keep, bandwidth, is_nominal } = self;
         let objective =
@@ -74,12 +90,13 @@ impl Analysis for Tune {
         let inner = scenario.inner.clone();
         let tuned = aside(on.py, move |_| {
             let tuned = tuning.run(&inner)?;
-            Ok((tuned.to_json(), tuned.scenario()))
+            Ok((tuned.report(), tuned.scenario()))
         })?;
-        let (result, found) = tuned.map_err(|fault: TuningFault| match fault {
+        let (report, found) = tuned.map_err(|fault: TuningFault| match fault {
             TuningFault::Key(fault) => scenario.key_error(fault),
             fault => scenario.error(&fault),
         })?;
+        let result = Tuned { scenario: FoundScenario, report };
         Ok(Answer { result, scenario: Some(Scenario::new(&scenario.inner.name, found)?) })
     }
 }
@@ -94,8 +111,8 @@ pub struct Spectrum {
     speeds: Option<Vec<f64>>,
 }
 
-impl Analysis for Spectrum {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Spectrum {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<NoiseReport>> {
         let scenario = on.scenario()?;
         let Self { signals, window, separation, speeds } = self;
         let window = window.map(|length| Window { length, separation });
@@ -107,7 +124,7 @@ impl Analysis for Spectrum {
             NoiseError::Request(why) => PyValueError::new_err(why),
             fault => scenario.error(&fault),
         })?;
-        Ok(json!(report).into())
+        Ok(report.into())
     }
 }
 
@@ -119,31 +136,36 @@ pub struct Budget {
     jobs: u16,
 }
 
-impl Analysis for Budget {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Budget {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<PointingBudget>> {
         let inner = on.scenario()?.inner.clone();
         let budget = aside(on.py, move |_| flexsc_cli::pointing_budget(inner, self.runs, self.jobs))?;
         Ok(budget.map_err(PyValueError::new_err)?.into())
     }
 }
 
-/// Guaranteed ranges of the outputs that the scenario claims, with their rows as columns and their witnesses as scenario
-/// files.
-pub fn bounds(on: &Subject<'_, '_>) -> PyResult<Answer> {
+/// Guaranteed range of an output over sets of states, inputs and parameters, and the verdict.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "OutputBound")]
+pub struct BoundOverTime {
+    #[serde(flatten)]
+    bound: OutputBound,
+    /// Range at instants. The output may leave it between two instants, but not `range`.
+    rows: Vec<RangeRow>,
+}
+
+/// Guaranteed ranges of the outputs that the scenario claims, with their witnesses as scenario files.
+pub fn bounds(on: &Subject<'_, '_>) -> PyResult<Answer<Vec<BoundOverTime>>> {
     let scenario = on.scenario()?;
     let own = scenario.inner.clone();
     let bounds = aside(on.py, move |_| OutputBound::from_scenario(&own))?;
     let bounds = bounds.map_err(|fault| scenario.key_error(fault))?;
-    let object = |bound: &OutputBound| {
-        let column = |of: fn(&RangeRow) -> f64| bound.rows.iter().map(of).collect::<Vec<f64>>();
-        let mut object = json!(bound);
-        object["rows"] = json!({
-            "time": column(|row| row.time_s),
-            "low": column(|row| row.low),
-            "high": column(|row| row.high),
-        });
-        object["witness_scenario"] = json!(bound.witness_text(&scenario.inner));
-        object
+    let over_time = |mut bound: OutputBound| {
+        let text = bound.witness_text(&scenario.inner);
+        if let Some(witness) = &mut bound.witness {
+            witness.scenario = text;
+        }
+        BoundOverTime { rows: bound.rows.clone(), bound }
     };
-    Ok(json!(bounds.iter().map(object).collect::<Vec<_>>()).into())
+    Ok(bounds.into_iter().map(over_time).collect::<Vec<_>>().into())
 }

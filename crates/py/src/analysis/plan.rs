@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::Value as Json;
 
-use super::{Analysis, Answer, Scenario, Subject};
+use super::{Answer, Scenario, Subject};
 use crate::aside::aside;
 use crate::error::scenario_error;
 
@@ -35,8 +35,8 @@ pub struct Planned {
     band: f64,
 }
 
-impl Analysis for Planned {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Planned {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let (_, plan, body) = planned(on.scenario()?)?;
         Ok(PlanReport::new(plan, body, checked_band(self.band)?).to_json(plan, body).into())
     }
@@ -50,8 +50,8 @@ pub struct Rivals {
     peak_torque: Option<f64>,
 }
 
-impl Analysis for Rivals {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Rivals {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let (manoeuvre, plan, body) = planned(on.scenario()?)?;
         let band = checked_band(self.band)?;
         let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));

@@ -9,7 +9,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
-use super::{Analysis, Answer, Scenario, Subject};
+use super::{Answer, Scenario, Subject};
 use crate::aside::aside;
 use crate::error::allowed;
 
@@ -66,8 +66,8 @@ pub struct GainRegion {
     settled: Settled,
 }
 
-impl Analysis for GainRegion {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl GainRegion {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let Self { frequencies, gains, limit, settled } = self;
         let (sampled_loop, _, window, scaling) = sampled(on.scenario()?, settled)?;
         all_positive("frequencies", &frequencies)?;
@@ -93,8 +93,8 @@ pub struct RobustGains {
     settled: Settled,
 }
 
-impl Analysis for RobustGains {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl RobustGains {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let Self { frequencies, gains, off, delay, itae, quantile, margin, settled } = self;
         let (sampled_loop, _, window, scaling) = sampled(on.scenario()?, settled)?;
         all_positive("frequencies", &frequencies)?;
@@ -133,8 +133,8 @@ pub struct StabilityMap {
     settled: Settled,
 }
 
-impl Analysis for StabilityMap {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl StabilityMap {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let Self { frequencies, periods, gain, settled } = self;
         let (sampled_loop, law, window, scaling) = sampled(on.scenario()?, settled)?;
         all_positive("frequencies", &frequencies)?;

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::{Value as Json, json};
 
-use super::{Analysis, Answer, Subject};
+use super::{Answer, Subject};
 use crate::detail;
 use crate::error::scenario_error;
 
@@ -22,8 +22,8 @@ pub struct Estimate {
     log: String,
 }
 
-impl Analysis for Estimate {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+impl Estimate {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
         let scenario = on.scenario()?;
         let detail = detail(&self.log)?;
         let cost = if self.runs > 1 {

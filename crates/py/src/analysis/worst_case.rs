@@ -5,13 +5,14 @@ use flexsc_core::metrics::Selection;
 use flexsc_core::record::StopFlag;
 use flexsc_core::uncertain::UncertainKey;
 use flexsc_core::worst_case::{
-    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCase, WorstCaseFault,
+    MarginKind, MarginSearch, MetricSearch, RunQuantity, WorstCaseFault, WorstCaseReport,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
-use serde_json::{Value as Json, json};
+use schemars::JsonSchema;
+use serde::Serialize;
 
-use super::{Analysis, Answer, Scenario, Subject, loop_break};
+use super::{Answer, FoundScenario, Scenario, Subject, loop_break};
 use crate::aside::aside;
 use crate::error::scenario_error;
 
@@ -27,8 +28,26 @@ pub struct Worst {
     jobs: usize,
 }
 
-impl Analysis for Worst {
-    fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer> {
+/// Worst point of the ranges of the uncertain keys that a search found.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "WorstCase")]
+pub struct WorstCaseOverPoints {
+    #[serde(flatten)]
+    report: WorstCaseReport,
+    /// Range of each uncertain key.
+    #[schemars(extend("x-names" = "keys"))]
+    ranges: Vec<[f64; 2]>,
+    /// Points that were assessed, one in each row, with the keys as columns.
+    #[schemars(extend("x-name" = "points"))]
+    rows: Vec<Vec<f64>>,
+    /// Value at each point; NaN at a point without one.
+    values: Vec<f64>,
+    /// Scenario with the keys of the worst point, and without uncertain ones.
+    scenario: FoundScenario,
+}
+
+impl Worst {
+    pub fn run(self, on: &Subject<'_, '_>) -> PyResult<Answer<WorstCaseOverPoints>> {
         let scenario = on.scenario()?;
         let Self { kind, name, opened, is_least, points, jobs } = self;
         if points == 0 {
@@ -60,19 +79,14 @@ impl Analysis for Worst {
             WorstCaseFault::Request(why) => scenario.error(&why),
             WorstCaseFault::Interrupted => PyKeyboardInterrupt::new_err(()),
         })?;
-        let result = table(&found);
+        let result = WorstCaseOverPoints {
+            report: found.report(),
+            ranges: found.ranges.keys.iter().map(UncertainKey::limits).collect(),
+            rows: (0..found.points.len()).map(|point| found.key_values(point)).collect(),
+            values: found.points.iter().map(|point| point.assessed.value).collect(),
+            scenario: FoundScenario,
+        };
         let witness = Scenario { origin: scenario.inner.name.clone(), inner: found.witness };
         Ok(Answer { result, scenario: Some(witness) })
     }
-}
-
-/// The JSON of a worst case, with all points.
-fn table(found: &WorstCase) -> Json {
-    let mut object = found.to_json();
-    let all: Vec<_> = (0..found.points.len()).map(|point| found.key_values(point)).collect();
-    let values: Vec<f64> = found.points.iter().map(|point| point.assessed.value).collect();
-    object["ranges"] = json!(found.ranges.keys.iter().map(UncertainKey::limits).collect::<Vec<_>>());
-    object["rows"] = json!(all);
-    object["values"] = json!(values);
-    object
 }
