@@ -14,6 +14,7 @@ from typing import Any
 import flexsc
 import flexsc.parts
 import flexsc.plot
+import flexsc.results
 import flexsc.scenario
 import flexsc.structure
 from scenario_keys import Keys
@@ -256,8 +257,12 @@ OF_A_PART = (
     "heading_level: 1, members: false, inherited_members: false, merge_init_into_class: false, "
     "show_bases: false, docstring_section_style: list"
 )
+# What the fields of a result are read from is of no interest.
+OF_A_RESULT = (
+    "heading_level: 1, merge_init_into_class: false, show_attribute_values: false, show_bases: false"
+)
 # Modules of the package with a page each, and whether that has their members.
-MODULES = {"plot": True, "parts": False, "structure": False, "scenario": False}
+MODULES = {"plot": True, "parts": False, "structure": False, "results": False, "scenario": False}
 
 
 def python() -> dict[str, str]:
@@ -282,7 +287,8 @@ def python() -> dict[str, str]:
             is_class = inspect.isclass(getattr(flexsc, name))
             page = f"{name}.md" if is_class else functions
             if is_class:
-                made[page] = f"{BEHIND}::: flexsc.{name}\n    options: {{heading_level: 1}}\n"
+                options = OF_A_RESULT if name in flexsc.results.__all__ else "heading_level: 1"
+                made[page] = f"{BEHIND}::: flexsc.{name}\n    options: {{{options}}}\n"
             else:
                 made.setdefault(page, f"{BEHIND}# {title}: functions\n\n")
                 made[page] += f"::: flexsc.{name}\n\n"

@@ -90,7 +90,6 @@ macro_rules! analyses {
         }
 
         /// JSON Schema of the results of all analyses, by their names.
-        #[expect(clippy::unnecessary_wraps, reason = "an analysis may fail")]
         fn results(_: &Subject<'_, '_>) -> PyResult<Answer> {
             let mut generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
             let properties = json!({$($name: schema_of($run, &mut generator),)*});
