@@ -222,13 +222,13 @@ mod tests {
             ["at", "phase", "limits", "gain", "axis"],
             ["", "margin", "", "", ""],
             ["Hz", "deg", "mN m", "dB", ""],
-            ["1", "90", "-2 to 4", "", "roll"],
+            ["1", "90", "-2, 4", "", "roll"],
             ["0.1592", "none", "", "20", "yaw"],
         ];
         assert_eq!(lines(&rows, &shown, Units::Engineering), expected);
         let si = lines(&rows, &shown, Units::Si);
         assert_eq!(si[2], ["rad/s", "rad", "N m", "", ""]);
-        assert_eq!(si[3], ["6.283", "1.571", "-0.002 to 0.004", "", "roll"]);
+        assert_eq!(si[3], ["6.283", "1.571", "-0.002, 0.004", "", "roll"]);
     }
 
     #[test]
@@ -245,6 +245,6 @@ mod tests {
         ];
         let printed = lines(&rows, &shown, Units::Engineering);
         assert_eq!(printed[1], ["per minute", "%", "", ""]);
-        assert_eq!(printed[2], ["30", "25", "0.2", "0.5 N"]);
+        assert_eq!(printed[2], ["30", "25", "0.2", "500 mN"]);
     }
 }

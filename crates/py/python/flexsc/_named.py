@@ -58,6 +58,8 @@ def _brief(value: Any) -> str:
         parts = [f"{key!r}: {_brief(each)}" if is_short else repr(key) for key, each in value.items()]
         return f"{{{', '.join(parts)}}}"
     if isinstance(value, tuple):
+        if len(value) > 3 and isinstance(value[0], Brief):
+            return f"{len(value)} of {type(value[0]).__name__}"
         return f"({', '.join(map(_brief, value))})"
     return repr(value)
 
