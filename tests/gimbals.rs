@@ -242,7 +242,7 @@ fn their_summary_and_figure_show_gimbals_and_limits() {
     dir.run("simulate agile-observer.toml --set duration=45 --units si").exits(0).says(&[
         &format!("  gimbals    rate at most {rate:.4} rad/s; "),
         &format!("singularity measure at least {measure:.3}; "),
-        &format!("torque within {off:.5} N m"),
+        &format!("{off:.5} N m of the demand"),
     ]);
     dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");

@@ -250,7 +250,7 @@ fn a_figure_has_a_band_of_each_mode() {
     let dir = Dir::with(&["safe-mode"]);
     let said = dir.run("simulate safe-mode.toml --set duration=1500 --log full -o .").exits(0);
     let row = |mode: &str| {
-        let line = said.err.lines().find(|line| line.trim_start().starts_with(mode));
+        let line = said.err.lines().find(|line| line.starts_with(&format!("  {mode} ")));
         line.unwrap_or_else(|| panic!("{}", said.err)).split_whitespace().collect::<Vec<_>>().join(" ")
     };
     assert!(row("detumble").starts_with("detumble 1 1377 s no target"), "{}", row("detumble"));

@@ -135,7 +135,7 @@ fn a_missed_requirement_ends_with_3_and_is_beside_no_plain_goal() {
     assert_eq!(object["metrics"]["requirement"], "missed");
     // A run that never settles has no value, and meets nothing.
     dir.write("short.toml", text("60.0").replace("duration = 60.0", "duration = 0.5"));
-    dir.run("simulate short.toml --log none").exits(3).says(&["missed: settling has no value, at most 60 s"]);
+    dir.run("simulate short.toml --log none").exits(3).says(&["✗ settling   no value   at most 60 s"]);
 }
 
 #[test]

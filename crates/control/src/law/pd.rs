@@ -83,11 +83,6 @@ pub struct ScheduledGain {
 }
 
 impl Pd {
-    /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn validate(&self) -> Option<ConfigError> {
-        Some(self.extra.as_ref()?.validate()?.within("extra.schedule"))
-    }
-
     /// Returns the gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
     pub fn extra_gain(&self, frequency: f64) -> f64 {
         self.extra.as_ref().map_or(0.0, |extra| extra.gain(frequency))
@@ -180,6 +175,10 @@ impl LawSpec for Pd {
     fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
         let limit = self.limit.filter(|_| conditions.detailed).map_or(f64::INFINITY, Positive::get);
         conditions.torque_per_command * limit.min(self.k_p.get() * conditions.angle)
+    }
+
+    fn validate(&self) -> Option<ConfigError> {
+        Some(self.extra.as_ref()?.validate()?.within("extra.schedule"))
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {

@@ -276,26 +276,81 @@ fn aligned(rows: &[Vec<String>], most: usize) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-/// Returns a text in lines of at most `width` characters, broken at spaces, all but the first indented.
+/// Returns a text in lines of at most `width` characters, broken at spaces but not between a number and its unit, all but
+/// the first indented.
 fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
     let start = text.len() - text.trim_start().len();
     let mut lines = vec![text[..start].to_owned()];
-    let mut is_first = true;
-    for word in text[start..].split(' ') {
+    for (index, word) in words(&text[start..]).into_iter().enumerate() {
         let last = lines.last_mut().expect("there is one line at least");
-        let is_start = is_first || last.chars().all(|c| c == ' ');
-        if !is_first && last.chars().count() + 1 + word.chars().count() > width && !word.is_empty() {
+        if index == 0 {
+            last.push_str(&word);
+        } else if last.chars().count() + 1 + word.chars().count() > width && !word.is_empty() {
             lines.push(format!("{}{word}", " ".repeat(indent)));
         } else {
-            if !is_start {
-                last.push(' ');
-            }
-            last.push_str(word);
+            last.push(' ');
+            last.push_str(&word);
         }
-        is_first = false;
     }
     lines.iter().map(|line| line.trim_end().to_owned()).collect()
 }
+
+/// Returns the words of a text, with units behind their numbers: `26.4 mN m`, `95 %`.
+fn words(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let before = words.last().map_or("", |last| last.as_str());
+        let plain = word.trim_end_matches([',', ';', '.', ')']);
+        let is_unit = match before.rsplit(' ').next().unwrap_or_default() {
+            "N" | "mN" | "µN" | "nN" | "m" => matches!(plain, "m" | "s"),
+            number => {
+                let digits = number.trim_start_matches(['±', '(']).replace(THIN_SPACE, "");
+                let is_number = digits.parse::<f64>().is_ok();
+                is_number && (plain == "%" || plain == "s" || (UNITS.contains(&plain) && plain.len() > 1))
+            }
+        };
+        match words.last_mut() {
+            Some(last)
+                if is_unit || matches!(plain, "N" | "m" | "J" | "g") && last.parse::<f64>().is_ok() =>
+            {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
+/// Units that stay with their numbers.
+const UNITS: [&str; 26] = [
+    "deg",
+    "arcsec",
+    "mas",
+    "deg/s",
+    "arcsec/s",
+    "mas/s",
+    "deg/s²",
+    "arcsec/s²",
+    "mas/s²",
+    "rpm",
+    "Hz",
+    "mHz",
+    "rad",
+    "rad/s",
+    "rad/s²",
+    "mN",
+    "µN",
+    "nN",
+    "mJ",
+    "µJ",
+    "nJ",
+    "kJ",
+    "kg",
+    "mg",
+    "mm",
+    "µm",
+];
 
 /// Returns a text with plain characters for marks and spaces.
 fn ascii(text: &str) -> String {
@@ -325,6 +380,10 @@ mod tests {
         let text = "  ! one two three four";
         assert_eq!(wrapped(text, 11, 4), ["  ! one two", "    three", "    four"]);
         assert_eq!(wrapped("short", 20, 4), ["short"]);
+        assert_eq!(
+            wrapped("torque 26.4 mN m, 95 % of it", 14, 2),
+            ["torque", "  26.4 mN m,", "  95 % of it"]
+        );
         // Columns keep their distances.
         assert_eq!(wrapped("  a   b", 20, 4), ["  a   b"]);
     }

@@ -39,7 +39,8 @@ impl RunData<'_> {
             if share > MUCH { lines.main("star tracker", text) } else { lines.other("star tracker", text) }
         }
         if let Some(share) = self.known("moment_limit_share").filter(|share| *share > 0.0) {
-            lines.other("magnetorquers", format!("at the largest moment for {} of the time", percent(share)));
+            let text = format!("of a magnetorquer for {} of the time", percent(share));
+            lines.other("largest moment", text);
         }
         if self.known("friction_heat_j").is_some() {
             let text = format!(
