@@ -104,7 +104,7 @@ fn the_log_is_that_of_the_same_commands_in_one_process() {
         let address = if transport == "udp" { &link.address } else { &address };
         let mut client = ControlClient::connect(transport, address).expect("a welcome");
         assert_eq!(client.control(u64::MAX, ACCELERATION, remote_law), Ok(Some(0)));
-        server.wait().exits(0).says(&["240 cycles", "log            run.mcap"]);
+        server.wait().exits(0).says(&["240 cycles", "log run.mcap, "]);
         assert!(dir.read("run.mcap") == expected, "{transport}: another log");
         assert_eq!(link.faults.load(Ordering::Relaxed) > 20, faults.lost > 0.0);
     }

@@ -126,7 +126,7 @@ fn a_ground_pass_that_a_wheel_loses_is_said() {
                    wheel 3 at its speed limit for 127 s, first at 12 618 s";
     assert!(said.contains(warning), "{said}");
     assert!(
-        said.contains("but mode pass loses its target") && said.matches("target lost").count() == 1,
+        said.contains("MISSED: 1 of 2 requirements") && said.matches("target lost").count() == 1,
         "{said}"
     );
     assert!(!said.contains("goal"), "{said}");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use flexsc_core::Scenario;
-use flexsc_core::answer::{Answer, Observed, RunObserver, ScreenOptions, ScreenStyle, Verdict};
+use flexsc_core::answer::{Answer, Observed, RunObserver, RunVerdict, ScreenOptions, ScreenStyle};
 use flexsc_core::metrics::Metrics;
 
 use crate::error::CliError;
@@ -51,7 +51,7 @@ impl AnswerArgs {
     /// Returns a text with the characters that the locale has.
     #[allow(clippy::unused_self, reason = "the options of the screen")]
     pub fn style(&self, text: &str) -> String {
-        style().of(text)
+        style().styled(text)
     }
 
     /// Prints an answer, with its log and its size, if there is one.
@@ -74,11 +74,12 @@ impl AnswerArgs {
 
     /// Fails if the run has failed, a requirement is missed, or, if it is strict, a warning is grave.
     pub fn validate(&self, answers: &[(String, Answer)]) -> Result<(), CliError> {
-        if let Some((name, answer)) = answers.iter().find(|(_, answer)| answer.verdict == Verdict::Failed) {
+        if let Some((name, answer)) = answers.iter().find(|(_, answer)| answer.verdict == RunVerdict::Failed)
+        {
             return Err(CliError::Diverged(format!("{name}: {}", without_failed(&answer.verdict_text))));
         }
         requirements::validate_answers(answers)?;
-        match answers.iter().find(|(_, answer)| self.strict && answer.verdict == Verdict::MetBut) {
+        match answers.iter().find(|(_, answer)| self.strict && answer.verdict == RunVerdict::MetBut) {
             Some((name, answer)) => Err(CliError::Requirements(format!("{name}: {}", answer.verdict_text))),
             None => Ok(()),
         }
@@ -113,10 +114,10 @@ fn coloured(screen: &str, answer: &Answer) -> String {
         format!("{style}{text}{style:#}")
     };
     let colour = match answer.verdict {
-        Verdict::Failed | Verdict::Missed => Some(AnsiColor::Red),
-        Verdict::MetBut | Verdict::GoalMissed => Some(AnsiColor::Yellow),
-        Verdict::Met => Some(AnsiColor::Green),
-        Verdict::GoalMet | Verdict::NotAsked => None,
+        RunVerdict::Failed | RunVerdict::Missed => Some(AnsiColor::Red),
+        RunVerdict::MetBut | RunVerdict::GoalMissed => Some(AnsiColor::Yellow),
+        RunVerdict::Met => Some(AnsiColor::Green),
+        RunVerdict::GoalMet | RunVerdict::NotAsked => None,
     };
     let mut lines: Vec<String> = screen.lines().map(str::to_owned).collect();
     if let (Some(first), Some(colour)) = (lines.first_mut(), colour) {

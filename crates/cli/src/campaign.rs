@@ -21,7 +21,7 @@ use flexsc_core::answer::{Answer, Observed};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
-use flexsc_core::formats::reader_units::Units;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
 use flexsc_core::requirement_verdict::{self, RequirementRuns, RequirementVerdict};
@@ -97,7 +97,7 @@ pub struct CampaignJob<'a> {
     pub json: bool,
     /// Options of the answer.
     pub answer: AnswerArgs,
-    /// What an observer saw, of a campaign of one run.
+    /// Observations of every control cycle, of a campaign of one run.
     pub observed: Arc<Mutex<Option<Observed>>>,
     /// Address of the scheduler whose workers make the runs, if any.
     pub scheduler: Option<&'a str>,
@@ -357,7 +357,7 @@ pub fn object(
             if !verdicts.is_empty() {
                 object["requirements"] = requirements::json(&verdicts);
             }
-            let own = Answer::new(campaign.scenario(), metrics, None, Units::default());
+            let own = Answer::new(campaign.scenario(), metrics, None, ReaderUnits::default());
             if !own.warnings.is_empty() {
                 object["warnings"] = own.warnings.iter().map(|warning| json!(warning.text)).collect();
             }

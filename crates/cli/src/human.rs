@@ -14,7 +14,7 @@ pub enum Units {
     Si,
 }
 
-impl From<Units> for flexsc_core::formats::reader_units::Units {
+impl From<Units> for flexsc_core::formats::reader_units::ReaderUnits {
     fn from(units: Units) -> Self {
         match units {
             Units::Engineering => Self::Engineering,

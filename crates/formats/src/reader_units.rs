@@ -6,10 +6,10 @@ use std::f64::consts::PI;
 
 use crate::document::{unit_of_text, units_ratio};
 
-/// Units of what is printed for people; logs, tables and JSON values are in SI units always.
+/// ReaderUnits of what is printed for people; logs, tables and JSON values are in SI units always.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub enum Units {
-    /// Units that fit the size of the numbers: deg, arcsec, rpm, mN m, g.
+pub enum ReaderUnits {
+    /// ReaderUnits that fit the size of the numbers: deg, arcsec, rpm, mN m, g.
     #[default]
     Engineering,
     /// SI units: rad, rad/s, N m, kg.
@@ -30,7 +30,7 @@ pub struct ReaderUnit {
 const DEGREE: f64 = PI / 180.0;
 const ARCSEC: f64 = DEGREE / 3600.0;
 
-/// Units of a quantity by its SI unit, each with its size and the least value for which it is chosen.
+/// ReaderUnits of a quantity by its SI unit, each with its size and the least value for which it is chosen.
 const LADDERS: [(&str, &[(&str, f64, f64)]); 5] = [
     ("rad", &[("deg", DEGREE, 0.1 * DEGREE), ("arcsec", ARCSEC, 1e-3 * ARCSEC), ("mas", 1e-3 * ARCSEC, 0.0)]),
     (
@@ -53,7 +53,7 @@ const LADDERS: [(&str, &[(&str, f64, f64)]); 5] = [
     ("kg", &[("kg", 1.0, 0.1), ("g", 1e-3, 1e-4), ("mg", 1e-6, 0.0)]),
 ];
 
-/// Units with prefixes in steps of a thousand, such as mN m.
+/// ReaderUnits with prefixes in steps of a thousand, such as mN m.
 const PREFIXED: [&str; 10] = ["N m", "N m s", "J", "N", "N s", "m", "m/s²", "A m²", "J/(kg m²)", "N m s/rad"];
 
 /// Prefixes with their sizes, and the least value for which each is chosen.
@@ -66,7 +66,7 @@ const PREFIXES: [(&str, f64, f64); 6] = [
     ("n", 1e-9, 0.0),
 ];
 
-impl Units {
+impl ReaderUnits {
     /// Returns the unit that fits the largest of some values of an SI unit.
     pub fn fitting(self, largest: f64, unit: &str) -> ReaderUnit {
         match self {
@@ -335,26 +335,29 @@ mod tests {
             (3.5, "", "3.50"),
         ];
         for (value, unit, text) in cases {
-            assert_eq!(Units::Engineering.quantity(value, unit), text);
+            assert_eq!(ReaderUnits::Engineering.quantity(value, unit), text);
         }
-        assert_eq!(Units::Si.quantity(1.979e-5, "rad"), "1.979e-5 rad");
-        assert_eq!(Units::Engineering.list(&[0.031, 2.0], " -> ", "rad"), "1.78 -> 115 deg");
+        assert_eq!(ReaderUnits::Si.quantity(1.979e-5, "rad"), "1.979e-5 rad");
+        assert_eq!(ReaderUnits::Engineering.list(&[0.031, 2.0], " -> ", "rad"), "1.78 -> 115 deg");
     }
 
     #[test]
     fn the_unit_of_the_question_is_that_of_the_answer() {
-        let unit = Units::Engineering.as_written(Some("0.1 deg"), 1e-9, "rad");
+        let unit = ReaderUnits::Engineering.as_written(Some("0.1 deg"), 1e-9, "rad");
         assert_eq!(unit.quantity(0.001_257_432), "0.0720 deg");
-        assert_eq!(Units::Engineering.as_written(Some("3000 rpm"), 1.0, "rad/s").quantity(PI), "30.0 rpm");
+        assert_eq!(
+            ReaderUnits::Engineering.as_written(Some("3000 rpm"), 1.0, "rad/s").quantity(PI),
+            "30.0 rpm"
+        );
         // A number, or a unit of something else.
         for text in [None, Some("4e-4"), Some("2 kg"), Some("4e-4 rad")] {
-            assert_eq!(Units::Engineering.as_written(text, 4e-4, "rad").name, "arcsec");
+            assert_eq!(ReaderUnits::Engineering.as_written(text, 4e-4, "rad").name, "arcsec");
         }
     }
 
     #[test]
     fn a_rounded_value_stays_on_its_side_of_the_limit() {
-        let unit = Units::Engineering.as_written(Some("0.03 N m s"), 0.03, "N m s");
+        let unit = ReaderUnits::Engineering.as_written(Some("0.03 N m s"), 0.03, "N m s");
         assert_eq!(unit.beside(0.030_004_9, 0.03), "0.030005");
         assert_eq!(unit.beside(0.029_999_999, 0.03), "0.029999999");
         assert_eq!(unit.beside(0.03, 0.03), "0.0300");

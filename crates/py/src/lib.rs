@@ -36,7 +36,7 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::answer::RunObserver;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::formats::document::ConfigError;
-use flexsc_core::formats::reader_units::Units;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::requirement_verdict::validate_metrics;
@@ -282,7 +282,8 @@ fn simulate<'py>(
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
         topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
-    let answer = flexsc_core::answer::Answer::new(&scenario.inner, &metrics, observed, Units::Engineering);
+    let answer =
+        flexsc_core::answer::Answer::new(&scenario.inner, &metrics, observed, ReaderUnits::Engineering);
     Ok((
         columns::metrics_to_dict(py, &metrics)?,
         topics,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::Scenario;
 use flexsc_core::answer::real_time;
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{Units, percent, percent_beside};
+use flexsc_core::formats::reader_units::{ReaderUnits, percent, percent_beside};
 use flexsc_core::metrics::{Metrics, goal};
 use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
 use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
@@ -160,7 +160,7 @@ impl CampaignReport {
         for (index, verdict) in self.requirements.iter().enumerate() {
             let RequirementVerdict { requirement, decision, runs, runs_met, worst: (run, worst), .. } =
                 verdict;
-            let units: Units = args.units.units.into();
+            let units: ReaderUnits = args.units.units.into();
             let unit =
                 units.as_written(requirement.written_limit.as_deref(), requirement.limit, requirement.unit);
             let own = self.statistics.iter().find(|s| s.name == format!("requirement_values[{index}]"));
@@ -238,7 +238,7 @@ fn confidence_note(verdict: &RequirementVerdict) -> Option<String> {
 }
 
 /// Returns the statistics as a table, each row in a unit that fits it.
-fn statistics_table(shown: &[&Statistics], units: Units) -> String {
+fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
     let mut heads: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
     heads.extend(QUANTILES.map(|q| format!("{:.0} %", 100.0 * q)));
     let mut rows = vec![heads];

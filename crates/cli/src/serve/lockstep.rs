@@ -15,7 +15,7 @@ use crate::stop::stop_flag;
 pub struct Served {
     /// Metrics of a complete run; none otherwise.
     pub metrics: Metrics,
-    /// What an observer saw of the run.
+    /// Observations of every control cycle.
     pub observed: Observed,
     /// Number of cycles that the client answered.
     pub cycles: u64,

@@ -16,9 +16,9 @@ pub enum EventKind {
     Failure,
 }
 
-/// Event of a run.
+/// RunEvent of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Event {
+pub struct RunEvent {
     /// Kind.
     pub kind: EventKind,
     /// Mode that begins, part that fails or is blinded, or actuator.

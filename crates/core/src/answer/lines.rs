@@ -1,18 +1,18 @@
 //! Lines of text on a run: what else is known, apart from requirements and modes of operation.
 
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_formats::reader_units::{Units, number, time};
+use flexsc_formats::reader_units::{ReaderUnits, number, time};
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
-use super::event::{Event, EventKind};
+use super::event::{EventKind, RunEvent};
 use super::run_observer::Observed;
 use crate::metrics::{MetricValue, Metrics};
 
 /// Line of text on a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Line {
-    /// What it is about, in one or two words.
+    /// Subject, in one or two words.
     pub head: String,
     /// Text.
     pub text: String,
@@ -26,7 +26,7 @@ pub(super) struct RunData<'a> {
     pub scenario: &'a Scenario,
     pub metrics: &'a Metrics,
     pub observed: Option<&'a Observed>,
-    pub units: Units,
+    pub units: ReaderUnits,
 }
 
 /// Lines of an answer, in their order.
@@ -67,14 +67,14 @@ impl RunData<'_> {
     }
 
     /// Returns the losses of the target as events.
-    pub fn losses(&self) -> Vec<Event> {
+    pub fn losses(&self) -> Vec<RunEvent> {
         let [modes, starts, times] =
             ["target_loss_modes", "target_loss_starts_s", "target_loss_times_s"].map(|name| self.list(name));
         let limits = self.metrics.get("target_loss_limits").map_or(&[][..], MetricValue::words);
         let event = |(index, limit): (usize, &String)| {
             let from = starts.get(index).copied()?;
             let mode = self.scenario.mode.get(modes.get(index).copied()? as usize);
-            Some(Event {
+            Some(RunEvent {
                 kind: EventKind::Saturation,
                 part: limit.clone(),
                 cause: String::new(),

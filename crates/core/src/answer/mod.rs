@@ -5,7 +5,7 @@
 mod error_statistics;
 mod event;
 mod lines;
-mod mode_row;
+mod mode_answer;
 mod one_axis_lines;
 mod requirement_answer;
 mod run_observer;
@@ -14,7 +14,7 @@ mod three_axis_lines;
 mod verdict;
 mod warning;
 
-use flexsc_formats::reader_units::Units;
+use flexsc_formats::reader_units::ReaderUnits;
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
@@ -22,13 +22,13 @@ use crate::metrics::Metrics;
 use crate::requirement_verdict::{self, RequirementVerdict};
 
 pub use error_statistics::ErrorSummary;
-pub use event::{Event, EventKind};
+pub use event::{EventKind, RunEvent};
 pub use lines::Line;
-pub use mode_row::ModeRow;
+pub use mode_answer::ModeAnswer;
 pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
 pub use run_observer::{Observed, RunObserver};
 pub use screen::{ScreenOptions, ScreenStyle, real_time};
-pub use verdict::{GoalAnswer, Verdict};
+pub use verdict::{GoalAnswer, RunVerdict};
 pub use warning::{Warning, WarningKind};
 
 use lines::RunData;
@@ -45,9 +45,9 @@ pub struct Answer {
     pub scenario: String,
     /// Simulated time (s).
     pub duration_s: f64,
-    /// Verdict.
-    pub verdict: Verdict,
-    /// Verdict in words.
+    /// RunVerdict.
+    pub verdict: RunVerdict,
+    /// RunVerdict in words.
     pub verdict_text: String,
     /// Requirements, missed ones first, then by margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -60,18 +60,23 @@ pub struct Answer {
     pub warnings: Vec<Warning>,
     /// Modes of operation, in the order of the scenario.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub by_mode: Vec<ModeRow>,
+    pub by_mode: Vec<ModeAnswer>,
     /// Events, in the order of their starts.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub events: Vec<Event>,
-    /// What else is known, as lines of text.
+    pub events: Vec<RunEvent>,
+    /// Lines of text on what else is known.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub lines: Vec<Line>,
 }
 
 impl Answer {
     /// Returns the answer of a run that has ended, from its metrics and, if it was observed, from every control cycle.
-    pub fn new(scenario: &Scenario, metrics: &Metrics, observed: Option<Observed>, units: Units) -> Self {
+    pub fn new(
+        scenario: &Scenario,
+        metrics: &Metrics,
+        observed: Option<Observed>,
+        units: ReaderUnits,
+    ) -> Self {
         let verdicts = requirement_verdict::run_verdicts(scenario, metrics);
         let run = RunData { scenario, metrics, observed: observed.as_ref(), units };
         let mut requirements: Vec<RequirementAnswer> = run.requirements(&verdicts);
@@ -79,7 +84,7 @@ impl Answer {
         let goal = GoalAnswer::new(&run);
         let diverges = warnings.iter().any(|warning| warning.kind == WarningKind::Diverges);
         let (verdict, verdict_text) = if diverges {
-            (Verdict::Failed, format!("FAILED: the motion diverges within {}", run.duration_text()))
+            (RunVerdict::Failed, format!("FAILED: the motion diverges within {}", run.duration_text()))
         } else {
             verdict::verdict(&requirements, goal.as_ref(), &warnings)
         };

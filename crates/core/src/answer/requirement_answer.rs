@@ -4,7 +4,7 @@ use flexsc_formats::reader_units::{number, percent};
 use serde::Serialize;
 
 use super::lines::RunData;
-use super::run_observer::PeakValue;
+use super::run_observer::LargestSample;
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 
 /// Margin above which only its bound is shown.
@@ -17,7 +17,7 @@ pub struct RequirementAnswer {
     pub id: String,
     /// Name.
     pub name: String,
-    /// What is required, in words.
+    /// Required quantity, with its index and time, in words.
     pub description: String,
     /// SI unit of value, limit and largest value.
     pub unit: &'static str,
@@ -77,7 +77,7 @@ impl RequirementAnswer {
     pub(super) fn new(
         run: &RunData<'_>,
         (index, verdict): (usize, &RequirementVerdict),
-        peak: Option<PeakValue>,
+        peak: Option<LargestSample>,
     ) -> Self {
         let RequirementVerdict { requirement, decision, value, .. } = verdict;
         let (limit, value) = (requirement.limit, *value);

@@ -13,7 +13,7 @@ use flexsc_record::{
 use flexsc_scenario::{RequirementSource, Scenario};
 
 use super::error_statistics::{ErrorStatistics, ErrorSummary};
-use super::event::{Event, EventKind};
+use super::event::{EventKind, RunEvent};
 use crate::metrics::ErrorStream;
 
 /// Part of a run that is its end.
@@ -32,8 +32,8 @@ pub struct RunObserver {
     /// Start of the first slew and end of the last one (s), and number of slews.
     slewing: Option<[f64; 2]>,
     slew_count: u64,
-    requirements: Vec<Option<(ErrorStream, PeakValue)>>,
-    events: Vec<Event>,
+    requirements: Vec<Option<(ErrorStream, LargestSample)>>,
+    events: Vec<RunEvent>,
     /// Events that have begun, and not ended, by kind, part and cause.
     open: BTreeMap<(EventKind, String, String), usize>,
     names: Vec<String>,
@@ -46,7 +46,7 @@ pub struct RunObserver {
 
 /// Largest value of the index of a requirement.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct PeakValue {
+pub struct LargestSample {
     /// Value, in the unit of the requirement.
     pub value: f64,
     /// Time (s).
@@ -72,7 +72,7 @@ impl ModeObserved {
     }
 }
 
-/// What was observed of a run that has ended.
+/// Observations of a run that has ended.
 #[derive(Clone, Debug)]
 pub struct Observed {
     /// Each mode of operation, or the run without modes.
@@ -88,9 +88,9 @@ pub struct Observed {
     /// Number of slews.
     pub slew_count: u64,
     /// Largest value of each requirement on an error.
-    pub peaks: Vec<Option<PeakValue>>,
+    pub peaks: Vec<Option<LargestSample>>,
     /// Events, in the order of their starts.
-    pub events: Vec<Event>,
+    pub events: Vec<RunEvent>,
 }
 
 impl RunObserver {
@@ -104,7 +104,7 @@ impl RunObserver {
         let stream = |source: &RequirementSource| match source {
             RequirementSource::Metric(..) => None,
             RequirementSource::Error(error) => {
-                Some((ErrorStream::new(error), PeakValue { value: f64::NAN, at: f64::NAN, mode: 0 }))
+                Some((ErrorStream::new(error), LargestSample { value: f64::NAN, at: f64::NAN, mode: 0 }))
             }
         };
         Self {
@@ -202,7 +202,7 @@ impl RunObserver {
         if self.events.len() < MOST_EVENTS {
             self.open.insert((kind, part.to_owned(), cause.to_owned()), self.events.len());
             let mode = self.names.get(self.mode).cloned();
-            let event = Event {
+            let event = RunEvent {
                 kind,
                 part: part.to_owned(),
                 cause: cause.to_owned(),
@@ -230,7 +230,7 @@ impl RunObserver {
             stream.push(error, |value| {
                 let value = value.norm();
                 if value > peak.value || peak.value.is_nan() {
-                    *peak = PeakValue { value, at: now.seconds(), mode };
+                    *peak = LargestSample { value, at: now.seconds(), mode };
                 }
             });
         }

@@ -1,10 +1,10 @@
 //! First screen of an answer: the verdict, requirements, warnings, then modes of operation or what else is known.
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::{ReaderUnit, THIN_SPACE, Units, number, time};
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, THIN_SPACE, number, time};
 
 use super::Answer;
-use super::mode_row::ModeRow;
+use super::mode_answer::ModeAnswer;
 use super::requirement_answer::RequirementAnswer;
 
 /// Characters for marks and spaces.
@@ -19,7 +19,7 @@ pub enum ScreenStyle {
 
 impl ScreenStyle {
     /// Returns a text with characters of the style.
-    pub fn of(self, text: &str) -> String {
+    pub fn styled(self, text: &str) -> String {
         match self {
             Self::Unicode => text.to_owned(),
             Self::Ascii => ascii(text),
@@ -27,7 +27,7 @@ impl ScreenStyle {
     }
 }
 
-/// What a screen shows, and how wide it is.
+/// Contents and width of a screen.
 #[derive(Copy, Clone, Debug)]
 pub struct ScreenOptions {
     /// Largest number of characters of a line.
@@ -36,13 +36,13 @@ pub struct ScreenOptions {
     pub all: bool,
     /// Characters.
     pub style: ScreenStyle,
-    /// Units.
-    pub units: Units,
+    /// ReaderUnits.
+    pub units: ReaderUnits,
 }
 
 impl Default for ScreenOptions {
     fn default() -> Self {
-        Self { width: WIDTH, all: false, style: ScreenStyle::default(), units: Units::default() }
+        Self { width: WIDTH, all: false, style: ScreenStyle::default(), units: ReaderUnits::default() }
     }
 }
 
@@ -52,6 +52,8 @@ const WIDTH: usize = 96;
 const MOST: [usize; 3] = [5, 3, 4];
 /// Largest number of lines of a first screen, without the last one that a program adds.
 const MOST_LINES: usize = 14;
+/// Least median in the unit of a column.
+const LEGIBLE: f64 = 1e-3;
 /// Largest number of modes of operation in a table on a first screen.
 const MOST_MODES: usize = 6;
 
@@ -60,20 +62,17 @@ impl Answer {
     pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
         let mut blocks = vec![self.head(took, options), self.requirement_lines(options)];
         blocks.push(self.warning_lines(options));
-        let known: usize = blocks.iter().map(|block| block.len() + usize::from(!block.is_empty())).sum();
-        let left = if options.all { usize::MAX } else { MOST_LINES.saturating_sub(known).max(2) };
         if !self.by_mode.is_empty() {
             blocks.push(self.mode_table(options));
         }
-        if options.all || self.by_mode.is_empty() {
-            blocks.push(self.known_lines(options, left));
-        }
+        let shown: usize = blocks.iter().map(|block| block.len() + usize::from(!block.is_empty())).sum();
+        blocks.push(self.known_lines(options, MOST_LINES.saturating_sub(shown)));
         if options.all {
             blocks.push(self.event_lines());
         }
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         let text = blocks.collect::<Vec<_>>().join("\n\n");
-        options.style.of(&text)
+        options.style.styled(&text)
     }
 
     fn head(&self, took: Option<f64>, options: ScreenOptions) -> Vec<String> {
@@ -156,12 +155,11 @@ impl Answer {
 
     fn mode_table(&self, options: ScreenOptions) -> Vec<String> {
         let errors = || self.by_mode.iter().filter_map(|row| row.error_rad.as_ref());
-        // The unit fits the typical error, not that of an acquisition.
-        let typical = errors()
-            .map(|own| own.p95)
-            .fold(f64::INFINITY, f64::min)
-            .max(errors().map(|own| own.median).fold(0.0, f64::max));
-        let unit = options.units.fitting(if typical.is_finite() { typical } else { 0.0 }, "rad");
+        // One unit for all modes: that of the largest 95 % level, unless the least median has too few digits in it.
+        let largest = errors().map(|own| own.p95).fold(0.0, f64::max);
+        let least = errors().map(|own| own.median).fold(f64::INFINITY, f64::min);
+        let unit = options.units.fitting(largest, "rad");
+        let unit = if unit.value(least) < LEGIBLE { options.units.fitting(least, "rad") } else { unit };
         let wheel = self.by_mode.iter().any(|row| row.wheel_speed_rad_s.is_some());
         let limit = self.by_mode.iter().any(|row| row.at_limit_s.is_some_and(|time| time > 0.0));
         let has_errors = errors().next().is_some();
@@ -188,16 +186,15 @@ impl Answer {
         for line in shown {
             let text = format!("  {:<width$}{}", line.head, line.text);
             let own = wrapped(&text, options.width, width + 2);
-            if lines.len() + own.len() > most {
-                break;
+            if options.all || lines.len() + own.len() <= most {
+                lines.extend(own);
             }
-            lines.extend(own);
         }
         lines
     }
 
     fn event_lines(&self) -> Vec<String> {
-        let line = |event: &super::Event| {
+        let line = |event: &super::RunEvent| {
             let kind = match event.kind {
                 super::EventKind::Mode => "mode",
                 super::EventKind::Saturation => "at a limit",
@@ -234,7 +231,7 @@ fn heads(unit: &ReaderUnit, [errors, wheel, limit]: [bool; 3]) -> Vec<String> {
 }
 
 fn cells(
-    row: &ModeRow,
+    row: &ModeAnswer,
     (unit, speed): (&ReaderUnit, &ReaderUnit),
     [errors, wheel, limit]: [bool; 3],
 ) -> Vec<String> {
@@ -322,7 +319,7 @@ fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// Units that stay with their numbers.
+/// ReaderUnits that stay with their numbers.
 const UNITS: [&str; 26] = [
     "deg",
     "arcsec",

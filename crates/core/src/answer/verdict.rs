@@ -1,4 +1,4 @@
-//! Verdict on a run: failed, missed, met with a warning, met, or not asked.
+//! RunVerdict on a run: failed, missed, met with a warning, met, or not asked.
 
 use flexsc_formats::count::counted;
 use flexsc_formats::reader_units::time;
@@ -9,10 +9,10 @@ use super::requirement_answer::RequirementAnswer;
 use super::warning::Warning;
 use crate::metrics::MetricValue;
 
-/// Verdict on a run.
+/// RunVerdict on a run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum RunVerdict {
     /// The motion diverges.
     Failed,
     /// A requirement is not met.
@@ -70,23 +70,23 @@ pub(super) fn verdict(
     requirements: &[RequirementAnswer],
     goal: Option<&GoalAnswer>,
     warnings: &[Warning],
-) -> (Verdict, String) {
+) -> (RunVerdict, String) {
     let missed = requirements.iter().filter(|own| !own.met).count();
     let (all, of_all) = (requirements.len(), counted(requirements.len(), "requirement"));
     if missed > 0 {
-        return (Verdict::Missed, format!("MISSED: {missed} of {of_all}"));
+        return (RunVerdict::Missed, format!("MISSED: {missed} of {of_all}"));
     }
     let but = warnings.iter().find_map(|warning| warning.kind.reason(warning));
     if all > 0 {
         let met = format!("{all} of {of_all} met");
         return match but {
-            Some(why) => (Verdict::MetBut, format!("{met}, but {why}")),
-            None => (Verdict::Met, met),
+            Some(why) => (RunVerdict::MetBut, format!("{met}, but {why}")),
+            None => (RunVerdict::Met, met),
         };
     }
     match goal {
-        Some(goal) if goal.met => (Verdict::GoalMet, format!("goal met: {}", goal.text)),
-        Some(goal) => (Verdict::GoalMissed, format!("goal missed: {}", goal.text)),
-        None => (Verdict::NotAsked, "no requirement".to_owned()),
+        Some(goal) if goal.met => (RunVerdict::GoalMet, format!("goal met: {}", goal.text)),
+        Some(goal) => (RunVerdict::GoalMissed, format!("goal missed: {}", goal.text)),
+        None => (RunVerdict::NotAsked, "no requirement".to_owned()),
     }
 }

@@ -29,6 +29,7 @@ __all__ = [
     "LogError",
     "MotionSampler",
     "Reading",
+    "RunAnswer",
     "Scenario",
     "ScenarioError",
     "Setting",

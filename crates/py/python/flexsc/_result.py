@@ -185,13 +185,6 @@ class Result(Topics, Exportable):
     (15, 's')
     """
 
-    answer: Answer
-    """What was asked, whether it is met, by how much, and when not: the first screen of `flexsc simulate`.
-
-    >>> run.answer.verdict
-    'not_asked'
-    """
-
     def __init__(
         self,
         scenario: Scenario,
@@ -199,14 +192,14 @@ class Result(Topics, Exportable):
         log: str,
         metrics: dict[str, Any],
         topics: dict[str, dict[str, npt.NDArray[Any]]],
-        answer: Answer,
         took: float = 0.0,
         stepped: engine.Commands | None = None,
         until: float = inf,
+        answer: Answer | None = None,
     ) -> None:
         self.scenario = scenario
         self.run = run
-        self.answer = answer
+        self._answer = answer
         self.metrics = Metrics(metrics, scenario)
         read_only(value for value in metrics.values() if hasattr(value, "flags"))
         self._log = log
@@ -216,6 +209,17 @@ class Result(Topics, Exportable):
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
         self._motion: engine.MotionSampler | None = None
+
+    @property
+    def answer(self) -> Answer:
+        """What was asked, whether it is met, by how much, and when not: the first screen of `flexsc simulate`.
+
+        >>> run.answer.verdict
+        'not_asked'
+        """
+        if self._answer is None:
+            raise ValueError("a result that no run has made has no answer")
+        return self._answer
 
     @property
     def warnings(self) -> tuple[str, ...]:

@@ -823,7 +823,7 @@ class Scenario:
         metrics, topics, answer = engine.simulate(self._native, run, log, yes, stepped)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, Answer(answer), took, stepped, until)
+        return Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -16,7 +16,7 @@ const LIMIT_TIMES: [&str; 5] = [
 
 /// Mode of operation of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ModeRow {
+pub struct ModeAnswer {
     /// Name.
     pub mode: String,
     /// Number of starts.
@@ -36,13 +36,13 @@ pub struct ModeRow {
 
 impl RunData<'_> {
     /// Returns each mode of operation that was entered.
-    pub(super) fn by_mode(&self) -> Vec<ModeRow> {
+    pub(super) fn by_mode(&self) -> Vec<ModeAnswer> {
         let [times, visits] = ["mode_times_s", "mode_visits"].map(|name| self.list(name));
         let limits = LIMIT_TIMES.map(|name| self.list(name));
         let row = |(index, mode): (usize, &flexsc_control::operation::OperatingMode)| {
             let own = self.observed.and_then(|observed| observed.modes.get(index));
             let at_limit = limits.iter().filter_map(|of| of.get(index).copied()).fold(f64::NAN, f64::max);
-            ModeRow {
+            ModeAnswer {
                 mode: mode.name.clone(),
                 visits: visits.get(index).copied().unwrap_or(0.0) as u64,
                 time_s: times.get(index).copied().unwrap_or(0.0),
