@@ -17,10 +17,9 @@ def test_the_answer_is_the_commands(name: str, command: Command) -> None:
     assert tuple(told["answer"].get("requirements", ())) == run.answer.requirements
     assert run.warnings == tuple(told.get("warnings", ()))
     text = run.answer.text()
-    assert text.startswith(f"{name}   ") and run.answer.verdict_text in " ".join(text.split())
-    assert (
-        set(text.splitlines()[2:]) <= set(run.answer.text(all=True).splitlines()) or run.answer.requirements
-    )
+    assert text.startswith(f"{name}   ")
+    assert run.answer.verdict_text in " ".join(text.split())
+    assert len(run.answer.text(all=True).splitlines()) >= len(text.splitlines())
     assert run.answer.verdict_text in run.answer._repr_html_()
 
 

@@ -39,23 +39,17 @@ impl AnswerArgs {
     }
 
     /// Returns the answer of a run.
-    pub fn answer(&self, scenario: &Scenario, metrics: &Metrics, observed: Option<Observed>) -> Answer {
+    pub fn answer(self, scenario: &Scenario, metrics: &Metrics, observed: Option<&Observed>) -> Answer {
         Answer::new(scenario, metrics, observed, self.units.units.into())
     }
 
     /// Returns the answer of a run that an observer has seen.
-    pub fn answer_of(&self, scenario: &Scenario, metrics: &Metrics, observer: RunObserver) -> Answer {
-        self.answer(scenario, metrics, Some(observer.finish()))
-    }
-
-    /// Returns a text with the characters that the locale has.
-    #[allow(clippy::unused_self, reason = "the options of the screen")]
-    pub fn style(&self, text: &str) -> String {
-        style().styled(text)
+    pub fn answer_of(self, scenario: &Scenario, metrics: &Metrics, observer: RunObserver) -> Answer {
+        self.answer(scenario, metrics, Some(&observer.finish()))
     }
 
     /// Prints an answer, with its log and its size, if there is one.
-    pub fn print(&self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
+    pub fn print(self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
         let options =
             ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() };
         let screen = answer.screen(Some(took), options);
@@ -73,7 +67,7 @@ impl AnswerArgs {
     }
 
     /// Fails if the run has failed, a requirement is missed, or, if it is strict, a warning is grave.
-    pub fn validate(&self, answers: &[(String, Answer)]) -> Result<(), CliError> {
+    pub fn validate(self, answers: &[(String, Answer)]) -> Result<(), CliError> {
         if let Some((name, answer)) = answers.iter().find(|(_, answer)| answer.verdict == RunVerdict::Failed)
         {
             return Err(CliError::Diverged(format!("{name}: {}", without_failed(&answer.verdict_text))));
@@ -96,8 +90,8 @@ fn width() -> usize {
     columns.unwrap_or(WIDTH).clamp(NARROW, WIDTH)
 }
 
-/// Returns plain characters for a locale that has no others.
-fn style() -> ScreenStyle {
+/// Returns the characters that the locale has.
+pub fn style() -> ScreenStyle {
     let set = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG"));
     let is_plain = locale.is_some_and(|locale| {

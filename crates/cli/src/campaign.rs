@@ -130,12 +130,12 @@ pub fn run(
         let took = began.elapsed().as_secs_f64();
         if let Some(only) = &reported.only {
             let observed = job.observed.lock().unwrap_or_else(PoisonError::into_inner).take();
-            job.answer.print(&job.answer.answer(campaign.scenario(), only, observed), took, None);
+            job.answer.print(&job.answer.answer(campaign.scenario(), only, observed.as_ref()), took, None);
             if let Some(path) = &reported.table {
                 say!("  table {}", path.display());
             }
         } else {
-            reported.say(campaign.scenario(), Some(took), &job.answer);
+            reported.say(campaign.scenario(), Some(took), job.answer);
         }
     }
     match reported.failed {

@@ -119,7 +119,7 @@ pub fn validate_answers(answers: &[(String, Answer)]) -> Result<(), CliError> {
         let missed = answer.requirements.iter().filter(|own| !own.met);
         missed.map(|own| format!("{scenario}: {} is missed", own.name)).collect()
     };
-    unmet(answers.iter().flat_map(missed).collect(), all)
+    unmet(&answers.iter().flat_map(missed).collect::<Vec<_>>(), all)
 }
 
 /// Fails if a requirement of any scenario is not met.
@@ -135,11 +135,11 @@ pub fn validate<'a>(
             format!("{scenario}: {} is {}", verdict.requirement.name, verdict.decision.word())
         }));
     }
-    self::unmet(unmet, all)
+    self::unmet(&unmet, all)
 }
 
 /// Fails with the requirements that are not met, if there are any.
-fn unmet(unmet: Vec<String>, all: usize) -> Result<(), CliError> {
+fn unmet(unmet: &[String], all: usize) -> Result<(), CliError> {
     if unmet.is_empty() {
         return Ok(());
     }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use crate::document::{unit_of_text, units_ratio};
 
-/// ReaderUnits of what is printed for people; logs, tables and JSON values are in SI units always.
+/// Units of what is printed for people; logs, tables and JSON values are in SI units always.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ReaderUnits {
     /// ReaderUnits that fit the size of the numbers: deg, arcsec, rpm, mN m, g.
@@ -30,8 +30,11 @@ pub struct ReaderUnit {
 const DEGREE: f64 = PI / 180.0;
 const ARCSEC: f64 = DEGREE / 3600.0;
 
-/// ReaderUnits of a quantity by its SI unit, each with its size and the least value for which it is chosen.
-const LADDERS: [(&str, &[(&str, f64, f64)]); 5] = [
+/// Unit with its size and the least value for which it is chosen.
+type Rung = (&'static str, f64, f64);
+
+/// Units of a quantity by its SI unit, the largest first.
+const LADDERS: [(&str, &[Rung]); 5] = [
     ("rad", &[("deg", DEGREE, 0.1 * DEGREE), ("arcsec", ARCSEC, 1e-3 * ARCSEC), ("mas", 1e-3 * ARCSEC, 0.0)]),
     (
         "rad/s",
@@ -53,7 +56,7 @@ const LADDERS: [(&str, &[(&str, f64, f64)]); 5] = [
     ("kg", &[("kg", 1.0, 0.1), ("g", 1e-3, 1e-4), ("mg", 1e-6, 0.0)]),
 ];
 
-/// ReaderUnits with prefixes in steps of a thousand, such as mN m.
+/// Units with prefixes in steps of a thousand, such as mN m.
 const PREFIXED: [&str; 10] = ["N m", "N m s", "J", "N", "N s", "m", "m/s²", "A m²", "J/(kg m²)", "N m s/rad"];
 
 /// Prefixes with their sizes, and the least value for which each is chosen.
@@ -161,10 +164,8 @@ impl ReaderUnit {
     /// Returns an SI value as text with the unit, without the zeros at its end.
     fn exact(&self, si: f64) -> String {
         let number = self.number(si);
-        self.with_name(match number.contains('.') && !number.contains('e') {
-            true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => number,
-        })
+        let is_decimal = number.contains('.') && !number.contains('e');
+        self.with_name(if is_decimal { without_zeros(&number).to_owned() } else { number })
     }
 
     /// Returns SI values as numbers joined by `between`, with the unit once.
@@ -263,15 +264,16 @@ fn si_number(value: f64) -> String {
     let scientific = format!("{value:.3e}");
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    };
     if (-3..6).contains(&exponent) {
         let decimals = usize::try_from(3 - exponent).unwrap_or(0);
-        return trimmed(&format!("{value:.decimals$}"));
+        return without_zeros(&format!("{value:.decimals$}")).to_owned();
     }
-    format!("{}e{exponent}", trimmed(mantissa))
+    format!("{}e{exponent}", without_zeros(mantissa))
+}
+
+/// Returns a number without the zeros at the end of its decimals.
+fn without_zeros(number: &str) -> &str {
+    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
 
 /// Returns a time as a number of seconds with its unit, such as `8846 s`.
@@ -365,7 +367,7 @@ mod tests {
         let mut state = 0.5;
         for _ in 0..10_000 {
             state = (state * 997.0_f64 + 0.618_034).fract();
-            let limit = 10.0_f64.powf(8.0 * state - 4.0);
+            let limit = libm::pow(10.0, 8.0 * state - 4.0);
             let value = limit * (1.0 + (state - 0.5) * 1e-3);
             let text = ReaderUnit::plain("").beside(value, limit);
             let shown: f64 = text.replace(THIN_SPACE, "").parse().expect("a number");

@@ -282,8 +282,12 @@ fn simulate<'py>(
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
         topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
-    let answer =
-        flexsc_core::answer::Answer::new(&scenario.inner, &metrics, observed, ReaderUnits::Engineering);
+    let answer = flexsc_core::answer::Answer::new(
+        &scenario.inner,
+        &metrics,
+        observed.as_ref(),
+        ReaderUnits::Engineering,
+    );
     Ok((
         columns::metrics_to_dict(py, &metrics)?,
         topics,

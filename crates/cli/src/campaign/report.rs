@@ -12,7 +12,7 @@ use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
 use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
 
 use super::points::Points;
-use crate::answer::AnswerArgs;
+use crate::answer::{AnswerArgs, style};
 use crate::error::CliError;
 use crate::{files, say};
 
@@ -66,29 +66,31 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 impl CampaignReport {
     /// Prints the points of a sweep, or the verdict, the requirements and the statistics of another campaign, which took
     /// some real time (s).
-    pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: &AnswerArgs) {
+    pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: AnswerArgs) {
         let (name, runs) = (&scenario.name, counted(self.runs, "run"));
         let took = took.map_or_else(String::new, |took| format!(" in {}", real_time(took)));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         if let (Some(points), true) = (&self.points, self.runs > 0) {
             say!("{name}   {runs}{took}\n{}", points.text().trim_end());
-            table.into_iter().for_each(|table| say!("  {table}"));
+            if let Some(table) = table {
+                say!("  {table}");
+            }
             return;
         }
         let verdict = self.verdict(scenario.reference.band.is_some());
-        say!("{}", args.style(&format!("{name}   {verdict}   {runs}{took}")));
+        say!("{}", style().styled(&format!("{name}   {verdict}   {runs}{took}")));
         if self.runs == 0 {
             return;
         }
         let rows = self.requirement_rows(args);
         if !rows.is_empty() {
             let text: Vec<String> = rows.iter().map(|row| format!("  {row}")).collect();
-            say!("\n{}", args.style(&text.join("\n")));
+            say!("\n{}", style().styled(&text.join("\n")));
         }
         // Without a requirement, the statistics are what is asked for.
         let shown: Vec<&Statistics> = self.shown_statistics(args.all).collect();
         if args.all || self.requirements.is_empty() {
-            say!("\n{}", args.style(&statistics_table(&shown, args.units.units.into())));
+            say!("\n{}", style().styled(&statistics_table(&shown, args.units.units.into())));
         }
         for s in self.statistics.iter().filter(|s| s.infinite > 0) {
             say!("  {}: too large for a number in {} of {runs}, left out", s.name, s.infinite);
@@ -150,7 +152,7 @@ impl CampaignReport {
     }
 
     /// Returns the lines of the requirements, and how the worst run of the first is repeated.
-    fn requirement_rows(&self, args: &AnswerArgs) -> Vec<String> {
+    fn requirement_rows(&self, args: AnswerArgs) -> Vec<String> {
         if self.requirements.is_empty() {
             return Vec::new();
         }
@@ -172,10 +174,8 @@ impl CampaignReport {
                 Decision::Undecided => "?",
                 Decision::Missed => "✗",
             };
-            let worst = match worst.is_nan() {
-                true => "no value".to_owned(),
-                false => unit.beside(*worst, requirement.limit),
-            };
+            let worst =
+                if worst.is_nan() { "no value".to_owned() } else { unit.beside(*worst, requirement.limit) };
             rows.push(vec![
                 mark.to_owned(),
                 requirement.name.clone(),
@@ -225,7 +225,7 @@ fn confidence_note(verdict: &RequirementVerdict) -> Option<String> {
     );
     if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
         let wanted_part = percent(wanted);
-        text += &if shown.reached >= wanted {
+        let more = if shown.reached >= wanted {
             format!(", at least {wanted_part}")
         } else if *decision == Decision::Missed {
             // More runs are no remedy.
@@ -233,6 +233,7 @@ fn confidence_note(verdict: &RequirementVerdict) -> Option<String> {
         } else {
             format!(", {} needed for {wanted_part}", counted(needed, "run"))
         };
+        text.push_str(&more);
     }
     Some(text)
 }

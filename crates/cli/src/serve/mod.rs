@@ -165,7 +165,7 @@ pub fn run(args: &ServeArgs) -> Result<(), CliError> {
     if let Some(reason) = stopped {
         return Err(ended(reason, &run, path.as_deref()));
     }
-    let answer = args.answer.answer(&run.scenario, &metrics, Some(observed));
+    let answer = args.answer.answer(&run.scenario, &metrics, Some(&observed));
     args.answer.print(&answer, took, path.as_deref().zip(bytes));
     let ratio = run.scenario.duration.seconds() / took;
     let counts = session.counts;

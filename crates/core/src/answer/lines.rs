@@ -123,12 +123,11 @@ impl RunData<'_> {
         let to = to.min(self.scenario.duration.seconds());
         let nis = number(self.number("nis_mean"));
         let states = filter.states(self.scenario.mode_count());
-        let inside = match states {
-            0 => String::new(),
-            _ => {
-                let [low, high] = EstimatorKind::inside(states).map(number);
-                format!(", 95 % of NEES within {low} to {high}")
-            }
+        let inside = if states == 0 {
+            String::new()
+        } else {
+            let [low, high] = EstimatorKind::inside(states).map(number);
+            format!(", 95 % of NEES within {low} to {high}")
         };
         Some(format!(
             "NEES {} per state, NIS {nis} per measurement from {} to {} (1 if consistent{inside})",

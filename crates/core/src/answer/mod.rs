@@ -74,11 +74,11 @@ impl Answer {
     pub fn new(
         scenario: &Scenario,
         metrics: &Metrics,
-        observed: Option<Observed>,
+        observed: Option<&Observed>,
         units: ReaderUnits,
     ) -> Self {
         let verdicts = requirement_verdict::run_verdicts(scenario, metrics);
-        let run = RunData { scenario, metrics, observed: observed.as_ref(), units };
+        let run = RunData { scenario, metrics, observed, units };
         let mut requirements: Vec<RequirementAnswer> = run.requirements(&verdicts);
         let warnings = warning::warnings(&run, &requirements);
         let goal = GoalAnswer::new(&run);
@@ -91,7 +91,7 @@ impl Answer {
         // Missed ones first, then by margin.
         requirements.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
         let (by_mode, lines) = if diverges { Default::default() } else { (run.by_mode(), run.lines()) };
-        let mut events = observed.as_ref().map_or_else(Vec::new, |observed| observed.events.clone());
+        let mut events = observed.map_or_else(Vec::new, |observed| observed.events.clone());
         events.extend(run.losses());
         events.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
         Self {

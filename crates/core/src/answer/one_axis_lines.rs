@@ -123,9 +123,9 @@ impl RunData<'_> {
                 quantity("output_swings")
             );
             if index < MOST_OUTPUTS {
-                lines.main(&output.name, text)
+                lines.main(&output.name, text);
             } else {
-                lines.other(&output.name, text)
+                lines.other(&output.name, text);
             }
         }
     }

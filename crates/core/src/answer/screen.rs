@@ -36,7 +36,7 @@ pub struct ScreenOptions {
     pub all: bool,
     /// Characters.
     pub style: ScreenStyle,
-    /// ReaderUnits.
+    /// Units.
     pub units: ReaderUnits,
 }
 
@@ -319,7 +319,7 @@ fn words(text: &str) -> Vec<String> {
     words
 }
 
-/// ReaderUnits that stay with their numbers.
+/// Units that stay with their numbers.
 const UNITS: [&str; 26] = [
     "deg",
     "arcsec",

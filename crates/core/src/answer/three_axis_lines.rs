@@ -248,9 +248,9 @@ impl RunData<'_> {
         let is_damped = self.metrics.get("damping_cycles").is_some();
         let damps = is_damped || self.number("pointing_error_end_rad") == 0.0;
         if damps {
-            lines.main("vibration", text)
+            lines.main("vibration", text);
         } else {
-            lines.other("vibration", text)
+            lines.other("vibration", text);
         }
         let duration = self.scenario.duration.seconds();
         let over =

@@ -2,6 +2,7 @@
 
 use flexsc_control::actuator::{EndState, Saturation};
 use flexsc_formats::reader_units::{number, percent, time};
+use flexsc_numerics::time::Span;
 use serde::Serialize;
 
 use super::lines::RunData;
@@ -134,12 +135,12 @@ pub(super) fn warnings(run: &RunData<'_>, requirements: &[RequirementAnswer]) ->
 
 /// Returns the words on a loop that is unstable.
 fn unstable(run: &RunData<'_>, radius: f64) -> String {
-    let growth = match run.scenario.law.period().map(|period| period.seconds()) {
+    let growth = match run.scenario.law.period().map(Span::seconds) {
         Some(period) if radius > 1.0 => format!(
             "; it grows by {} with each sample of {}, tenfold every {}",
             percent(radius - 1.0),
             time(period),
-            time(period * 10.0_f64.ln() / radius.ln())
+            time(period * libm::log(10.0) / libm::log(radius))
         ),
         _ => String::new(),
     };

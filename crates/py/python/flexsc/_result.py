@@ -212,7 +212,9 @@ class Result(Topics, Exportable):
 
     @property
     def answer(self) -> Answer:
-        """What was asked, whether it is met, by how much, and when not: the first screen of `flexsc simulate`.
+        """What was asked, whether it is met, by how much, and when not.
+
+        As text it is the first screen of `flexsc simulate`.
 
         >>> run.answer.verdict
         'not_asked'
