@@ -330,8 +330,8 @@ mod tests {
             (2e-9, "rad", "0.413 mas"),
             (1e-4, "rad/s", "20.6 arcsec/s"),
             (0.0, "rad", "0 deg"),
-            (0.012, "N m", "12.0 mN m"),
-            (5e-5, "N m s", "50.0 µN m s"),
+            (0.012, "N m", "12 mN m"),
+            (5.03e-5, "N m s", "50.3 µN m s"),
             (0.02, "kg", "20 g"),
             (25_000.0, "J", "25 kJ"),
             (3.5, "", "3.50"),
@@ -349,7 +349,7 @@ mod tests {
         assert_eq!(unit.quantity(0.001_257_432), "0.0720 deg");
         assert_eq!(
             ReaderUnits::Engineering.as_written(Some("3000 rpm"), 1.0, "rad/s").quantity(PI),
-            "30.0 rpm"
+            "30 rpm"
         );
         // A number, or a unit of something else.
         for text in [None, Some("4e-4"), Some("2 kg"), Some("4e-4 rad")] {

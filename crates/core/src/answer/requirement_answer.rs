@@ -135,7 +135,7 @@ fn margin_text(margin: f64, multiple: f64) -> String {
     if margin < -1.0 {
         return format!("{} × limit", number(multiple));
     }
-    if margin > 0.0 { percent(margin) } else { percent(-margin).replacen("", "-", usize::from(margin < 0.0)) }
+    if margin < 0.0 { format!("-{}", percent(-margin)) } else { percent(margin) }
 }
 
 #[cfg(test)]
