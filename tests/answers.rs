@@ -154,4 +154,7 @@ fn a_strict_judge_accepts_no_lost_filter() {
     let line = "simulate judged.toml --log none";
     dir.run(line).exits(0).says(&["1 of 1 requirement met, but the filter is overconfident"]);
     dir.run(&format!("{line} --strict")).exits(3).says(&["met, but the filter is overconfident"]);
+    dir.run(&format!("{line} --runs 2 --strict"))
+        .exits(2)
+        .says(&["--strict judges the warnings of single runs"]);
 }

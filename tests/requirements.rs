@@ -281,14 +281,14 @@ fn a_budget_has_levels_of_all_runs_by_campaign_convolution_and_rule() {
         "temporal",
         "convolved",
         "k sigma",
-        "requirement    met: error",
+        "✓  error",
     ]);
     let table = dir.text("budget.csv");
     let mut lines = table.lines();
     assert!(lines.next().is_some_and(|heading| heading.starts_with("budget,level,temporal_campaign,")));
     assert_eq!(lines.count(), 3);
     dir.write("bad.toml", HOLD.to_owned() + &requirement.replace("1e-3", "1e-9"));
-    dir.run("budget bad.toml --runs 2 -o figures --format svg").exits(3).says(&["missed: error"]);
+    dir.run("budget bad.toml --runs 2 -o figures --format svg").exits(3).says(&["✗  error"]);
     assert!(dir.text("figures/hold-budget-error.svg").contains("<svg"));
     dir.write("none.toml", HOLD);
     dir.run("budget none.toml").exits(2).says(&["has no [[requirement]] on a pointing index"]);

@@ -1,5 +1,6 @@
 """What the tests of the Python package share: the shipped scenarios and the command."""
 
+import importlib.util
 import json
 import shutil
 import subprocess
@@ -11,7 +12,8 @@ from typing import Any
 import flexsc
 import pytest
 
-SCENARIOS = Path(__file__).parents[2] / "scenarios"
+ROOT = Path(__file__).parents[2]
+SCENARIOS = ROOT / "scenarios"
 
 Command = Callable[..., "subprocess.CompletedProcess[bytes]"]
 
@@ -67,3 +69,14 @@ def fixed() -> flexsc.Scenario:
 def sampled() -> flexsc.Scenario:
     """A scenario with noise and uncertain keys, shortened."""
     return shipped("relay-sampled").with_("duration", 1000.0)
+
+
+def class_generator(name: str) -> Any:
+    """The program `crates/py/NAME.py`, which writes classes from a schema."""
+    path = ROOT / "crates" / "py" / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module

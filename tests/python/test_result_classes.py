@@ -2,33 +2,19 @@
 
 import copy
 import dataclasses
-import importlib.util
 import math
 import pickle
-from pathlib import Path
-from typing import Any
 
 import flexsc
 import numpy as np
 import pytest
+from conftest import class_generator
 from flexsc import results
 from flexsc._analysis import analysis
 
-ROOT = Path(__file__).parents[2]
-
-
-def generator() -> Any:
-    path = ROOT / "crates" / "py" / "result_classes.py"
-    spec = importlib.util.spec_from_file_location("result_classes", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
 
 def test_the_file_is_what_the_schema_gives() -> None:
-    made = generator()
+    made = class_generator("result_classes")
     assert made.FILE.read_text(encoding="utf-8") == made.written(analysis("results"))
 
 

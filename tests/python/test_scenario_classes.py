@@ -2,7 +2,6 @@
 
 import copy
 import dataclasses
-import importlib.util
 import inspect
 import pickle
 import subprocess
@@ -11,14 +10,13 @@ import types
 import typing
 from collections.abc import Mapping, Sequence
 from datetime import datetime, timezone
-from pathlib import Path
 from typing import Any
 
 import flexsc
 import numpy as np
 import numpy.typing as npt
 import pytest
-from conftest import SCENARIOS, shipped
+from conftest import SCENARIOS, class_generator, shipped
 from flexsc import Scenario, ScenarioError, scenario
 from flexsc._part import Part
 from flexsc.scenario import (
@@ -33,22 +31,11 @@ from flexsc.scenario import (
     Uniform,
 )
 
-ROOT = Path(__file__).parents[2]
 ALL = sorted(path.stem for path in SCENARIOS.glob("*.toml"))
 
 
-def generator() -> Any:
-    path = ROOT / "crates" / "py" / "scenario_classes.py"
-    spec = importlib.util.spec_from_file_location("scenario_classes", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_the_file_is_what_the_schema_gives() -> None:
-    made = generator()
+    made = class_generator("scenario_classes")
     assert made.FILE.read_text(encoding="utf-8") == made.written(flexsc.schema())
 
 

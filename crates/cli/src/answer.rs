@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 use flexsc_core::Scenario;
-use flexsc_core::answer::{Answer, Observed, RunObserver, RunVerdict, ScreenOptions, ScreenStyle};
+use flexsc_core::answer::{Answer, Observed, RunVerdict, ScreenOptions, ScreenStyle};
 use flexsc_core::metrics::Metrics;
 
 use crate::error::CliError;
@@ -13,8 +13,6 @@ use crate::human::UnitsArgs;
 use crate::requirements;
 use crate::say;
 
-/// Widest screen that is filled.
-const WIDTH: usize = 96;
 /// Narrowest screen that is respected.
 const NARROW: usize = 40;
 
@@ -27,25 +25,20 @@ pub struct AnswerArgs {
     /// Print everything that is known of the run, not only the first screen
     #[arg(long)]
     pub all: bool,
-    /// Exit with 3 also if all requirements are met, but target, filter or loop is lost
+    /// Exit with 3 also if a run meets all requirements, but target, filter or loop is lost
     #[arg(long)]
-    strict: bool,
+    pub strict: bool,
 }
 
 impl AnswerArgs {
     /// Returns the options of a verb that has only units.
-    pub fn of_units(units: UnitsArgs) -> Self {
+    pub fn from_units(units: UnitsArgs) -> Self {
         Self { units, ..Self::default() }
     }
 
     /// Returns the answer of a run.
     pub fn answer(self, scenario: &Scenario, metrics: &Metrics, observed: Option<&Observed>) -> Answer {
         Answer::new(scenario, metrics, observed, self.units.units.into())
-    }
-
-    /// Returns the answer of a run that an observer has seen.
-    pub fn answer_of(self, scenario: &Scenario, metrics: &Metrics, observer: RunObserver) -> Answer {
-        self.answer(scenario, metrics, Some(&observer.finish()))
     }
 
     /// Prints an answer, with its log and its size, if there is one.
@@ -87,7 +80,8 @@ fn without_failed(text: &str) -> &str {
 /// Returns the width of the terminal within bounds.
 fn width() -> usize {
     let columns = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-    columns.unwrap_or(WIDTH).clamp(NARROW, WIDTH)
+    let widest = ScreenOptions::default().width;
+    columns.unwrap_or(widest).clamp(NARROW, widest)
 }
 
 /// Returns the characters that the locale has.

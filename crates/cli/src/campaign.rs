@@ -195,7 +195,7 @@ fn table(
     };
     let (range, threads) = (job.range.clone(), job.threads());
     let report = |outcome| printer.report(outcome);
-    let done = if job.plain {
+    let done = if job.plain && !job.is_single() {
         campaign.for_each_run_in_batches(range, threads, &job.selection, work, report)
     } else {
         campaign.for_each_run(range, threads, work, report)

@@ -1,4 +1,5 @@
-//! Options that take a variant of an enum of the engine, with the words and the meanings that the enum declares.
+//! Command-line options whose values are the variants of an enum of the engine, with the words and the help that the enum
+//! declares.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use schemars::{JsonSchema, schema_for};

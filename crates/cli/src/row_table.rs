@@ -245,6 +245,6 @@ mod tests {
         ];
         let printed = lines(&rows, &shown, Units::Engineering);
         assert_eq!(printed[1], ["per minute", "%", "", ""]);
-        assert_eq!(printed[2], ["30", "25", "0.2", "500 mN"]);
+        assert_eq!(printed[2], ["30", "25", "0.2", "0.5 N"]);
     }
 }

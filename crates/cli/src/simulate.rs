@@ -125,6 +125,11 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
         let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler apply only to campaigns (--runs)";
         return Err(CliError::Arguments(why.to_owned()));
     }
+    if args.runs.is_some() && args.answer.strict {
+        let why =
+            "--strict judges the warnings of single runs; a campaign (--runs) is judged by its requirements";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
     if args.live.live.is_some() && args.scenarios.len() > 1 {
         let count = args.scenarios.len();
         return Err(CliError::Arguments(format!("--live follows one scenario, got {count}")));
@@ -295,8 +300,7 @@ fn several(
         answer: args.answer,
         observed: Arc::default(),
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
-        // One run is observed.
-        plain: detail.is_none() && runs.range.end - runs.range.start > 1,
+        plain: detail.is_none(),
     };
     logs::run(campaign, &job, detail)
 }
@@ -337,7 +341,7 @@ fn single(
         }
         source => CliError::Run { name: name.clone(), source },
     })?;
-    let answer = args.answer.answer_of(&run.scenario, &metrics, observer);
+    let answer = args.answer.answer(&run.scenario, &metrics, Some(&observer.finish()));
     if args.json {
         let mut object = campaign::object(campaign, run.number, &run.drawn, Ok(&metrics));
         object["answer"] = json!(answer);

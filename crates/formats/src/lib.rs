@@ -10,3 +10,4 @@ pub mod harmonic_table;
 pub mod read_files;
 pub mod reader_units;
 pub mod structure;
+pub mod text_columns;

@@ -146,7 +146,7 @@ impl ReaderUnit {
 
     /// Returns an SI value as a number in the unit.
     pub fn number(&self, si: f64) -> String {
-        if self.is_si { si_number(si) } else { number(self.value(si)) }
+        if self.is_si { four_digits(si) } else { number(self.value(si)) }
     }
 
     /// Returns an SI value as text with the unit.
@@ -253,13 +253,14 @@ fn grouped(text: &str) -> String {
     all + rest
 }
 
-/// Returns a number in SI: four significant digits, with an exponent where it is small or large.
-fn si_number(value: f64) -> String {
+/// Returns a number in at most four significant digits, with an exponent where it is small or large; `none` for a number
+/// that is not finite.
+pub fn four_digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
     if !value.is_finite() {
-        return number(value);
+        return "none".to_owned();
     }
     let scientific = format!("{value:.3e}");
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
@@ -279,6 +280,21 @@ fn without_zeros(number: &str) -> &str {
 /// Returns a time as a number of seconds with its unit, such as `8846 s`.
 pub fn time(seconds: f64) -> String {
     format!("{} s", number(seconds))
+}
+
+/// Returns a duration, roughly: `3 ms`, `20 s`, `5 min`, `7 h`.
+pub fn rough_time(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.9995e-3 => "1 ms".to_owned(),
+        s if s < 0.9995 => {
+            let milliseconds = format!("{:.1e}", s * 1e3).parse().unwrap_or(s * 1e3);
+            format!("{} ms", four_digits(milliseconds))
+        }
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86_400.0),
+    }
 }
 
 /// Returns a share as a percentage, which is 0 or 100 only where the share is none or all.
@@ -318,6 +334,42 @@ mod tests {
         ];
         for (value, text) in cases {
             assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn numbers_have_four_digits_at_most() {
+        let cases = [
+            (30.237_722_111, "30.24"),
+            (std::f64::consts::FRAC_PI_2, "1.571"),
+            (19.799_999_999_999_997, "19.8"),
+            (12.0, "12"),
+            (18000.0, "18000"),
+            (9999.96, "10000"),
+            (0.001_234_56, "0.001235"),
+            (-0.5, "-0.5"),
+            (1.234_56e-5, "1.235e-5"),
+            (2.5e7, "2.5e7"),
+            (0.0, "0"),
+            (f64::NAN, "none"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(four_digits(value), text);
+        }
+    }
+
+    #[test]
+    fn durations_are_rough() {
+        let cases = [
+            (3e-5, "1 ms"),
+            (0.020_6, "21 ms"),
+            (0.183, "180 ms"),
+            (19.6, "20 s"),
+            (340.0, "6 min"),
+            (2e5, "2 days"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(rough_time(value), text);
         }
     }
 

@@ -21,6 +21,7 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use self::ensemble::Ensemble;
+use crate::answer::style;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, digits};
@@ -229,7 +230,8 @@ impl Results for Budgets {
         for budget in &self.indices {
             self.print_budget(budget);
         }
-        requirements::print(&self.verdicts, self.units);
+        let verdicts = requirements::lines(&self.verdicts, &[], self.units.into()).join("\n  ");
+        say!("\n  {}", style().styled(&verdicts));
         Ok(())
     }
 }

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::answer::real_time;
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{ReaderUnits, percent, percent_beside};
+use flexsc_core::formats::reader_units::{ReaderUnits, percent, rough_time};
+use flexsc_core::formats::text_columns::columns;
 use flexsc_core::metrics::{Metrics, goal};
 use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
 use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
@@ -14,7 +14,7 @@ use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
 use super::points::Points;
 use crate::answer::{AnswerArgs, style};
 use crate::error::CliError;
-use crate::{files, say};
+use crate::{files, requirements, say};
 
 /// Names of the metrics that say whether a run meets its goal, and all requirements.
 const GOAL: &str = goal::NAMES[0];
@@ -68,7 +68,7 @@ impl CampaignReport {
     /// some real time (s).
     pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: AnswerArgs) {
         let (name, runs) = (&scenario.name, counted(self.runs, "run"));
-        let took = took.map_or_else(String::new, |took| format!(" in {}", real_time(took)));
+        let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         if let (Some(points), true) = (&self.points, self.runs > 0) {
             say!("{name}   {runs}{took}\n{}", points.text().trim_end());
@@ -151,44 +151,9 @@ impl CampaignReport {
         format!("{head}{}", share(REQUIREMENT, &what).unwrap_or_default())
     }
 
-    /// Returns the lines of the requirements, and how the worst run of the first is repeated.
+    /// Returns the lines of the requirements, and how the worst run of the first that is missed is repeated.
     fn requirement_rows(&self, args: AnswerArgs) -> Vec<String> {
-        if self.requirements.is_empty() {
-            return Vec::new();
-        }
-        let heads = ["", "requirement", "limit", "median", "95 %", "worst", "met"].map(str::to_owned);
-        let mut rows = vec![heads.to_vec()];
-        let mut notes = Vec::new();
-        for (index, verdict) in self.requirements.iter().enumerate() {
-            let RequirementVerdict { requirement, decision, runs, runs_met, worst: (run, worst), .. } =
-                verdict;
-            let units: ReaderUnits = args.units.units.into();
-            let unit =
-                units.as_written(requirement.written_limit.as_deref(), requirement.limit, requirement.unit);
-            let own = self.statistics.iter().find(|s| s.name == format!("requirement_values[{index}]"));
-            let quantiles = MEDIAN_AND_P95
-                .map(|place| own.map_or_else(String::new, |own| unit.number(own.quantiles[place])));
-            let [median, p95] = quantiles;
-            let mark = match decision {
-                Decision::Met => "✓",
-                Decision::Undecided => "?",
-                Decision::Missed => "✗",
-            };
-            let worst =
-                if worst.is_nan() { "no value".to_owned() } else { unit.beside(*worst, requirement.limit) };
-            rows.push(vec![
-                mark.to_owned(),
-                requirement.name.clone(),
-                format!("at most {}", unit.limit(requirement.limit, requirement.written_limit.as_deref())),
-                median,
-                p95,
-                format!("{worst}, run {run}"),
-                format!("{runs_met} of {runs}"),
-            ]);
-            notes.extend(confidence_note(verdict));
-        }
-        let mut lines = left_aligned(&rows);
-        lines.extend(notes);
+        let mut lines = requirements::lines(&self.requirements, &self.statistics, args.units.units.into());
         if let (Some(path), Some(missed)) =
             (&self.table, self.requirements.iter().find(|own| own.decision == Decision::Missed))
             && path.is_dir()
@@ -200,43 +165,8 @@ impl CampaignReport {
     }
 }
 
-/// Index of the median and of the 95 % quantile among the quantiles.
-const MEDIAN_AND_P95: [usize; 2] = [2, 4];
-
 /// Number of elements of a list that are printed.
 const MOST_ELEMENTS: usize = 8;
-
-/// Returns a line on the level of the ensemble or on the share of all values, if the requirement has one.
-fn confidence_note(verdict: &RequirementVerdict) -> Option<String> {
-    let RequirementVerdict { requirement, decision, value, share, confidence, .. } = verdict;
-    let name = &requirement.name;
-    let least = percent(requirement.level);
-    if !value.is_finite() && share.is_finite() {
-        return Some(format!(
-            "{name}: within its limit for {} of all values, at least {least}",
-            percent_beside(*share, requirement.level)
-        ));
-    }
-    let shown = confidence.as_ref()?;
-    let mut text = format!(
-        "{name}: {} at {least} of the runs; confidence {}",
-        decision.word(),
-        percent_beside(shown.reached, shown.wanted.unwrap_or(1.0))
-    );
-    if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
-        let wanted_part = percent(wanted);
-        let more = if shown.reached >= wanted {
-            format!(", at least {wanted_part}")
-        } else if *decision == Decision::Missed {
-            // More runs are no remedy.
-            format!(", below {wanted_part}")
-        } else {
-            format!(", {} needed for {wanted_part}", counted(needed, "run"))
-        };
-        text.push_str(&more);
-    }
-    Some(text)
-}
 
 /// Returns the statistics as a table, each row in a unit that fits it.
 fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
@@ -256,26 +186,8 @@ fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
         );
         rows.push(row);
     }
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if column < 2 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
-    };
-    rows.iter().map(line).collect::<Vec<_>>().join("\n")
-}
-
-/// Returns rows as columns that are aligned to the left.
-fn left_aligned(rows: &[Vec<String>]) -> Vec<String> {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
-        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
-    };
-    rows.iter().map(line).collect()
+    let lines = columns(&rows, |column| column < 2);
+    lines.iter().map(|line| format!("  {line}")).collect::<Vec<_>>().join("\n")
 }
 
 /// Returns a verdict as one word.

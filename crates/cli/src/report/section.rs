@@ -230,7 +230,7 @@ fn drawn(directory: &Path) -> Vec<String> {
 fn without_times(text: &str, file: &str) -> String {
     let is_time = |text: &str| {
         let (number, unit) = text.split_once(' ').unwrap_or_default();
-        number.parse::<f64>().is_ok() && ["ms", "s", "min", "h"].contains(&unit)
+        number.parse::<f64>().is_ok() && ["ms", "s", "min", "h", "days"].contains(&unit)
     };
     let mut lines: Vec<String> =
         text.lines().filter(|line| !line.contains(file)).map(ToOwned::to_owned).collect();

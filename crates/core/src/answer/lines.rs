@@ -1,4 +1,4 @@
-//! Lines of text on a run: what else is known, apart from requirements and modes of operation.
+//! AnswerLines of text on a run: what else is known, apart from requirements and modes of operation.
 
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_formats::reader_units::{ReaderUnits, number, time};
@@ -29,11 +29,11 @@ pub(super) struct RunData<'a> {
     pub units: ReaderUnits,
 }
 
-/// Lines of an answer, in their order.
+/// AnswerLines of an answer, in their order.
 #[derive(Default)]
-pub(super) struct Lines(Vec<Line>);
+pub(super) struct AnswerLines(Vec<Line>);
 
-impl Lines {
+impl AnswerLines {
     /// Adds a line that a first screen shows.
     pub fn main(&mut self, head: &str, text: impl Into<String>) {
         self.0.push(Line { head: head.to_owned(), text: text.into(), is_main: true });
@@ -88,7 +88,7 @@ impl RunData<'_> {
 
     /// Returns what else is known of the run.
     pub fn lines(&self) -> Vec<Line> {
-        let mut lines = Lines::default();
+        let mut lines = AnswerLines::default();
         if self.scenario.axis_count() == 3 {
             self.three_axis_lines(&mut lines);
         } else {
@@ -99,7 +99,7 @@ impl RunData<'_> {
     }
 
     /// Adds the tuned parameter of an adaptation, and its objective if it is not the envelope.
-    fn adaptation(&self, lines: &mut Lines) {
+    fn adaptation(&self, lines: &mut AnswerLines) {
         let Some(adaptation) = &self.scenario.adaptation else { return };
         if self.known("objective_final").is_some() {
             let objective = adaptation.objective();

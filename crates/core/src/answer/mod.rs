@@ -27,7 +27,7 @@ pub use lines::Line;
 pub use mode_answer::ModeAnswer;
 pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
 pub use run_observer::{Observed, RunObserver};
-pub use screen::{ScreenOptions, ScreenStyle, real_time};
+pub use screen::{ScreenOptions, ScreenStyle};
 pub use verdict::{GoalAnswer, RunVerdict};
 pub use warning::{Warning, WarningKind};
 

@@ -1,10 +1,10 @@
-//! Lines on a run of a single-axis body.
+//! AnswerLines on a run of a single-axis body.
 
 use std::f64::consts::TAU;
 
 use flexsc_formats::reader_units::{number, percent, time};
 
-use super::lines::{Lines, RunData};
+use super::lines::{AnswerLines, RunData};
 use crate::metrics::MetricValue;
 
 /// Length of the late part at the end of a run (s), as defined by the metrics.
@@ -13,7 +13,7 @@ const LATE: f64 = 5.0;
 const MOST_OUTPUTS: usize = 2;
 
 impl RunData<'_> {
-    pub(super) fn one_axis_lines(&self, lines: &mut Lines) {
+    pub(super) fn one_axis_lines(&self, lines: &mut AnswerLines) {
         if self.scenario.law.is_switching() {
             self.vibration(lines);
             self.jets_about_one_axis(lines);
@@ -25,7 +25,7 @@ impl RunData<'_> {
         }
     }
 
-    fn vibration(&self, lines: &mut Lines) {
+    fn vibration(&self, lines: &mut AnswerLines) {
         let means = self.list("envelope_window_means_rad");
         if let (Some(first), Some(last)) = (means.first(), means.last())
             && *first > 0.0
@@ -36,7 +36,7 @@ impl RunData<'_> {
         }
     }
 
-    fn jets_about_one_axis(&self, lines: &mut Lines) {
+    fn jets_about_one_axis(&self, lines: &mut AnswerLines) {
         let [switchings, right, left, duty] =
             ["switchings", "pushes_right", "pushes_left", "duty"].map(|name| self.number(name));
         let on = if duty.is_finite() {
@@ -52,7 +52,7 @@ impl RunData<'_> {
         lines.main("law", format!("{} switchings, {pushes}{on}", number(switchings)));
     }
 
-    fn limit_cycle(&self, lines: &mut Lines) {
+    fn limit_cycle(&self, lines: &mut AnswerLines) {
         let Some(MetricValue::Word(kind)) = self.metrics.get("cycle_kind") else { return };
         let Some(period) = self.known("cycle_period_s") else {
             return lines.main("limit cycle", format!("{kind}: the run is not periodic at its end"));
@@ -64,7 +64,7 @@ impl RunData<'_> {
     }
 
     /// Adds the manoeuvre's end, torques and errors.
-    fn rotation(&self, lines: &mut Lines) {
+    fn rotation(&self, lines: &mut AnswerLines) {
         let (scenario, units) = (self.scenario, self.units);
         if let Some(plan) = &scenario.plan {
             let angle = units.quantity(plan.angle, "rad");
@@ -105,7 +105,7 @@ impl RunData<'_> {
     }
 
     /// Adds the observed coordinates.
-    fn outputs(&self, lines: &mut Lines) {
+    fn outputs(&self, lines: &mut AnswerLines) {
         let after = if self.scenario.plan.is_some() { " after the manoeuvre" } else { "" };
         for (index, output) in self.scenario.model.outputs().iter().enumerate() {
             let quantity = |name: &str| {
@@ -131,7 +131,7 @@ impl RunData<'_> {
     }
 
     /// Adds the results of a Kalman filter.
-    fn filter(&self, lines: &mut Lines) {
+    fn filter(&self, lines: &mut AnswerLines) {
         if self.metrics.number("lock_lost").is_none() {
             return;
         }

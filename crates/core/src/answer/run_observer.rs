@@ -16,8 +16,8 @@ use super::error_statistics::{ErrorStatistics, ErrorSummary};
 use super::event::{EventKind, RunEvent};
 use crate::metrics::ErrorStream;
 
-/// Part of a run that is its end.
-const LATE: f64 = 0.9;
+/// Part of a run after which its end begins.
+pub const LATE: f64 = 0.9;
 /// Largest number of events that are listed.
 const MOST_EVENTS: usize = 10_000;
 
@@ -37,6 +37,10 @@ pub struct RunObserver {
     /// Events that have begun, and not ended, by kind, part and cause.
     open: BTreeMap<(EventKind, String, String), usize>,
     names: Vec<String>,
+    /// True if the body has three axes, and thus control cycles; true if it has wheels; true if errors are required.
+    has_cycles: bool,
+    has_wheels: bool,
+    has_errors: bool,
     mode: usize,
     /// Last cycle: its instant, error (rad), mode, and whether the target moves.
     last: Option<(Instant, f64, usize, bool)>,
@@ -118,6 +122,13 @@ impl RunObserver {
             events: Vec::new(),
             open: BTreeMap::new(),
             names: scenario.mode.iter().map(|mode| mode.name.clone()).collect(),
+            has_cycles: scenario.axis_count() == 3,
+            has_wheels: scenario.actuator.wheels().is_some(),
+            has_errors: scenario
+                .study
+                .requirements
+                .iter()
+                .any(|own| matches!(own.source, RequirementSource::Error(_))),
             mode: 0,
             last: None,
             late_from: LATE * end.seconds(),
@@ -262,11 +273,18 @@ impl Record for RunObserver {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let Sample::Report(report) = sample {
-            report.get().into_iter().for_each(|cycle| self.observe_cycle(now, cycle));
-            report.get().into_iter().for_each(|wheels| self.observe_wheels(wheels));
+        // The most frequent samples come first; most runs need few of their values.
+        if let (true, Sample::Report(report)) = (self.has_cycles, sample)
+            && let Some(cycle) = report.get()
+        {
+            self.observe_cycle(now, cycle);
+            if self.has_wheels {
+                report.get().into_iter().for_each(|wheels| self.observe_wheels(wheels));
+            }
         }
-        if let Some(errors) = sample.get::<RequirementErrors>() {
+        if self.has_errors
+            && let Some(errors) = sample.get::<RequirementErrors>()
+        {
             errors.0.iter().for_each(|own| self.push(now, own.requirement, Vector::from(own.error)));
         }
         if let Sample::Row(row) = sample {

@@ -1,7 +1,8 @@
 //! First screen of an answer: the verdict, requirements, warnings, then modes of operation or what else is known.
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, THIN_SPACE, number, time};
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, THIN_SPACE, number, rough_time, time};
+use flexsc_formats::text_columns::{columns, widths};
 
 use super::Answer;
 use super::mode_answer::ModeAnswer;
@@ -78,7 +79,7 @@ impl Answer {
     fn head(&self, took: Option<f64>, options: ScreenOptions) -> Vec<String> {
         let first = format!("{}   {}", self.scenario, self.verdict_text);
         let simulated = format!("{} simulated", time(self.duration_s));
-        let took = took.map_or(simulated.clone(), |took| format!("{simulated} in {}", real_time(took)));
+        let took = took.map_or(simulated.clone(), |took| format!("{simulated} in {}", rough_time(took)));
         let [before, after] = [&first, &took].map(|text| text.chars().count());
         if before + 3 + after <= options.width {
             return vec![format!("{first}{}{took}", " ".repeat(options.width - before - after))];
@@ -95,7 +96,7 @@ impl Answer {
                 "" => String::new(),
                 text => format!("{word} {text}"),
             };
-            [
+            vec![
                 if own.met { "✓" } else { "✗" }.to_owned(),
                 own.name.clone(),
                 own.text.value.clone(),
@@ -104,10 +105,9 @@ impl Answer {
                 prefix("largest", &own.text.largest),
             ]
         };
-        let rows: Vec<[String; 6]> = self.requirements.iter().take(shown).map(cells).collect();
-        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..6).map(width).collect();
-        let line = |row: &[String; 6]| {
+        let rows: Vec<Vec<String>> = self.requirements.iter().take(shown).map(cells).collect();
+        let widths = widths(&rows);
+        let line = |row: &[String]| {
             let mut cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
             let mark = cells.next().unwrap_or_default();
             format!("  {mark} {}", cells.collect::<Vec<_>>().join("   ")).trim_end().to_owned()
@@ -210,13 +210,7 @@ impl Answer {
             ]
         };
         let rows: Vec<Vec<String>> = self.events.iter().map(line).collect();
-        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-        let widths = [width(0), width(1), width(2)];
-        let text = |row: &Vec<String>| {
-            let [from, to, until] = [0, 1, 2].map(|column| format!("{:>1$}", row[column], widths[column]));
-            format!("  {from} {to} {until}   {}", row[3])
-        };
-        rows.iter().map(text).collect()
+        indented(columns(&rows, |column| column == 3))
     }
 }
 
@@ -257,20 +251,18 @@ fn cells(
     cells
 }
 
-/// Returns rows as columns, the first one aligned to the left, the others to the right; columns that do not fit are left out.
+/// Returns rows as columns, the first one aligned to the left; columns that do not fit are left out.
 fn aligned(rows: &[Vec<String>], most: usize) -> Vec<String> {
-    let columns = rows.first().map_or(0, Vec::len);
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let widths = widths(rows);
     let total = |shown: usize| 2 + widths[..shown].iter().sum::<usize>() + 2 * shown.saturating_sub(1);
-    let shown = (1..=columns).rev().find(|shown| total(*shown) <= most).unwrap_or(1);
-    let line = |row: &Vec<String>| {
-        let cells = row[..shown].iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
-        });
-        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned()
-    };
-    rows.iter().map(line).collect()
+    let shown = (1..=widths.len()).rev().find(|shown| total(*shown) <= most).unwrap_or(1);
+    let rows: Vec<Vec<String>> = rows.iter().map(|row| row[..shown].to_vec()).collect();
+    indented(columns(&rows, |column| column == 0))
+}
+
+/// Returns lines with the indent of a block.
+fn indented(lines: Vec<String>) -> Vec<String> {
+    lines.into_iter().map(|line| format!("  {line}")).collect()
 }
 
 /// Returns a text in lines of at most `width` characters, broken at spaces but not between a number and its unit, all but
@@ -353,19 +345,6 @@ const UNITS: [&str; 26] = [
 fn ascii(text: &str) -> String {
     let plain = text.replace(THIN_SPACE, " ").replace('✓', "ok").replace('✗', "NO");
     plain.replace('×', "x").replace('±', "+-").replace('µ', "u").replace('²', "^2")
-}
-
-/// Returns a real time in two digits: `3 ms`, `0.46 s`, `12 s`, `5 min`.
-pub fn real_time(seconds: f64) -> String {
-    match seconds {
-        s if s < 0.000_95 => "1 ms".to_owned(),
-        s if s < 0.095 => format!("{:.0} ms", s * 1e3),
-        s if s < 0.995 => format!("{s:.2} s"),
-        s if s < 9.95 => format!("{s:.1} s"),
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.0} h", s / 3600.0),
-    }
 }
 
 #[cfg(test)]

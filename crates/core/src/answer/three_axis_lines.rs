@@ -1,4 +1,4 @@
-//! Lines on a run of a three-axis body.
+//! AnswerLines on a run of a three-axis body.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::Time;
 
 use super::error_statistics::ErrorSummary;
-use super::lines::{Lines, RunData};
+use super::lines::{AnswerLines, RunData};
 
 /// Length of the run's end over which elastic rates are assessed (s), as defined by the metrics.
 const LATE: f64 = 200.0;
@@ -22,7 +22,7 @@ const STILL: f64 = 1e-3;
 const CLOSE: f64 = 0.02;
 
 impl RunData<'_> {
-    pub(super) fn three_axis_lines(&self, lines: &mut Lines) {
+    pub(super) fn three_axis_lines(&self, lines: &mut AnswerLines) {
         self.lines_of_sight(lines);
         self.pointing(lines);
         self.wheels(lines);
@@ -54,7 +54,7 @@ impl RunData<'_> {
     }
 
     /// Adds the error and the jitter of each line of sight.
-    fn lines_of_sight(&self, lines: &mut Lines) {
+    fn lines_of_sight(&self, lines: &mut AnswerLines) {
         for (index, line) in self.scenario.line_of_sight.iter().enumerate() {
             let value = |name: &str| {
                 let values = self.list(&format!("line_of_sight_{name}_rad"));
@@ -80,7 +80,7 @@ impl RunData<'_> {
     }
 
     /// Adds the pointing error: while the target moves, afterwards, and at the end.
-    fn pointing(&self, lines: &mut Lines) {
+    fn pointing(&self, lines: &mut AnswerLines) {
         let has_modes = !self.scenario.mode.is_empty();
         let statistics = |errors: &ErrorSummary| {
             let unit = self.units.fitting(errors.p95, "rad");
@@ -117,7 +117,7 @@ impl RunData<'_> {
             add("settling", format!("largest error {largest} at {}{after}", time(settled.at_s)));
         }
         if let Some(late) = observed.late.as_ref().filter(|late| late.largest > 0.0) {
-            let from = number(0.9 * self.scenario.duration.seconds());
+            let from = number(super::run_observer::LATE * self.scenario.duration.seconds());
             let to = time(self.scenario.duration.seconds());
             add("pointing", format!("{from} to {to}: {}{knowledge}", statistics(late)));
         }
@@ -128,7 +128,7 @@ impl RunData<'_> {
         }
     }
 
-    fn wheels(&self, lines: &mut Lines) {
+    fn wheels(&self, lines: &mut AnswerLines) {
         let Some(peak) = self.known("wheel_speed_peak_rad_s") else { return };
         let unit = self.units.rotor_speed();
         let least = self
@@ -157,7 +157,7 @@ impl RunData<'_> {
         if self.scenario.mode.is_empty() { lines.main("wheels", text) } else { lines.other("wheels", text) }
     }
 
-    fn jets(&self, lines: &mut Lines) {
+    fn jets(&self, lines: &mut AnswerLines) {
         // Other actuators use no propellant.
         let Some(fuel) = self.known("fuel_kg").filter(|fuel| *fuel > 0.0) else { return };
         let unit = self.units.fitting(fuel, "kg");
@@ -181,7 +181,7 @@ impl RunData<'_> {
         lines.main("propellant", text);
     }
 
-    fn gimbals(&self, lines: &mut Lines) {
+    fn gimbals(&self, lines: &mut AnswerLines) {
         if self.known("singularity_min").is_some() {
             let text = format!(
                 "rate at most {}; singularity measure at least {}; torque within {} of the demand",
@@ -194,7 +194,7 @@ impl RunData<'_> {
     }
 
     /// Adds the frequencies that a filter or an observer has identified, and active damping.
-    fn damping(&self, lines: &mut Lines) {
+    fn damping(&self, lines: &mut AnswerLines) {
         let found = self.list("frequency_estimates_hz");
         if found.is_empty() {
             return;
@@ -229,7 +229,7 @@ impl RunData<'_> {
         }
     }
 
-    fn elastic(&self, lines: &mut Lines) {
+    fn elastic(&self, lines: &mut AnswerLines) {
         if self.scenario.mode_count() == 0 {
             return;
         }
