@@ -237,7 +237,13 @@ fn without_times(text: &str, file: &str) -> String {
     // A long verdict has its time in the next line.
     for line in lines.iter_mut().take(2) {
         if let Some((before, _)) = line.rsplit_once(" in ").filter(|(_, last)| is_time(last)) {
-            *line = before.trim_end().to_owned();
+            // The gap before it is as wide as the time leaves room.
+            let (left, right) = before.rsplit_once("   ").unwrap_or(("", before));
+            *line = if left.trim().is_empty() {
+                before.to_owned()
+            } else {
+                format!("{}   {right}", left.trim_end())
+            };
         }
     }
     lines.join("\n")
@@ -249,7 +255,7 @@ mod tests {
 
     #[test]
     fn times_are_left_out() {
-        let text = "a   1 of 1 requirement met   300 s simulated in 74 ms\n\n  pointing  7 arcsec\n  log /tmp/x/run.mcap, 13 kB";
+        let text = "a   1 of 1 requirement met       300 s simulated in 74 ms\n\n  pointing  7 arcsec\n  log /tmp/x/run.mcap, 13 kB";
         let kept = "a   1 of 1 requirement met   300 s simulated\n\n  pointing  7 arcsec";
         assert_eq!(without_times(text, "run.mcap"), kept);
         assert_eq!(
