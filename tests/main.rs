@@ -104,6 +104,7 @@ mod beside;
 mod bound;
 mod combination_tables;
 mod combinations;
+mod compare;
 mod determinism;
 mod events;
 mod exact;
@@ -158,6 +159,7 @@ mod check;
 mod cli;
 #[cfg(target_os = "linux")]
 mod costs;
+mod cubesat;
 mod extremes;
 mod help;
 #[cfg(all(target_os = "linux", feature = "parquet"))]

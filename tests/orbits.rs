@@ -116,6 +116,29 @@ fn an_ephemeris_of_a_kepler_orbit_is_that_orbit() {
 }
 
 #[test]
+fn an_altitude_and_a_local_time_are_an_orbit() {
+    // The inclination computed apart (cos i = -w/(1.5 n J2 (Re/a)²), w of the mean Sun), the node from the mean longitude.
+    let node = (280.460 + 0.985_647_4 * 9824.0 - 22.5_f64).rem_euclid(360.0);
+    let written = format!(
+        "{{ semi_major_axis = 6903137, inclination = \"97.49694207306622 deg\", node = \"{node} deg\", j2 = true }}"
+    );
+    let at = |orbit: &str, t: f64| {
+        let text = drifting(orbit, "").replacen("duration", "epoch = 2026-11-24T12:00:00Z\nduration", 1);
+        scenario(&text).orbit_environment().position(t).expect("an orbit").position
+    };
+    for t in [0.0, 3000.0, 80_000.0] {
+        let [own, by_hand] =
+            ["{ altitude = \"525 km\", ltan = \"10:30\" }", &written].map(|orbit| at(orbit, t));
+        assert!((own - by_hand).norm() < 1e-2, "{t}: {own} {by_hand}");
+    }
+    // Logs and campaigns hold the scenario as it was written.
+    let text = drifting("{ altitude = \"525 km\", ltan = \"10:30\" }", "");
+    let whole = scenario(&text.replacen("duration", "epoch = 2026-11-24T12:00:00Z\nduration", 1));
+    let again = scenario(&whole.to_toml());
+    assert_eq!(again.environment, whole.environment);
+}
+
+#[test]
 fn orbits_that_do_not_hold_are_refused() {
     let refused = |text: &str, words: &[&str]| {
         let error = Scenario::parse("bad.toml", text).expect_err(words[0]).to_string();
@@ -123,10 +146,19 @@ fn orbits_that_do_not_hold_are_refused() {
     };
     let orbit = |orbit: &str| drifting(orbit, "");
     refused(&orbit("{}"), &["`environment.orbit`", "`semi_major_axis`", "`tle`", "`ephemeris`"]);
+    let both = |keys: &str, other: &str| {
+        refused(&orbit(&format!("{{ altitude = 5e5, {keys} }}")), &["environment.orbit", other]);
+    };
+    both("semi_major_axis = 7e6", "`altitude`");
+    both("ltan = \"6 h\", node = 1", "`ltan`");
+    both("ltan = \"6 h\"", "`epoch`");
+    both("ltan = \"25:00\"", "\"10:30\"");
+    both("tle = [\"1\", \"2\"]", "`tle`");
+    refused(&orbit("{ ltan = \"6 h\" }"), &["environment.orbit", "`altitude`"]);
     let inside = ["`environment.orbit.semi_major_axis`", "the orbit is inside the planet"];
     refused(
         &orbit("{ semi_major_axis = \"525 km\" }"),
-        &[inside[0], inside[1], "at an altitude of 525000 m it is 6903137"],
+        &[inside[0], inside[1], "write `altitude` for 525000 m above the surface, where it is 6903137"],
     );
     refused(&orbit("{ semi_major_axis = 6903 }"), &[inside[0], inside[1], "is it meant as \"6903 km\"?"]);
     let nadir = "[[target]]\nfrom = 0\nprimary = { body = [0, 0, 1], along = \"nadir\" }\nsecondary = { body = [1, 0, 0], along = \"velocity\" }\n";

@@ -18,6 +18,7 @@ const NARROW: usize = 40;
 
 /// Options of verbs that answer for a run.
 #[derive(clap::Args, Copy, Clone, Default)]
+#[command(next_help_heading = "Answer")]
 #[group(skip)]
 pub struct AnswerArgs {
     #[command(flatten)]
@@ -43,9 +44,7 @@ impl AnswerArgs {
 
     /// Prints an answer, with its log and its size, if there is one.
     pub fn print(self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
-        let options =
-            ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() };
-        let screen = answer.screen(Some(took), options);
+        let screen = answer.screen(Some(took), screen_options(self.units, self.all));
         // Only terminals that support colours get them, and not if NO_COLOR is set.
         let _ = writeln!(anstream::stderr(), "{}", coloured(&screen, answer));
         let log = log.map(|(path, bytes)| {
@@ -75,6 +74,11 @@ impl AnswerArgs {
 
 fn without_failed(text: &str) -> &str {
     text.trim_start_matches("FAILED: ")
+}
+
+/// Returns the width, the characters and the units of a screen that shows everything or only what comes first.
+pub fn screen_options(units: UnitsArgs, all: bool) -> ScreenOptions {
+    ScreenOptions { width: width(), all, style: style(), units: units.units.into() }
 }
 
 /// Returns the width of the terminal within bounds.

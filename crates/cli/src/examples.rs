@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use flexsc_core::Document;
 use serde_json::json;
 
+use crate::cubesat::CubesatArgs;
 use crate::error::CliError;
 use crate::out::{self, Out};
 use crate::{files, print, say};
@@ -117,6 +118,8 @@ pub struct NewArgs {
     /// Example to start from
     #[arg(long, value_name = "EXAMPLE", default_value = START)]
     like: String,
+    #[command(flatten)]
+    cubesat: CubesatArgs,
     /// Replace a file of other content
     #[arg(long)]
     force: bool,
@@ -166,7 +169,7 @@ pub fn run(args: &ExamplesArgs) -> Result<(), CliError> {
 }
 
 pub fn new(args: &NewArgs) -> Result<(), CliError> {
-    let text = text(&args.like)?;
+    let example = text(&args.like)?;
     let path = match out::ending(&args.name) {
         Some("toml") => args.name.clone(),
         Some(other) => {
@@ -179,8 +182,14 @@ pub fn new(args: &NewArgs) -> Result<(), CliError> {
             PathBuf::from(name)
         }
     };
+    let (text, source) = if args.cubesat.cubesat {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        (args.cubesat.text(&name)?, "a CubeSat with typical values".to_owned())
+    } else {
+        (example.to_owned(), format!("a copy of {}", args.like))
+    };
     files::write(&path, text.as_bytes(), args.force)?;
-    say!("{}: a copy of {}; next: flexsc simulate {}", path.display(), args.like, path.display());
+    say!("{}: {source}; next: flexsc simulate {}", path.display(), path.display());
     Ok(())
 }
 

@@ -56,7 +56,8 @@ mod tests {
     fn synonyms_are_of_verbs_and_none_is_one() {
         let command = Cli::command();
         for (other, meant) in synonyms::SYNONYMS {
-            assert!(command.find_subcommand(meant).is_some(), "{meant}");
+            let verb = meant.split(' ').next().unwrap_or(meant);
+            assert!(command.find_subcommand(verb).is_some(), "{meant}");
             assert!(command.find_subcommand(other).is_none(), "{other}");
         }
     }

@@ -6,7 +6,9 @@ mod budget;
 mod campaign;
 mod check;
 mod choice;
+mod compare;
 mod confirm_cost;
+mod cubesat;
 mod cycle;
 mod damping;
 mod error;
@@ -115,9 +117,9 @@ enum Verb {
     Cycle(cycle::CycleArgs),
     /// Plan a manoeuvre without residual vibration, or compare plans
     Plan(plan::PlanArgs),
-    /// Find stable, fast gains of a sampled loop
+    /// Find keys with the largest margins, or gains of a sampled loop
     ///
-    /// Over the frequency of the dominant mode: a region of gains, a gain schedule, or robust gains.
+    /// With --vary: keys of any linear law, for its margins, settling time or noise. Without: gains of the extra loop of a `pd` law about one axis, over the frequency of the dominant mode: a region, a schedule, or robust gains.
     Tune(tune::TuneArgs),
     /// Map the stability of a sampled loop
     ///
@@ -159,6 +161,10 @@ enum Verb {
     Observer(observer::ObserverArgs),
     /// Plot a log, a campaign or a sweep
     Plot(plot::PlotArgs),
+    /// Compare two scenarios or logs: keys, answers, curves
+    ///
+    /// The keys in which they differ, the answers side by side and, with -o, their figures one over the other.
+    Compare(compare::CompareArgs),
     /// Reproduce the results of the papers on one HTML page
     Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
@@ -236,6 +242,7 @@ impl Verb {
             Self::Damping(_) => Some("damping"),
             Self::Identify(_) if terminal::is_plain() => Some("identify"),
             Self::Observer(_) => Some("observer"),
+            Self::Compare(_) => Some("compare"),
             Self::Plot(_) if terminal::is_plain() => Some("plot"),
             Self::Reproduce(_) if terminal::is_plain() => Some("reproduce"),
             Self::Export(_) => Some("export"),
@@ -269,6 +276,7 @@ fn execute(verb: Verb) -> Result<(), CliError> {
         Verb::Identify(args) => identify::run(&args),
         Verb::Observer(args) => observer::run(&args),
         Verb::Plot(args) => plot::run(&args),
+        Verb::Compare(args) => compare::run(&args),
         Verb::Reproduce(args) => reproduce::run(&args),
         Verb::Export(args) => export::run(&args),
         Verb::ExportC(args) => export_c::run(&args),

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
+use flexsc_core::metrics::Metrics;
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
+use flexsc_core::record::{Detail, Log, LogBytes, Record, RunEnd};
 use flexsc_core::{Scenario, SimulationError};
 
 use crate::error::CliError;
@@ -25,17 +26,34 @@ pub fn log_run(
     path: &Path,
     detail: Detail,
 ) -> Result<Log, CliError> {
-    let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
-    Ok(Log::read(path, bytes(run, commanded, until, detail).map_err(failed)?)?)
+    recorded(run, commanded, until, path, (detail, ())).map(|(log, _)| log)
 }
 
-fn bytes(
+/// Returns the log of a scenario's own run in this detail with its metrics, and records the run; errors refer to the log as
+/// `path`.
+pub fn observed(
+    scenario: Scenario,
+    path: &Path,
+    detail: Detail,
+    record: impl Record,
+) -> Result<(Log, Metrics), CliError> {
+    let run = simulate::scenario_run(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
+    recorded(&run, &CommandLog::default(), Instant::END, path, (detail, record))
+}
+
+fn recorded(
     run: &CampaignRun,
     commanded: &CommandLog,
     until: Instant,
-    detail: Detail,
-) -> Result<Vec<u8>, SimulationError> {
-    let mut log = LogBytes::new(&commanded.provenance(run), detail)?;
-    let metrics = commanded.simulate(run, until, (&mut log, stop_flag()))?;
-    Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
+    path: &Path,
+    (detail, record): (Detail, impl Record),
+) -> Result<(Log, Metrics), CliError> {
+    let simulated = || -> Result<(Vec<u8>, Metrics), SimulationError> {
+        let mut log = LogBytes::new(&commanded.provenance(run), detail)?;
+        let metrics = commanded.simulate(run, until, (&mut log, (stop_flag(), record)))?;
+        Ok((log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?, metrics))
+    };
+    let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
+    let (bytes, metrics) = simulated().map_err(failed)?;
+    Ok((Log::read(path, bytes)?, metrics))
 }

@@ -18,6 +18,7 @@ const HELD_OF_RUN: f64 = 32.0;
 const MOST_REPLICAS: u64 = 1_000_000;
 
 #[derive(clap::Args, Clone)]
+#[command(next_help_heading = "Campaigns")]
 #[group(skip)]
 pub struct CampaignOptions {
     /// Format of the table in DIR [default: parquet; csv in a build without it], as the ending of a FILE says by itself

@@ -2,24 +2,31 @@
 
 use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 
-/// Verbs of other programs, each with the verb that is meant.
-pub const SYNONYMS: [(&str, &str); 20] = [
+/// Verbs of other programs, each with the verb that is meant, and its option.
+pub const SYNONYMS: [(&str, &str); 27] = [
+    ("animate", "export"),
     ("bode", "margins"),
     ("campaign", "simulate"),
     ("create", "new"),
+    ("diff", "compare"),
     ("draw", "plot"),
     ("figure", "plot"),
+    ("gui", "simulate --live"),
     ("init", "new"),
     ("lint", "check"),
     ("list", "examples"),
+    ("monte-carlo", "simulate --runs"),
     ("nichols", "margins"),
     ("noise", "spectrum"),
     ("nyquist", "margins"),
     ("optimise", "tune"),
     ("optimize", "tune"),
+    ("poles", "margins"),
     ("psd", "spectrum"),
     ("run", "simulate"),
+    ("root-locus", "margins"),
     ("show", "plot"),
+    ("sim", "simulate"),
     ("start", "simulate"),
     ("validate", "check"),
     ("verify", "check"),

@@ -5,7 +5,33 @@ pub type Verb = (&'static str, [(&'static str, &'static str); 2]);
 
 /// Verbs grouped by purpose. `tests/help.rs` runs every example, in this order, in one directory that holds the shipped
 /// scenarios.
-pub const GROUPS: [(&str, &[Verb]); 4] = [
+pub const GROUPS: [(&str, &[Verb]); 7] = [
+    (
+        "Begin",
+        &[
+            (
+                "new",
+                [
+                    ("flexsc new my-satellite", "a commented scenario to start from"),
+                    ("flexsc new mine --cubesat --size 12U --mass 20", "a CubeSat with typical values"),
+                ],
+            ),
+            (
+                "examples",
+                [
+                    ("flexsc examples", "all examples, one line each"),
+                    ("flexsc examples wheel-ekf sun-tracking -o copies", "copies of two of them"),
+                ],
+            ),
+            (
+                "check",
+                [
+                    ("flexsc check my-satellite.toml", "every mistake in a scenario"),
+                    ("flexsc check my-satellite.toml mine.toml --json", "the same as JSON"),
+                ],
+            ),
+        ],
+    ),
     (
         "Run",
         &[
@@ -16,19 +42,6 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc simulate earth-observer.toml --runs 20 -o monte-carlo",
                         "20 runs with different noise: a table and its statistics",
-                    ),
-                ],
-            ),
-            (
-                "serve",
-                [
-                    (
-                        "flexsc serve earth-observer.toml -o served",
-                        "waits for a control program, and runs with it",
-                    ),
-                    (
-                        "flexsc serve earth-observer.toml --describe > packets.xml",
-                        "its packets in XTCE, for ground systems",
                     ),
                 ],
             ),
@@ -52,11 +65,6 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                     ("flexsc merge monte-carlo all -o once", "runs found in both are taken once"),
                 ],
             ),
-        ],
-    ),
-    (
-        "Look",
-        &[
             (
                 "top",
                 [
@@ -65,10 +73,54 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
+                "serve",
+                [
+                    (
+                        "flexsc serve earth-observer.toml -o served",
+                        "waits for a control program, and runs with it",
+                    ),
+                    (
+                        "flexsc serve earth-observer.toml --describe > packets.xml",
+                        "its packets in XTCE, for ground systems",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Look",
+        &[
+            (
                 "plot",
                 [
                     ("flexsc plot relay-adaptive.mcap -o figures", "all figures of the log"),
                     ("flexsc plot gains -o gains.svg", "all figures of a sweep on one sheet"),
+                ],
+            ),
+            (
+                "compare",
+                [
+                    (
+                        "flexsc compare relay-fixed.toml relay-adaptive.toml",
+                        "keys that differ, and both answers side by side",
+                    ),
+                    (
+                        "flexsc compare relay-adaptive.mcap relay-adaptive.toml -o difference",
+                        "a log beside a new run, with figures one over the other",
+                    ),
+                ],
+            ),
+            (
+                "report",
+                [
+                    (
+                        "flexsc report attitude-hold.toml -o study.html --runs 20",
+                        "a page with a campaign of 20 runs",
+                    ),
+                    (
+                        "flexsc report attitude-hold.toml -o short.html --runs 0 --set duration=60",
+                        "a page without a campaign, of a shorter run",
+                    ),
                 ],
             ),
             (
@@ -78,36 +130,6 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc export relay-adaptive.mcap --topic /command -o command.csv",
                         "one topic as a table",
-                    ),
-                ],
-            ),
-            (
-                "export-c",
-                [
-                    (
-                        "flexsc export-c relay-sampled.toml -o flight",
-                        "the relay as C99 in the directory flight",
-                    ),
-                    (
-                        "flexsc export-c earth-observer.toml -o flight-observer --name aocs --calls 1000",
-                        "names that begin with aocs, and the first 1000 calls of the run",
-                    ),
-                ],
-            ),
-            (
-                "vectors",
-                [
-                    ("flexsc vectors relay-sampled.toml -o vectors.bin", "every call of the relay in a run"),
-                    ("flexsc vectors earth-observer.toml -o first.bin --calls 100", "the first 100 calls"),
-                ],
-            ),
-            (
-                "export-fmu",
-                [
-                    ("flexsc export-fmu relay-fixed.toml -o relay.fmu", "the closed loop as an FMU, FMI 3.0"),
-                    (
-                        "flexsc export-fmu earth-observer.toml --part plant --fmi 2 -o plant.fmu",
-                        "the spacecraft alone, for importers of FMI 2.0",
                     ),
                 ],
             ),
@@ -137,56 +159,13 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
         ],
     ),
     (
-        "Design",
+        "Analyse",
         &[
             (
                 "modes",
                 [
                     ("flexsc modes earth-observer.toml", "clamped and free frequencies, masses, influences"),
                     ("flexsc modes relay-fixed.toml --json", "the same as JSON"),
-                ],
-            ),
-            (
-                "cycle",
-                [
-                    ("flexsc cycle relay-fixed.toml", "the limit cycle of the law, in closed form"),
-                    ("flexsc cycle relay-fixed.toml --set law.relay.k_t=0.34", "with another gain"),
-                ],
-            ),
-            (
-                "plan",
-                [
-                    ("flexsc plan rotation-cosine.toml", "a manoeuvre that leaves the modes at rest"),
-                    (
-                        "flexsc plan rotation-cosine.toml --compare",
-                        "the same compared with all other commands",
-                    ),
-                ],
-            ),
-            (
-                "tune",
-                [
-                    (
-                        "flexsc tune wheel-scheduled-gain.toml",
-                        "the gains that settle in time, over frequency",
-                    ),
-                    (
-                        "flexsc tune earth-observer.toml --vary law.attitude.damping=0.4:1.5 --bandwidth 0.1",
-                        "the damping with the largest modulus margin",
-                    ),
-                ],
-            ),
-            (
-                "map",
-                [
-                    (
-                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 -o map.csv",
-                        "spectral radius and settling time as a table",
-                    ),
-                    (
-                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 --figures maps",
-                        "and as figures",
-                    ),
                 ],
             ),
             (
@@ -199,19 +178,6 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc margins wheel-fast-mode.toml --loop measurement --json",
                         "at the measured angle and rate, as JSON",
-                    ),
-                ],
-            ),
-            (
-                "report",
-                [
-                    (
-                        "flexsc report attitude-hold.toml -o study.html --runs 20",
-                        "a page with a campaign of 20 runs",
-                    ),
-                    (
-                        "flexsc report attitude-hold.toml -o short.html --runs 0 --set duration=60",
-                        "a page without a campaign, of a shorter run",
                     ),
                 ],
             ),
@@ -239,13 +205,6 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                 ],
             ),
             (
-                "bound",
-                [
-                    ("flexsc bound bounded-jitter.toml", "the claims of the scenario, proved"),
-                    ("flexsc bound bounded-jitter.toml -o range.csv", "and the guaranteed ranges over time"),
-                ],
-            ),
-            (
                 "worst",
                 [
                     (
@@ -255,6 +214,33 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
                     (
                         "flexsc worst slew-wheel-lqg.toml --margin modulus -o corner.toml",
                         "least modulus margin, and a scenario that has it",
+                    ),
+                ],
+            ),
+            (
+                "bound",
+                [
+                    ("flexsc bound bounded-jitter.toml", "the claims of the scenario, proved"),
+                    ("flexsc bound bounded-jitter.toml -o range.csv", "and the guaranteed ranges over time"),
+                ],
+            ),
+            (
+                "cycle",
+                [
+                    ("flexsc cycle relay-fixed.toml", "the limit cycle of the law, in closed form"),
+                    ("flexsc cycle relay-fixed.toml --set law.relay.k_t=0.34", "with another gain"),
+                ],
+            ),
+            (
+                "map",
+                [
+                    (
+                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 -o map.csv",
+                        "spectral radius and settling time as a table",
+                    ),
+                    (
+                        "flexsc map wheel-fixed-gain.toml --frequency 0.5:2:12 --period 0.1:1:10 --figures maps",
+                        "and as figures",
                     ),
                 ],
             ),
@@ -297,29 +283,71 @@ pub const GROUPS: [(&str, &[Verb]); 4] = [
         ],
     ),
     (
-        "Files",
+        "Design",
         &[
             (
-                "new",
+                "plan",
                 [
-                    ("flexsc new my-satellite", "a commented scenario to start from"),
-                    ("flexsc new slew --like earth-observer", "the same from another example"),
+                    ("flexsc plan rotation-cosine.toml", "a manoeuvre that leaves the modes at rest"),
+                    (
+                        "flexsc plan rotation-cosine.toml --compare",
+                        "the same compared with all other commands",
+                    ),
                 ],
             ),
             (
-                "examples",
+                "tune",
                 [
-                    ("flexsc examples", "all examples, one line each"),
-                    ("flexsc examples wheel-ekf sun-tracking -o copies", "copies of two of them"),
+                    (
+                        "flexsc tune wheel-scheduled-gain.toml",
+                        "the gains that settle in time, over frequency",
+                    ),
+                    (
+                        "flexsc tune earth-observer.toml --vary law.attitude.damping=0.4:1.5 --bandwidth 0.1",
+                        "the damping with the largest modulus margin",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Hand over",
+        &[
+            (
+                "export-c",
+                [
+                    (
+                        "flexsc export-c relay-sampled.toml -o flight",
+                        "the relay as C99 in the directory flight",
+                    ),
+                    (
+                        "flexsc export-c earth-observer.toml -o flight-observer --name aocs --calls 1000",
+                        "names that begin with aocs, and the first 1000 calls of the run",
+                    ),
                 ],
             ),
             (
-                "check",
+                "vectors",
                 [
-                    ("flexsc check my-satellite.toml", "every mistake in a scenario"),
-                    ("flexsc check my-satellite.toml slew.toml --json", "the same as JSON"),
+                    ("flexsc vectors relay-sampled.toml -o vectors.bin", "every call of the relay in a run"),
+                    ("flexsc vectors earth-observer.toml -o first.bin --calls 100", "the first 100 calls"),
                 ],
             ),
+            (
+                "export-fmu",
+                [
+                    ("flexsc export-fmu relay-fixed.toml -o relay.fmu", "the closed loop as an FMU, FMI 3.0"),
+                    (
+                        "flexsc export-fmu earth-observer.toml --part plant --fmi 2 -o plant.fmu",
+                        "the spacecraft alone, for importers of FMI 2.0",
+                    ),
+                ],
+            ),
+        ],
+    ),
+    (
+        "Reference",
+        &[
             (
                 "schema",
                 [

@@ -42,6 +42,7 @@ const FLUSH: Duration = Duration::from_secs(5);
 const MOST_SILENT: usize = 64;
 
 #[derive(clap::Args)]
+#[command(next_help_heading = "Live runs")]
 #[group(skip)]
 pub struct LiveArgs {
     /// Serve the run to viewers such as Foxglove and Lichtblick while it goes on, in real time

@@ -9,6 +9,7 @@ use crate::error::CliError;
 use crate::unavailable::HINT;
 
 #[derive(clap::Args)]
+#[command(next_help_heading = "Live runs")]
 #[group(skip)]
 pub struct LiveArgs {
     #[arg(long, hide = true, num_args = 0..=1, require_equals = true, default_missing_value = "")]

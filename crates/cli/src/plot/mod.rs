@@ -55,7 +55,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::Scenario;
 use flexsc_core::record::row::TopicRow;
 use flexsc_core::record::{Log, Orbit};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Style, colour, round_to_nice};
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
@@ -67,7 +67,7 @@ pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use figure_spec::{FigureSpec, MotionPart, RunData};
 use motion::MotionData;
-use run_events::RunEvents;
+pub use run_events::RunEvents;
 pub use title::readable;
 use title::{short, title};
 
@@ -136,39 +136,53 @@ impl PlotArgs {
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
     fn together(&self) -> Result<Vec<(String, Figure)>, CliError> {
-        let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
+        let paths: Vec<&Path> =
+            std::iter::once(&self.path).chain(&self.others).map(PathBuf::as_path).collect();
         let all =
             paths.iter().map(|path| self.figures_of(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
-        let names: Vec<String> = paths
-            .iter()
-            .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
-            .collect();
-        // Logs of the same name in several directories are distinguished by their paths.
-        let name = |run: usize| {
-            let is_unique = names.iter().filter(|name| **name == names[run]).count() == 1;
-            if is_unique { names[run].clone() } else { paths[run].display().to_string() }
-        };
-        let mut figures = Vec::new();
-        let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<String> = runs[0].iter().map(|(kind, _)| kind.clone()).collect();
-        for kind in kinds {
-            let mut same_kind = Vec::new();
-            for (run, figures) in runs.iter_mut().enumerate() {
-                if let Some(place) = figures.iter().position(|(other, _)| *other == kind) {
-                    same_kind.push((name(run), figures.swap_remove(place).1));
-                }
-            }
-            if same_kind.len() == paths.len() {
-                let title = kind.replace('-', " ");
-                figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
-            }
-        }
-        if figures.is_empty() {
-            let why = "these logs have no figure with the same axes, which could show them together";
-            return Err(CliError::Arguments(format!("{why}\n\nhint: draw them one by one")));
-        }
-        Ok(figures)
+        in_common(&paths, all)
     }
+}
+
+/// Returns the figures that two logs have in common, the lines of both in each.
+pub fn overlaid_logs(logs: [(&Path, &Log); 2]) -> Result<Vec<Named>, CliError> {
+    let drawn =
+        |(path, log): (&Path, &Log)| drawn_over(log, path, &[], ShownRange::default(), RunSource::default());
+    let all = logs.into_iter().map(drawn).collect::<Result<Vec<_>, _>>()?;
+    in_common(&logs.map(|(path, _)| path), all)
+}
+
+/// Returns the figures that all runs have, by their names, the lines of all runs in each.
+fn in_common(paths: &[&Path], runs: Vec<Vec<(String, Figure)>>) -> Result<Vec<(String, Figure)>, CliError> {
+    let names: Vec<String> = paths
+        .iter()
+        .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
+        .collect();
+    // Logs of the same name in several directories are distinguished by their paths.
+    let name = |run: usize| {
+        let is_unique = names.iter().filter(|name| **name == names[run]).count() == 1;
+        if is_unique { names[run].clone() } else { paths[run].display().to_string() }
+    };
+    let mut figures = Vec::new();
+    let mut runs = runs;
+    let kinds: Vec<String> = runs[0].iter().map(|(kind, _)| kind.clone()).collect();
+    for kind in kinds {
+        let mut same_kind = Vec::new();
+        for (run, figures) in runs.iter_mut().enumerate() {
+            if let Some(place) = figures.iter().position(|(other, _)| *other == kind) {
+                same_kind.push((name(run), figures.swap_remove(place).1));
+            }
+        }
+        if same_kind.len() == paths.len() {
+            let title = kind.replace('-', " ");
+            figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
+        }
+    }
+    if figures.is_empty() {
+        let why = "these logs have no figure with the same axes, which could show them together";
+        return Err(CliError::Arguments(format!("{why}\n\nhint: draw them one by one")));
+    }
+    Ok(figures)
 }
 
 /// Interval of time that figures show (s); by default that which each figure chooses.

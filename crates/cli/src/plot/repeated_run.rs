@@ -43,7 +43,8 @@ impl Record for RepeatedEvents {
 }
 
 impl RunEvents {
-    /// Repeats the run of the log at `path` with a record, because the log has no rows of the topic `missing`.
+    /// Repeats the run of the log at `path` with a record, because the log has no rows of the topic `missing`, and returns its
+    /// metrics.
     ///
     /// # Errors
     /// A run that is too long, that needs parts or commands that the log does not have, or that differs from the log.
@@ -53,7 +54,7 @@ impl RunEvents {
         path: &Path,
         missing: &str,
         recorder: &mut impl Record,
-    ) -> Result<(), CliError> {
+    ) -> Result<Metrics, CliError> {
         if let Some(own) = self.absent_parts.as_deref() {
             let why = format!(
                 "has no rows of {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"
@@ -80,7 +81,7 @@ impl RunEvents {
             .simulate(&run, Instant::START + end, (recorder, &mut repeated))
             .map_err(|source| CliError::Run { name: self.scenario.name.clone(), source })?;
         match self.difference(log, commands, &repeated, &metrics)? {
-            None => Ok(()),
+            None => Ok(metrics),
             Some(differs) => {
                 let version = log.metadata().get("version").map_or("another", String::as_str);
                 let own = env!("CARGO_PKG_VERSION");

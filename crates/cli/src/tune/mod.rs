@@ -33,6 +33,19 @@ pub struct TuneArgs {
     #[command(flatten)]
     structured: structured::StructuredArgs,
     #[command(flatten)]
+    single_axis: SingleAxisArgs,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    drawing: FigureOutput,
+}
+
+/// Options of the search for gains of the extra loop of a `pd` law about one axis.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Extra loop of a pd law about one axis, without --vary")]
+#[group(skip)]
+struct SingleAxisArgs {
+    #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
     #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
@@ -62,10 +75,6 @@ pub struct TuneArgs {
     /// Print the schedule as `[law.pd.extra]` of a scenario
     #[arg(long, conflicts_with = "json")]
     schedule: bool,
-    #[command(flatten)]
-    units: UnitsArgs,
-    #[command(flatten)]
-    drawing: FigureOutput,
 }
 
 fn part(name: &str, value: f64) -> Result<(), CliError> {
@@ -81,33 +90,34 @@ impl TuneArgs {
     /// Computes the tuning of a scenario's loop over the given gains.
     pub fn results(&self, scenario: &Scenario) -> Result<TuneResults, CliError> {
         let (sampled_loop, law) = sampled(scenario)?;
-        positive("--limit", self.limit)?;
+        let options = &self.single_axis;
+        positive("--limit", options.limit)?;
         let own =
             || PositiveGrid::new(sampled_loop.frequency() / 6.0, sampled_loop.frequency() * 4.0 / 3.0, 36);
-        let PositiveGrid(frequencies) = self.frequency.clone().unwrap_or_else(own);
+        let PositiveGrid(frequencies) = options.frequency.clone().unwrap_or_else(own);
         let tuning = TuneSetup {
             name: scenario.name.clone(),
             own: law.extra.clone(),
-            window: self.settled.window(&sampled_loop, &scenario.name)?,
-            scaling: self.settled.scaling(),
-            gains: self.gain.0,
-            limit: self.limit,
+            window: options.settled.window(&sampled_loop, &scenario.name)?,
+            scaling: options.settled.scaling(),
+            gains: options.gain.0,
+            limit: options.limit,
             sampled_loop,
             frequencies,
         };
         let closed = tuning.frequencies.len() * tuning.gains.values().len();
-        let found = match self.robust {
+        let found = match options.robust {
             None => {
-                self.settled.check_cost(&tuning.sampled_loop, closed, tuning.sampled_loop.period, 0.0)?;
+                options.settled.check_cost(&tuning.sampled_loop, closed, tuning.sampled_loop.period, 0.0)?;
                 TuneMethodResults::Regions(tuning.regions())
             }
             Some(off) => {
                 let search = self.search(&tuning, off)?;
-                self.settled.check_cost(
+                options.settled.check_cost(
                     &tuning.sampled_loop,
                     closed * search.uncertainty.max_loops(),
                     tuning.sampled_loop.period,
-                    self.delay,
+                    options.delay,
                 )?;
                 TuneMethodResults::Robust {
                     off,
@@ -120,14 +130,15 @@ impl TuneArgs {
 
     /// Returns the search for gains that are admissible with a relative model error.
     fn search(&self, tuning: &TuneSetup, off: f64) -> Result<RobustSearch, CliError> {
+        let options = &self.single_axis;
         part("--robust", off)?;
-        part("--margin", self.margin)?;
-        if !(self.quantile > 0.0 && self.quantile <= 1.0) {
-            let why = format!("--quantile must be above 0 and at most 1, got {}", self.quantile);
+        part("--margin", options.margin)?;
+        if !(options.quantile > 0.0 && options.quantile <= 1.0) {
+            let why = format!("--quantile must be above 0 and at most 1, got {}", options.quantile);
             return Err(CliError::Arguments(why));
         }
-        if !(self.delay.is_finite() && self.delay >= 0.0) {
-            return Err(CliError::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
+        if !(options.delay.is_finite() && options.delay >= 0.0) {
+            return Err(CliError::Arguments(format!("--delay must be 0 or more, got {}", options.delay)));
         }
         Ok(RobustSearch {
             gains: tuning.gains,
@@ -137,11 +148,11 @@ impl TuneArgs {
                 frequency: off,
                 modal_gain: off,
                 authority: off,
-                delay: self.delay,
+                delay: options.delay,
             },
-            goal: if self.itae { RobustGoal::Itae } else { RobustGoal::Settling },
-            quantile: self.quantile,
-            margin: self.margin,
+            goal: if options.itae { RobustGoal::Itae } else { RobustGoal::Settling },
+            quantile: options.quantile,
+            margin: options.margin,
         })
     }
 }
@@ -155,7 +166,7 @@ pub fn run(args: &TuneArgs) -> Result<(), CliError> {
         return show(&tuned, Some(&args.drawing), args.scenario.json);
     }
     let tuned = args.results(&args.scenario.load()?)?;
-    if args.schedule {
+    if args.single_axis.schedule {
         // An error here precedes the figures, so that none is drawn without a schedule.
         let schedule = tuned.extra()?;
         args.drawing.save(|| tuned.figures())?;

@@ -31,6 +31,7 @@ const PRINTED: usize = 6;
 
 /// Arguments of a search over keys.
 #[derive(clap::Args)]
+#[command(next_help_heading = "Keys of any linear law, with --vary")]
 #[group(skip)]
 pub struct StructuredArgs {
     /// Vary a key within a range for the objective, such as law.pd.k_d=10:400; repeat it for several keys

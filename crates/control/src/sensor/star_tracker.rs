@@ -1,8 +1,8 @@
 //! A star tracker: the attitude at its exposures or the mean over each, with noise in its own axes and a latency.
 
 use flexsc_formats::document;
-use flexsc_numerics::attitude::{Attitude, Vector, rotation};
-use flexsc_numerics::quantity::{NonNegative, Positive, Time};
+use flexsc_numerics::attitude::{Attitude, Vector, rotation, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{DMatrix, Matrix3, Quaternion};
@@ -18,6 +18,9 @@ use super::{
 use crate::offers::Offers;
 use crate::part::Part;
 use crate::requirement::Requirements;
+
+/// Length of the quaternion to a boresight below which that is opposite to the body's z axis.
+const OPPOSITE: f64 = 1e-9;
 
 /// A star tracker on a body with three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -35,6 +38,10 @@ pub struct StarTracker {
     /// to the body's; default: the identity.
     #[serde(default)]
     pub axes: Attitude,
+    /// Direction of the boresight, its z axis, in the body, of any length, in place of `axes`: x and y are those of the body,
+    /// turned by the smallest angle that takes z to the boresight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub boresight: Option<[Finite; 3]>,
     /// Time from the middle of an exposure to its output (s).
     #[serde(default)]
     pub latency: Time,
@@ -78,6 +85,15 @@ impl SensorSpec for StarTracker {
     fn validate(&self) -> Option<document::ConfigError> {
         if let Some(fault) = self.exclusion.as_ref().and_then(Exclusion::validate) {
             return Some(fault);
+        }
+        if let Some(boresight) = &self.boresight {
+            if boresight.iter().all(|part| part.get() == 0.0) {
+                return Some(document::ConfigError::new("boresight", "must not be zero, got [0, 0, 0]"));
+            }
+            if self.axes != Attitude::default() {
+                let why = "is the z axis of `axes`, and both are given: leave one out";
+                return Some(document::ConfigError::new("boresight", why));
+            }
         }
         let (exposure, latency) = (self.exposure.get(), self.latency.get());
         if self.exposure() > self.period {
@@ -149,8 +165,17 @@ impl StarTracker {
 
     /// Rotates a vector from the tracker's axes to the body's.
     fn to_body_axes(&self, vector: &Vector) -> Vector {
-        let turn = self.axes.get();
+        let turn = self.turn();
         (turn * Quaternion::from_imag(*vector) * turn.conjugate()).vector().into_owned()
+    }
+
+    /// Returns the unit quaternion that transforms vectors from the tracker's axes to the body's.
+    fn turn(&self) -> Quaternion<f64> {
+        let Some(boresight) = &self.boresight else { return self.axes.get() };
+        let along = vector(boresight).normalize();
+        let turn = Quaternion::new(1.0 + along.z, -along.y, along.x, 0.0);
+        // Opposite to z, it is half a turn about x.
+        if turn.norm() < OPPOSITE { Quaternion::new(0.0, 1.0, 0.0, 0.0) } else { turn.normalize() }
     }
 }
 
@@ -337,6 +362,26 @@ mod tests {
         };
         let found = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (4.0, 0.2), (5.0, 0.0)];
         assert_eq!(found.map(|(t, rate)| open_exposure(t, rate)), [false, true, false, false, false, true]);
+    }
+
+    #[test]
+    fn a_boresight_is_the_z_axis_of_the_smallest_turn() {
+        let tracker = |keys: &str| -> StarTracker {
+            document::from_text(&format!("period = 1.0\n{keys}\n")).expect(keys)
+        };
+        // The axes of a boresight along (0, -0.6, -0.8) by hand: a turn of 143 degrees about x.
+        let by_hand = tracker("axes = [0.31622776601683794, 0.9486832980505138, 0.0, 0.0]");
+        let by_boresight = tracker("boresight = [0, -3, -4]");
+        for axis in 0..3 {
+            let difference = by_hand.body_direction(axis) - by_boresight.body_direction(axis);
+            assert!(difference.amax() < 1e-15, "{axis}: {difference}");
+        }
+        assert_eq!(tracker("boresight = [0, 0, 2]").body_direction(0), Vector::x());
+        assert_eq!(tracker("boresight = [0, 0, -1]").body_direction(2), -Vector::z());
+        let fault = |keys: &str| tracker(keys).validate().map(|fault| fault.key);
+        assert_eq!(fault("boresight = [0, 0, 0]"), Some("boresight".to_owned()));
+        assert_eq!(fault("boresight = [1, 0, 0]\naxes = [0, 1, 0, 0]"), Some("boresight".to_owned()));
+        assert_eq!(fault("boresight = [1, 0, 0]"), None);
     }
 
     #[test]

@@ -4,10 +4,12 @@
 
 mod error_statistics;
 mod event;
+mod key_difference;
 mod lines;
 mod mode_answer;
 mod one_axis_lines;
 mod requirement_answer;
+mod run_comparison;
 mod run_observer;
 mod screen;
 mod three_axis_lines;
@@ -23,9 +25,11 @@ use crate::requirement_verdict::{self, RequirementVerdict};
 
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};
+pub use key_difference::KeyDifference;
 pub use lines::Line;
 pub use mode_answer::ModeAnswer;
 pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
+pub use run_comparison::RunComparison;
 pub use run_observer::{Observed, RunObserver};
 pub use screen::{ScreenOptions, ScreenStyle};
 pub use verdict::{GoalAnswer, RunVerdict};

@@ -267,7 +267,7 @@ fn indented(lines: Vec<String>) -> Vec<String> {
 
 /// Returns a text in lines of at most `width` characters, broken at spaces but not between a number and its unit, all but
 /// the first indented.
-fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
     let start = text.len() - text.trim_start().len();
     let mut lines = vec![text[..start].to_owned()];
     for (index, word) in words(&text[start..]).into_iter().enumerate() {

@@ -91,7 +91,7 @@ impl Kepler {
             let meant = if 1e3 * nearest > planet && axis < 1e5 {
                 format!("is it meant as \"{} km\"?", shortest(axis))
             } else {
-                format!("it counts from the centre, and at an altitude of {0} m it is {1}", shortest(axis), planet + axis)
+                format!("it counts from the centre: write `altitude` for {0} m above the surface, where it is {1}", shortest(axis), planet + axis)
             };
             let why = format!(
                 "must keep the perigee, at {nearest} m, above the planet's radius of {planet} m, got {axis}: the orbit is inside the planet; \

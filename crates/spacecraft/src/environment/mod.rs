@@ -1,5 +1,6 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
+mod altitude_orbit;
 mod bright_body;
 mod date;
 mod deep_space;
@@ -15,6 +16,7 @@ mod gravity_gradient;
 mod ground_site;
 mod igrf_14;
 mod kepler;
+mod local_time;
 mod magnetic_field;
 mod memo;
 mod moon;
@@ -53,6 +55,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use solar_disc::ASTRONOMICAL_UNIT;
 
+pub use altitude_orbit::AltitudeOrbit;
 pub use bright_body::BrightBody;
 pub use density::DensityModel;
 pub use dipole::Dipole;
@@ -64,6 +67,7 @@ pub use field_model::FieldModel;
 pub use gravity_gradient::GravityGradient;
 pub use ground_site::GroundSite;
 pub use kepler::{Kepler, OrbitPosition};
+pub use local_time::LocalTime;
 pub use magnetic_field::MagneticField;
 pub use oblateness::Oblateness;
 pub use orbit::to_body;

@@ -13,9 +13,6 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Kepler;
 
-/// Coefficient of the Earth (EGM96).
-const EARTH: f64 = 1.082_626_1e-3;
-
 /// Coefficient J2 of a planet: 0 of a sphere, `true` for that of the Earth.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Oblateness(f64);
@@ -32,6 +29,9 @@ pub(super) struct SecularRates {
 }
 
 impl Oblateness {
+    /// Coefficient of the Earth (EGM96).
+    pub const EARTH: Self = Self(1.082_626_1e-3);
+
     /// Returns true for a sphere.
     pub fn is_zero(&self) -> bool {
         self.0 == 0.0
@@ -79,7 +79,7 @@ impl<'de> Deserialize<'de> for Oblateness {
             }
 
             fn visit_bool<E: Error>(self, is_oblate: bool) -> Result<Oblateness, E> {
-                Ok(Oblateness(if is_oblate { EARTH } else { 0.0 }))
+                Ok(if is_oblate { Oblateness::EARTH } else { Oblateness::default() })
             }
 
             fn visit_f64<E: Error>(self, number: f64) -> Result<Oblateness, E> {

@@ -1,4 +1,4 @@
-//! The orbit of a scenario: Kepler elements, two-line elements, or an ephemeris.
+//! The orbit of a scenario: Kepler elements, an altitude, two-line elements, or an ephemeris.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -11,8 +11,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::altitude_orbit::AltitudeOrbit;
 use super::ephemeris_orbit::EphemerisOrbit;
 use super::kepler::{earth_gravity, earth_radius};
+use super::local_time::LocalTime;
 use super::orbit_path::OrbitPath;
 use super::two_line_orbit::TwoLineOrbit;
 use super::{Kepler, Oblateness};
@@ -23,6 +25,8 @@ use super::{Kepler, Oblateness};
 pub enum OrbitKind {
     /// Kepler elements.
     Kepler(Kepler),
+    /// Altitude and, of a Sun-synchronous orbit, local time of the node.
+    Altitude(AltitudeOrbit),
     /// Two-line elements.
     TwoLines(TwoLineOrbit),
     /// Positions at instants.
@@ -34,6 +38,8 @@ pub enum OrbitKind {
 #[serde(deny_unknown_fields)]
 struct OrbitKeys {
     semi_major_axis: Option<Positive>,
+    altitude: Option<Positive>,
+    ltan: Option<LocalTime>,
     eccentricity: Option<NonNegative>,
     inclination: Option<Finite>,
     node: Option<Finite>,
@@ -60,9 +66,10 @@ impl JsonSchema for OrbitKind {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let kepler = generator.subschema_for::<Kepler>();
+        let altitude = generator.subschema_for::<AltitudeOrbit>();
         let two_lines = generator.subschema_for::<TwoLineOrbit>();
         let ephemeris = generator.subschema_for::<EphemerisOrbit>();
-        json_schema!({ "anyOf": [kepler, two_lines, ephemeris] })
+        json_schema!({ "anyOf": [kepler, altitude, two_lines, ephemeris] })
     }
 }
 
@@ -74,6 +81,8 @@ impl TryFrom<OrbitKeys> for OrbitKind {
         let planet_radius = keys.planet_radius.unwrap_or_else(earth_radius);
         let elements = [
             ("semi_major_axis", keys.semi_major_axis.is_some()),
+            ("altitude", keys.altitude.is_some()),
+            ("ltan", keys.ltan.is_some()),
             ("eccentricity", keys.eccentricity.is_some()),
             ("inclination", keys.inclination.is_some()),
             ("node", keys.node.is_some()),
@@ -98,6 +107,15 @@ impl TryFrom<OrbitKeys> for OrbitKind {
             (_, None, Some(ephemeris), None) => {
                 Ok(Self::Ephemeris(EphemerisOrbit::new(ephemeris, keys.frame, gravity, planet_radius)))
             }
+            (Some(_), None, None, _) if keys.altitude.is_some() => {
+                Err("has `semi_major_axis` and `altitude`: one follows from the other".to_owned())
+            }
+            (Some(_), None, None, _) if keys.ltan.is_some() => {
+                Err("has `semi_major_axis` and `ltan`: a local time of the node goes with an `altitude`".to_owned())
+            }
+            (None, None, None, _) if keys.ltan.is_some() && keys.node.is_some() => {
+                Err("has `node` and `ltan`: one follows from the other".to_owned())
+            }
             (Some(semi_major_axis), None, None, _) => Ok(Self::Kepler(Kepler {
                 semi_major_axis,
                 eccentricity: keys.eccentricity.unwrap_or_default(),
@@ -109,8 +127,20 @@ impl TryFrom<OrbitKeys> for OrbitKind {
                 planet_radius,
                 j2: keys.j2.unwrap_or_default(),
             })),
+            (None, None, None, _) if keys.altitude.is_some() => Ok(Self::Altitude(AltitudeOrbit {
+                altitude: keys.altitude.unwrap_or(Positive::ONE),
+                ltan: keys.ltan,
+                eccentricity: keys.eccentricity.unwrap_or_default(),
+                inclination: keys.inclination,
+                node: keys.node,
+                perigee: keys.perigee.unwrap_or_default(),
+                anomaly: keys.anomaly.unwrap_or_default(),
+                gravity,
+                planet_radius,
+                j2: keys.j2,
+            })),
             (None, None, None, _) => {
-                Err("must have a `semi_major_axis`, for Kepler elements, a `tle` or an `ephemeris`"
+                Err("must have a `semi_major_axis` or an `altitude`, for Kepler elements, a `tle` or an `ephemeris`"
                     .to_owned())
             }
         }
@@ -141,7 +171,7 @@ impl OrbitKind {
     /// first row of an ephemeris with dates.
     pub fn epoch_ns(&self) -> Option<u64> {
         match self {
-            Self::Kepler(_) => None,
+            Self::Kepler(_) | Self::Altitude(_) => None,
             Self::TwoLines(orbit) => orbit.epoch_ns(),
             Self::Ephemeris(orbit) => orbit.ephemeris.epoch_ns(),
         }
@@ -151,6 +181,7 @@ impl OrbitKind {
     pub(super) fn fault(&self) -> Option<ConfigError> {
         match self {
             Self::Kepler(orbit) => orbit.fault(),
+            Self::Altitude(orbit) => orbit.fault(),
             Self::TwoLines(orbit) => orbit.fault(),
             Self::Ephemeris(orbit) => orbit.fault(),
         }
@@ -161,6 +192,7 @@ impl OrbitKind {
     pub(super) fn run_fault(&self, duration: f64, epoch_ns: Option<u64>) -> Option<ConfigError> {
         let (key, radius, checked) = match self {
             Self::Kepler(_) => return None,
+            Self::Altitude(orbit) => return orbit.date_fault(epoch_ns),
             Self::TwoLines(orbit) => {
                 ("tle", orbit.planet_radius, orbit.run_path(duration, epoch_ns.unwrap_or_default()))
             }
@@ -181,7 +213,7 @@ impl OrbitKind {
     /// known, and probably not meant: a key within the orbit, and the reason.
     pub fn remarks(&self, duration: f64, epoch_ns: Option<u64>) -> Vec<ConfigError> {
         match self {
-            Self::Kepler(_) => Vec::new(),
+            Self::Kepler(_) | Self::Altitude(_) => Vec::new(),
             Self::TwoLines(orbit) => orbit.remarks(duration, epoch_ns),
             Self::Ephemeris(orbit) => orbit.remarks(duration, epoch_ns),
         }
@@ -191,7 +223,7 @@ impl OrbitKind {
     /// in others.
     pub fn frame(&self) -> CelestialFrame {
         match self {
-            Self::Kepler(_) => CelestialFrame::Mod,
+            Self::Kepler(_) | Self::Altitude(_) => CelestialFrame::Mod,
             Self::TwoLines(_) => CelestialFrame::Teme,
             Self::Ephemeris(orbit) => orbit.run_frame(),
         }
@@ -201,13 +233,18 @@ impl OrbitKind {
     pub fn path(&self, duration: f64, epoch_ns: Option<u64>) -> Option<OrbitPath> {
         match self {
             Self::Kepler(orbit) => Some(OrbitPath::Kepler(*orbit)),
+            Self::Altitude(orbit) => Some(OrbitPath::Kepler(orbit.kepler(epoch_ns))),
             Self::TwoLines(orbit) => orbit.path(duration, epoch_ns?).map(OrbitPath::Sampled),
             Self::Ephemeris(orbit) => orbit.path(epoch_ns).map(OrbitPath::Sampled),
         }
     }
 
-    /// Returns the Kepler elements, if the orbit has them.
-    pub fn kepler(&self) -> Option<&Kepler> {
-        if let Self::Kepler(orbit) = self { Some(orbit) } else { None }
+    /// Returns the Kepler elements, if the orbit has them; of one with a local time of its node, without the node.
+    pub fn kepler(&self) -> Option<Kepler> {
+        match self {
+            Self::Kepler(orbit) => Some(*orbit),
+            Self::Altitude(orbit) => Some(orbit.kepler(None)),
+            Self::TwoLines(_) | Self::Ephemeris(_) => None,
+        }
     }
 }

@@ -1,0 +1,127 @@
+//! `flexsc compare`: two scenarios or logs, the keys in which they differ, and their answers side by side.
+
+use std::ffi::OsStr;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::Scenario;
+use flexsc_core::answer::{Answer, KeyDifference, RunComparison, RunObserver};
+use flexsc_core::record::{Detail, Log};
+use serde_json::json;
+
+use crate::answer::screen_options;
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
+use crate::human::UnitsArgs;
+use crate::results::print_lines;
+use crate::{memory_log, plot, say, scenario};
+
+#[derive(clap::Args)]
+pub struct CompareArgs {
+    /// Two scenarios or logs; a scenario is run, and the run of a log is repeated
+    #[arg(required = true, num_args = 2, value_names = ["A", "B"])]
+    sides: Vec<PathBuf>,
+    /// Set a key of both scenarios, such as duration=200; not for logs
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Print every key and every line that differs
+    #[arg(long)]
+    all: bool,
+    /// Print one JSON object to stdout
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
+    drawing: FigureOutput,
+    #[command(flatten)]
+    consent: CostConfirmation,
+}
+
+/// Side of a comparison.
+struct ComparedRun {
+    scenario: Scenario,
+    answer: Answer,
+    /// Log for the figures, if they are drawn.
+    log: Log,
+}
+
+pub fn run(args: &CompareArgs) -> Result<(), CliError> {
+    let [first, second] = &args.sides[..] else {
+        return Err(CliError::Arguments("takes two scenarios or logs".to_owned()));
+    };
+    for side in [first, second] {
+        args.drawing.check(side)?;
+        if side.is_dir() {
+            let why = "is a directory; compare takes scenarios (.toml) and logs (.mcap)";
+            return Err(CliError::Arguments(format!("{}: {why}", side.display())));
+        }
+        if is_log(side) && !args.set.is_empty() {
+            let why = format!("--set: {} is a log, whose keys cannot be set", side.display());
+            return Err(CliError::Arguments(why));
+        }
+    }
+    // Both are read before one is run.
+    let sources = [source(first, args)?, source(second, args)?];
+    let [first_run, second_run] = sources;
+    let runs = [first_run.compared(args)?, second_run.compared(args)?];
+    if args.drawing.figures.is_some() {
+        let logs = [(first, &runs[0].log), (second, &runs[1].log)];
+        let figures = plot::overlaid_logs(logs.map(|(path, log)| (path.as_path(), log)))?;
+        let [a, b] = [first, second].map(|path| path.file_stem().unwrap_or_default().to_string_lossy());
+        let named = figures.into_iter().map(|(kind, figure)| (format!("{a}-{b}-{kind}"), figure));
+        args.drawing.save(|| named.collect())?;
+    }
+    let scenarios = runs.each_ref().map(|run| &run.scenario);
+    let keys = KeyDifference::between(scenarios, args.units.units.into());
+    let names = [first, second].map(|path| path.display().to_string());
+    let comparison = RunComparison { names, keys, answers: runs.map(|run| run.answer) };
+    if args.json {
+        return print_lines(&[json!(comparison)]);
+    }
+    say!("{}", comparison.screen(screen_options(args.units, args.all)));
+    Ok(())
+}
+
+/// Run that is to be compared, read and not yet made.
+enum ComparedSource {
+    Scenario(PathBuf, Box<Scenario>),
+    Log(PathBuf, Box<Log>),
+}
+
+fn is_log(path: &Path) -> bool {
+    path.extension() == Some(OsStr::new("mcap"))
+}
+
+fn source(path: &Path, args: &CompareArgs) -> Result<ComparedSource, CliError> {
+    if is_log(path) {
+        return Ok(ComparedSource::Log(path.to_owned(), Box::new(Log::open(path)?)));
+    }
+    let scenario = scenario::load(path, &args.set, None)?;
+    args.consent.check(&scenario.cost(None, false))?;
+    Ok(ComparedSource::Scenario(path.to_owned(), Box::new(scenario)))
+}
+
+impl ComparedSource {
+    /// Runs a scenario, or repeats the run of a log.
+    fn compared(self, args: &CompareArgs) -> Result<ComparedRun, CliError> {
+        let units = args.units.units.into();
+        match self {
+            Self::Scenario(path, scenario) => {
+                let mut observer = RunObserver::new(&scenario);
+                let detail = if args.drawing.figures.is_some() { Detail::Full } else { Detail::Events };
+                let (log, metrics) = memory_log::observed(*scenario.clone(), &path, detail, &mut observer)?;
+                let answer = Answer::new(&scenario, &metrics, Some(&observer.finish()), units);
+                Ok(ComparedRun { scenario: *scenario, answer, log })
+            }
+            Self::Log(path, log) => {
+                let story = plot::RunEvents::read(&log, &path, None)?;
+                let mut observer = RunObserver::new(&story.scenario);
+                let metrics = story.repeat(&log, &path, "an answer", &mut observer)?;
+                let answer = Answer::new(&story.scenario, &metrics, Some(&observer.finish()), units);
+                Ok(ComparedRun { scenario: story.scenario, answer, log: *log })
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! `flexsc compare`: the keys in which two scenarios differ, both answers, and curves one over the other.
+
+use serde_json::Value as Json;
+
+use crate::util::Dir;
+
+/// A log, and a scenario that differs from its own in one gain.
+fn log_and_other() -> Dir {
+    let dir = Dir::with(&["attitude-hold"]);
+    dir.run("simulate attitude-hold.toml --set duration=20").exits(0);
+    let text = dir.text("attitude-hold.toml");
+    let other = text.replacen("k_p = 36.0", "k_p = \"30 N m/rad\"", 1).replacen("200.0", "20.0", 1);
+    assert_ne!(text, other);
+    dir.write("softer.toml", &other);
+    dir
+}
+
+#[test]
+fn keys_that_differ_and_both_answers() {
+    let dir = log_and_other();
+    let ran = dir.run("compare attitude-hold.mcap softer.toml").exits(0);
+    let rows: Vec<&str> = ran.err.lines().map(str::trim).filter(|line| line.starts_with("law.")).collect();
+    let words: Vec<&str> = rows[0].split_whitespace().collect();
+    assert_eq!(words, ["law.per_axis.roll.pd.k_p", "36", "N", "m/rad", "30", "N", "m/rad"]);
+    assert_eq!(rows.len(), 1, "{}", ran.err);
+    // Each side is answered as `simulate` answers.
+    for (side, line) in [
+        ("A  18 to 20 s", "simulate attitude-hold.toml --set duration=20 --log none --all"),
+        ("B  18 to 20 s", "simulate softer.toml --log none --all"),
+    ] {
+        let alone = dir.run(line).exits(0);
+        let pointing = alone.err.lines().find(|line| line.trim().starts_with("pointing ")).expect("a line");
+        let (_, text) = pointing.split_once("18 to 20 s").expect("the last tenth");
+        assert!(ran.err.contains(&format!("{side}{text}")), "{side}{text}: {}", ran.err);
+    }
+    let printed = dir.run("compare attitude-hold.mcap softer.toml --json").exits(0).out;
+    let json: Json = serde_json::from_str(&printed).expect("an object");
+    assert_eq!(json["keys"][0]["values"], serde_json::json!([36.0, 30.0]));
+    assert_eq!(json["answers"][1]["schema"], "flexsc-answer-1");
+}
+
+#[test]
+fn a_run_is_the_same_as_that_of_its_log() {
+    for (name, set) in [
+        ("relay-adaptive", "duration=2000"),
+        ("wheel-ekf", "duration=60"),
+        ("rotation-robust", "duration=20"),
+        ("earth-observer", "duration=60"),
+    ] {
+        let dir = Dir::with(&[name]);
+        dir.run(&format!("simulate {name}.toml --set {set} -o first.mcap")).exits(0);
+        dir.run(&format!("simulate {name}.toml --set {set} -o second.mcap --log full")).exits(0);
+        let printed = dir.run("compare first.mcap second.mcap --json").exits(0).out;
+        let json: Json = serde_json::from_str(&printed).expect("an object");
+        assert_eq!(json["keys"], serde_json::json!([]), "{name}");
+        assert_eq!(json["answers"][0], json["answers"][1], "{name}");
+    }
+}
+
+#[test]
+fn curves_lie_one_over_the_other() {
+    let dir = log_and_other();
+    dir.run("compare attitude-hold.mcap softer.toml -o both --format svg").exits(0);
+    let figure = dir.text("both/attitude-hold-softer-pointing.svg");
+    assert!(figure.contains("attitude-hold") && figure.contains("softer"), "{figure}");
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let dir = log_and_other();
+    std::fs::create_dir(dir.path("empty")).expect("a directory");
+    for (line, told) in [
+        ("attitude-hold.mcap", "2 values required"),
+        ("attitude-hold.mcap softer.toml --set seed=2", "keys cannot be set"),
+        ("attitude-hold.toml missing.toml", "missing.toml"),
+        ("empty softer.toml", "is a directory"),
+        ("softer.toml softer.toml -o softer.toml", "softer.toml"),
+    ] {
+        dir.run(&format!("compare {line}")).exits(2).says(&[told]);
+    }
+}
