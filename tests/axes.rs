@@ -159,6 +159,10 @@ fn each_axis_moves_as_in_scipy() {
         golden("../axes").iter().map(|row| [0, 1, 2].map(|at| row[at].parse().expect("a number"))).collect();
     let times: Vec<f64> = table[..4].iter().map(|row| row[1]).collect();
     let three = of_three(&together(FILTERED, 1e-7), &times);
+    // A command that waits gives the same torque whether a wheel is named by its axis or belongs to an array.
+    let array = "[actuator.wheels]\narrangement = \"orthogonal\"\ninertia = 1e-3\ndelay = 0.1\n";
+    let array = FILTERED.replace("[actuator.wheel]\ngain = 1.0\ndelay = 0.1\n", array);
+    let arrayed = of_three(&together(&array, 1e-7), &times);
     for (axis, rows) in table.chunks(4).enumerate() {
         let one = of_one(&alone(axis, FILTERED, 1.0), &times);
         for (at, [_, time, exact]) in rows.iter().enumerate() {
@@ -166,6 +170,8 @@ fn each_axis_moves_as_in_scipy() {
             assert!(error.abs() < 1e-11, "{axis} at {time} s: {error:e}");
             let error = three[at].0[axis] - 1e-7 * exact;
             assert!(error.abs() < 2e-14, "{axis} of three at {time} s: {error:e}");
+            let error = arrayed[at].0[axis] - 1e-7 * exact;
+            assert!(error.abs() < 2e-14, "{axis} of wheels at {time} s: {error:e}");
         }
     }
 }

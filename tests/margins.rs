@@ -381,3 +381,28 @@ fn a_compensator_without_states_has_the_margins_of_an_attitude_law() {
     assert_eq!(margins("site-pass"), margins("other"));
     assert_eq!(margins("unread"), margins("other"));
 }
+
+/// A delay of reaction wheels takes as much from the delay that the loop tolerates, and no more.
+#[test]
+fn a_delay_of_wheels_is_taken_from_the_delay_that_is_left() {
+    let dir = Dir::with(&["attitude-hold"]);
+    let text = dir.text("attitude-hold.toml");
+    let (before, rest) = text.split_once("[actuator.wheel]").expect("a wheel");
+    let (_, after) = rest.split_once("[[disturbance]]").expect("a disturbance");
+    let left = |delay: f64| {
+        let wheels = format!("[actuator.wheels]\narrangement = \"orthogonal\"\ninertia = 0.1\ndelay = {delay}\n");
+        dir.write("late.toml", &format!("{before}{wheels}[[disturbance]]{after}"));
+        let json: serde_json::Value =
+            serde_json::from_str(&dir.run("margins late.toml --json").exits(0).out).expect("an object");
+        (json["spectral_radius"].as_f64().expect("a radius"), json["common_delay_s"].as_f64())
+    };
+    let (_, most) = left(0.0);
+    let most = most.expect("a delay");
+    // Within a period, a whole one, and beyond two.
+    for delay in [0.13, 0.2, 0.55] {
+        let (radius, rest) = left(delay);
+        let error = rest.expect("a delay") - (most - delay);
+        assert!(radius < 1.0 && error.abs() < 1e-9, "{delay}: {error:e}");
+    }
+    assert!(left(most - 1e-3).0 < 1.0 && left(most + 1e-3).0 > 1.0);
+}

@@ -1,7 +1,7 @@
 //! Estimate of time, memory and disk space before a computation: infeasible scenarios are rejected, expensive ones need
 //! a confirmation.
 
-use flexsc_control::actuator::{ActuatorTask, UnloadingTask};
+use flexsc_control::actuator::{ActuatorTask, AssignedMember, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::Relay;
 use flexsc_dynamics::axis_model::AxisModel;
@@ -179,8 +179,11 @@ impl Scenario {
                 return Some(ConfigError::new(self.body_key(), why));
             }
         }
-        if let (Some((wheel, key)), Some(period)) = (self.actuator.flywheel(), self.decided_every()) {
-            let waiting = wheel.delay.get().min(self.duration.seconds()) / period.seconds();
+        let delay = |member: AssignedMember<'_>| Some((member.kind.command_response()?.delay, member.key));
+        let longest =
+            self.actuator.members().into_iter().filter_map(delay).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let (Some((delay, key)), Some(period)) = (longest, self.decided_every()) {
+            let waiting = delay.min(self.duration.seconds()) / period.seconds();
             if waiting > MOST_WAITING {
                 let why = format!(
                     "keeps {} commands waiting, one every {} s: at most {} are supported",

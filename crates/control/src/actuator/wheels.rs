@@ -5,7 +5,7 @@ use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_spacecraft::body::craft::HubRotor;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,9 @@ pub struct Wheels {
     /// Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no limit by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_limit: Option<Positive>,
+    /// Time from a command of the law to the torques of the motors (s), as computation and data bus take it.
+    #[serde(default, skip_serializing_if = "is_immediate")]
+    pub delay: Time,
     /// Speed of each wheel at the start, relative to the body (rad/s); default: 0.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub speeds: Vec<Finite>,
@@ -73,6 +76,11 @@ pub struct Wheels {
     /// Intervals in which the motors fail: all, or the `wheel` of a number from 1.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_immediate(delay: &Time) -> bool {
+    *delay == Time::default()
 }
 
 /// Friction of the wheels as the drives model it.
@@ -121,13 +129,14 @@ impl ActuatorSpec for Wheels {
     fn authority(&self, axis: usize, inertia: f64, on: &ActuatorPlacement<'_>) -> ActuatorAuthority {
         let limit = self.torque.map_or(f64::INFINITY, Positive::get);
         let most = on.wheels.map_or(f64::INFINITY, |wheels| wheels.largest_torque(axis, limit));
-        ActuatorAuthority::constant(most / inertia)
+        ActuatorAuthority { delay: self.delay.get(), ..ActuatorAuthority::constant(most / inertia) }
     }
 
     fn offers(&self) -> ActuatorOffers {
         let limit = self.torque.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
         ActuatorOffers {
             limits: [limit; 3],
+            is_delayed: self.delay.get() > 0.0,
             has_reaction_wheels: true,
             wheels: self.directions().map_or(0, |axes| axes.len()),
             has_wheel_speeds: true,
@@ -163,7 +172,7 @@ impl ActuatorSpec for Wheels {
     }
 
     fn command_response(&self) -> Option<CommandResponse> {
-        Some(CommandResponse { gain: 1.0, delay: 0.0 })
+        Some(CommandResponse { gain: 1.0, delay: self.delay.get() })
     }
 }
 

@@ -4,6 +4,8 @@
 //! whatever the motion of the body (Euler's third equation of a rotor). So it is known exactly at every instant, and
 //! with it the time at which it reaches its limit. The speed Omega also depends on the body's rate.
 
+use std::collections::VecDeque;
+
 use flexsc_dynamics::three_axis::{Rotor, RotorObservation};
 use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
@@ -38,6 +40,9 @@ pub struct WheelsState {
     /// Torque on the body that laws demand, and torque of other sources that the wheels counteract (N m).
     demanded: Vector,
     against: Vector,
+    /// Time from a command to its execution, and commands that wait for it (N m).
+    delay: Span,
+    waiting: VecDeque<(Instant, Vector)>,
     wheels: Vec<WheelState>,
     /// Time from which on the wheels' momenta are propagated.
     since: Instant,
@@ -93,6 +98,8 @@ impl WheelsState {
             settings: settings.to_vec(),
             demanded: Vector::zeros(),
             against: Vector::zeros(),
+            delay: Span::from_seconds(wheels.delay.get()),
+            waiting: VecDeque::new(),
             since: Instant::START,
             observations: Vec::new(),
             tachometer: None,
@@ -244,6 +251,12 @@ impl WheelsState {
     /// compensation follows.
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         self.fail(now, &rigid.into());
+        while let Some((due, demanded)) = self.waiting.front().copied()
+            && due <= now
+        {
+            self.waiting.pop_front();
+            self.execute(now, demanded, rigid);
+        }
         let observations = self.observations.iter().map(|wheel| [wheel.angle, wheel.speed]);
         if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
             tachometer.read(now, observations);
@@ -268,6 +281,13 @@ impl WheelsState {
         }
     }
 
+    /// Gives the body a torque (N m) from now on.
+    fn execute(&mut self, now: Instant, demanded: Vector, rigid: [f64; 3]) {
+        self.turn(now);
+        self.demanded = demanded;
+        self.drive_all(now, &rigid.into());
+    }
+
     /// Returns the torque held about an axis (N m).
     fn held_torque(&self, axis: usize) -> f64 {
         let wheels = self.allocation.axes().iter().zip(&self.wheels);
@@ -277,11 +297,15 @@ impl WheelsState {
 
 impl Actuator for WheelsState {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
-        self.turn(now);
+        let mut demanded = self.waiting.back().map_or(self.demanded, |(_, last)| *last);
         for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.demanded[axis] = setting.demanded_torque(demand);
+            demanded[axis] = setting.demanded_torque(demand);
         }
-        self.drive_all(now, &rigid.into());
+        if self.delay > Span::ZERO {
+            self.waiting.push_back((now + self.delay, demanded));
+        } else {
+            self.execute(now, demanded, rigid);
+        }
     }
 
     fn apply(&self, now: Instant, onto: &mut Wrench) {

@@ -51,7 +51,8 @@ impl Part for WheelsState {
     fn due(&self) -> Option<Instant> {
         let read = self.tachometer.as_ref().map(TachometerState::due);
         let failing = self.failing.iter().flatten().filter_map(ActiveFailures::due);
-        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).min()
+        let waiting = self.waiting.front().map(|(due, _)| *due);
+        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).chain(waiting).min()
     }
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
