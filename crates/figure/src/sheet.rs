@@ -15,7 +15,8 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     if let [only] = figures[..] {
         return only.laid_out(style);
     }
-    let heights: Vec<u32> = figures.iter().map(|figure| draw::height(figure, across)).collect();
+    let heights: Vec<u32> =
+        figures.iter().map(|figure| draw::height(figure, across, style.is_titled())).collect();
     let (width, height, columns) = columns(&heights, across);
     let mut sheet = format!(
         "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -29,7 +30,8 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
         let plots = own.iter().map(|(figure, _)| figure.panels.len() as u32).sum::<u32>().max(1);
         let (x, higher, mut y) = (column as u32 * across, missing / plots, 0);
         for (figure, height) in own {
-            let svg = draw::svg(figure, across, higher).map_err(|error| error.to_string())?;
+            let svg =
+                draw::svg(figure, across, higher, style.is_titled()).map_err(|error| error.to_string())?;
             sheet.push_str(&svg.replacen("<svg ", &format!("<svg x=\"{x}\" y=\"{y}\" "), 1));
             y += height + higher * figure.panels.len() as u32;
         }
