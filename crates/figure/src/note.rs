@@ -30,7 +30,8 @@ pub struct PlotBox {
 
 /// Size of the letters, and distance of a note from its point (px).
 const LETTERS: f64 = 10.5;
-const DISTANCE: f64 = 4.0;
+const DISTANCE: f64 = 5.0;
+const BESIDE: f64 = 8.0;
 const HEIGHT: f64 = 13.0;
 /// Opacity of the ground under the words.
 const GROUND: f64 = 0.8;
@@ -45,13 +46,29 @@ pub fn draw<'a>(
     for (note, (x, y)) in notes {
         let width = wide(&note.text, LETTERS) + 4.0;
         let left = (x - width / 2.0).min(plot.right - width - 1.0).max(plot.left + 1.0);
-        let boxed = |top: f64| PlotBox { left, top, right: left + width, bottom: top + HEIGHT };
-        let above = y - DISTANCE - HEIGHT;
-        let places = [above, y + DISTANCE, above - HEIGHT, y + DISTANCE + HEIGHT].map(boxed);
-        let inside = |place: &&PlotBox| place.top >= plot.top && place.bottom <= plot.bottom;
+        let boxed =
+            |(left, top): (f64, f64)| PlotBox { left, top, right: left + width, bottom: top + HEIGHT };
+        let (above, below, beside) = (y - DISTANCE - HEIGHT, y + DISTANCE, y - HEIGHT / 2.0);
+        let (right, before) = (x + BESIDE, x - BESIDE - width);
+        let places = [
+            (left, above),
+            (right, beside),
+            (before, beside),
+            (left, below),
+            (left, above - HEIGHT),
+            (left, below + HEIGHT),
+        ];
+        let places = places.map(boxed);
+        let inside = |place: &&PlotBox| {
+            place.top >= plot.top
+                && place.bottom <= plot.bottom
+                && place.left >= plot.left
+                && place.right <= plot.right
+        };
         let free = |place: &&PlotBox| !taken.iter().any(|other| place.covers(other));
         let place = places.iter().filter(inside).find(free).or(places.iter().find(inside)).copied();
-        let place = place.unwrap_or(boxed(above.clamp(plot.top, (plot.bottom - HEIGHT).max(plot.top))));
+        let place =
+            place.unwrap_or(boxed((left, above.clamp(plot.top, (plot.bottom - HEIGHT).max(plot.top)))));
         let at =
             |x: f64, y: f64| ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32);
         let corners = [
