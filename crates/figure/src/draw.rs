@@ -13,7 +13,7 @@ use crate::layout::{
     LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, split, wide,
 };
 use crate::line::{Point, Window, pieces, straighten, thin};
-use crate::note::{self, PlotBox};
+use crate::note::{self, Note, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
 use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
 
@@ -138,7 +138,9 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
         let (x, y) = plot.place((panel.x.place(x), panel.y.place(y)));
         (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
     };
-    let notes = panel.notes.iter().map(|note| (note, pixels(note.at.0, note.at.1)));
+    let end = panel.x.range.end;
+    let abscissa = |note: &Note| if note.at.0 == f64::INFINITY { end } else { note.at.0 };
+    let notes = panel.notes.iter().map(|note| (note, pixels(abscissa(note), note.at.1)));
     let shown = notes.filter(|(_, (x, _))| (left - 1.0..=right + 1.0).contains(x));
     note::draw(area, shown, PlotBox { left, top, right, bottom })
 }
@@ -173,7 +175,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     // A long name has two lines.
     let (name, room) = (up.label(), f64::from(plot.height + NUMBERS));
     let lines = if wide(&name, SMALLEST) > room { halves(&name) } else { vec![name] };
-    let first = if lines.len() > 1 { plot.left - 64 } else { plot.left - 56 };
+    let first = if lines.len() > 1 { plot.left - 63 } else { plot.left - 60 };
     for (index, line) in lines.iter().enumerate() {
         let size = fitting(line, room, 12.0);
         let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);

@@ -13,7 +13,7 @@ use crate::svg::{Area, Error, UNITS, text};
 pub struct Note {
     /// Words.
     pub text: String,
-    /// Point, above or below which they are.
+    /// Point, beside which they are; an infinite abscissa is the right end of the panel.
     pub at: Point,
     /// Colour.
     pub colour: RGBColor,

@@ -56,7 +56,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let unit = y.reader_unit();
         let note = |limit: f64| Note {
             text: format!("limit {}", unit.quantity(limit)),
-            at: (story.end, limit),
+            at: (f64::INFINITY, limit),
             colour: colour::RED,
         };
         Panel { notes: limit.map(note).into_iter().collect(), ..Panel::new(x, y, layers) }
