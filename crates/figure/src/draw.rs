@@ -10,7 +10,7 @@ use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
 use crate::layout::{
-    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, split, wide,
+    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, split, ticks_upward, wide,
 };
 use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::note::{self, Note, PlotBox};
@@ -159,7 +159,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
         area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
-    let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
+    let ticks = up.ticks(ticks_upward(plot.height));
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
@@ -175,7 +175,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     // A long name has two lines.
     let (name, room) = (up.label(), f64::from(plot.height + NUMBERS));
     let lines = if wide(&name, SMALLEST) > room { halves(&name) } else { vec![name] };
-    let first = if lines.len() > 1 { plot.left - 63 } else { plot.left - 60 };
+    let first = if lines.len() > 1 { 7 } else { plot.left.saturating_sub(60).clamp(10, 14) };
     for (index, line) in lines.iter().enumerate() {
         let size = fitting(line, room, 12.0);
         let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);

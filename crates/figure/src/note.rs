@@ -4,6 +4,7 @@ use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor, WHITE};
 
+use crate::colour;
 use crate::layout::wide;
 use crate::line::Point;
 use crate::svg::{Area, Error, UNITS, text};
@@ -59,8 +60,11 @@ pub fn draw<'a>(
             (left, below + HEIGHT),
         ];
         let places = places.map(boxed);
+        // The words of a limit are not on its line.
+        let is_limit = note.colour == colour::RED;
         let inside = |place: &&PlotBox| {
-            place.top >= plot.top
+            !(is_limit && place.top == beside)
+                && place.top >= plot.top
                 && place.bottom <= plot.bottom
                 && place.left >= plot.left
                 && place.right <= plot.right
