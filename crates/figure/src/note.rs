@@ -82,7 +82,7 @@ pub fn draw<'a>(
             at(place.left, place.bottom),
         ];
         area.draw(&Polygon::new(corners, WHITE.mix(GROUND).filled()))?;
-        let middle = at((place.left + place.right) / 2.0, (place.top + place.bottom) / 2.0);
+        let middle = at(f64::midpoint(place.left, place.right), f64::midpoint(place.top, place.bottom));
         let style = text(LETTERS, HPos::Center, VPos::Center).color(&note.colour);
         area.draw_text(&note.text, &style, middle)?;
         taken.push(place);
