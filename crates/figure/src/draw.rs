@@ -9,121 +9,45 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
+use crate::layout::{
+    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, split, ticks_upward, wide,
+};
 use crate::line::{Point, Window, pieces, straighten, thin};
+use crate::note::{self, Note, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
-use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour};
+use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
 
-/// Width of a figure whose panels have their nominal height (px).
-const WIDTH: u32 = 800;
-/// Margins left and right of a panel's plot (px).
-const LEFT: u32 = 70;
-const RIGHT: u32 = 20;
-/// Margins below the plot, for numbers and for the name of the axis (px).
-const NUMBERS: u32 = 24;
-const NAME: u32 = 18;
-/// Heights of the title, of each further line of it, of a legend, and of each further row of it (px).
+/// Height of a title, and of each further line of it (px).
 const TITLE: u32 = 30;
 const LINE: u32 = 17;
-const LEGEND: u32 = 22;
-const ROW: u32 = 16;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-/// Layout of a figure.
-#[derive(Copy, Clone)]
-struct Layout {
-    /// Width of the figure (px).
-    width: u32,
-    /// Height of each plot (px).
-    plot: u32,
-}
-
-impl Layout {
-    /// The layout of a figure of this width, each of whose plots is higher than usual (px).
-    fn new(figure: &Figure, width: u32, higher: u32) -> Self {
-        let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
-        // Narrow figures are also lower, but less than proportionally.
-        let plot = f64::from(figure.panel_height) * part.powf(0.6);
-        Self { width, plot: plot.round() as u32 + higher }
-    }
-
-    /// Returns the height (px) of a figure with a title of `lines` lines.
-    fn height(self, figure: &Figure, lines: usize) -> u32 {
-        let title = TITLE + LINE * (lines.max(1) as u32 - 1);
-        title + figure.panels.iter().map(|panel| self.panel(panel)).sum::<u32>()
-    }
-
-    /// Returns the width of a plot (px).
-    fn across(self) -> u32 {
-        self.width - LEFT - RIGHT
-    }
-
-    /// Returns the height of a panel's legend (px).
-    fn legend(self, panel: &Panel) -> u32 {
-        LEGEND + ROW * self.entries(panel).last().map_or(0, |(_, (row, _))| *row)
-    }
-
-    /// Returns the layers in the legend, each with its row and the left end of its entry (px).
-    fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
-        let (mut row, mut column) = (0, LEFT);
-        let mut entries = Vec::new();
-        for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && layer.is_shown(panel)) {
-            let wide = 23 + letters(&layer.name);
-            if column > LEFT && column + wide > self.width {
-                (row, column) = (row + 1, LEFT);
-            }
-            entries.push((layer, (row, column)));
-            column += wide + 16;
-        }
-        entries
-    }
-
-    /// Returns the height of a panel including all around its plot (px).
-    fn panel(self, panel: &Panel) -> u32 {
-        let name = if panel.x.name.is_empty() { 0 } else { NAME };
-        bar_height(panel) + self.legend(panel) + self.plot + NUMBERS + name
-    }
-}
-
-/// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's
-/// size wide.
-fn letters(text: &str) -> u32 {
-    text.chars().count() as u32 * 62 / 10
-}
-
-/// Returns the font size, at most `most` (px), at which a text fits into `room` (px): a letter is about 0.57 of it
-/// wide.
-fn fitting(text: &str, room: f64, most: f64) -> f64 {
-    (room / (0.57 * text.chars().count() as f64)).min(most)
-}
-
-/// Splits a title between words into lines of legible size, the first as long as possible.
+/// Splits a title between words into lines of legible size.
 fn title_lines(title: &str, width: u32) -> Vec<String> {
-    let room = f64::from(width - 20);
-    let smallest = 11.0;
-    let mut lines: Vec<String> = Vec::new();
-    for word in title.split(' ') {
-        match lines.last_mut() {
-            Some(line) if fitting(&format!("{line} {word}"), room, 14.0) >= smallest => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
+    split(title, |line| wide(line, 11.0) <= f64::from(width - 20))
+}
+
+/// Returns the height of a title of lines (px).
+fn title_height(lines: &[String]) -> u32 {
+    if lines.is_empty() { 0 } else { TITLE + LINE * (lines.len() as u32 - 1) }
+}
+
+/// Returns the lines of the title that a figure of this width (px) shows.
+fn shown_title(figure: &Figure, width: u32, is_titled: bool) -> Vec<String> {
+    if is_titled && !figure.title.is_empty() { title_lines(&figure.title, width) } else { Vec::new() }
 }
 
 /// Returns the height (px) of a figure of this width (px).
-pub fn height(figure: &Figure, width: u32) -> u32 {
-    Layout::new(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
+pub fn height(figure: &Figure, width: u32, is_titled: bool) -> u32 {
+    Layout::new(figure, width, 0).height(figure) + title_height(&shown_title(figure, width, is_titled))
 }
 
-/// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px).
-pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
+/// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px), with its title or without.
+pub fn svg(figure: &Figure, width: u32, higher: u32, is_titled: bool) -> Result<String, Error> {
     let layout = Layout::new(figure, width, higher);
-    let lines = title_lines(&figure.title, width);
-    let title = TITLE + LINE * (lines.len().max(1) as u32 - 1);
-    let height = layout.height(figure, lines.len());
+    let lines = shown_title(figure, width, is_titled);
+    let title = title_height(&lines);
+    let height = layout.height(figure) + title;
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (width * UNITS, height * UNITS)).into_drawing_area();
@@ -140,8 +64,9 @@ pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
             let (area, below) = rest.split_vertically(layout.panel(panel) * UNITS);
             let (key, area) = area.split_vertically(bar_height(panel) * UNITS);
             if let Some(bar) = &panel.bar {
-                bar::draw(&key, bar, LEFT, layout.across())?;
+                bar::draw(&key, bar, layout.left, layout.across())?;
             }
+            strip::draw(&area, panel, layout)?;
             draw_legend(&area, panel, layout)?;
             draw_panel(&area, (panel, y), layout)?;
             rest = below;
@@ -154,13 +79,11 @@ pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
     Ok(svg.replacen(&fine, &size, 1))
 }
 
-fn bar_height(panel: &Panel) -> u32 {
-    if panel.bar.is_some() { bar::HEIGHT } else { 0 }
-}
-
 /// Plot of a panel: the mapping from axis places to a rectangle of the backend.
 struct Plot {
     window: Window,
+    /// Distance from the left end of the figure to the plot (px).
+    left: u32,
     /// Distance from the top of the panel to the plot, width and height of the plot (px).
     top: u32,
     across: u32,
@@ -171,7 +94,7 @@ impl Plot {
     /// Returns the backend's coordinates of a point.
     fn place(&self, (x, y): Point) -> (i32, i32) {
         let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
-        let x = f64::from(LEFT) + part(x, &self.window.x) * f64::from(self.across);
+        let x = f64::from(self.left) + part(x, &self.window.x) * f64::from(self.across);
         let y = f64::from(self.top) + (1.0 - part(y, &self.window.y)) * f64::from(self.height);
         ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32)
     }
@@ -180,7 +103,8 @@ impl Plot {
 fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout) -> Result<(), Error> {
     let plot = Plot {
         window: Window { x: panel.x.extent(), y: panel.y.extent() },
-        top: layout.legend(panel),
+        left: layout.left,
+        top: layout.top(panel),
         across: layout.across(),
         height: layout.plot,
     };
@@ -208,7 +132,17 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
             }
         }
     }
-    Ok(())
+    let [left, top] = [plot.left, plot.top].map(f64::from);
+    let (right, bottom) = (left + f64::from(plot.across), top + f64::from(plot.height));
+    let pixels = |x: f64, y: f64| {
+        let (x, y) = plot.place((panel.x.place(x), panel.y.place(y)));
+        (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
+    };
+    let end = panel.x.range.end;
+    let abscissa = |note: &Note| if note.at.0 == f64::INFINITY { end } else { note.at.0 };
+    let notes = panel.notes.iter().map(|note| (note, pixels(abscissa(note), note.at.1)));
+    let shown = notes.filter(|(_, (x, _))| (left - 1.0..=right + 1.0).contains(x));
+    note::draw(area, shown, PlotBox { left, top, right, bottom })
 }
 
 /// Draws the grid, the numbers and the names of the axes.
@@ -225,7 +159,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
         area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
-    let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
+    let ticks = up.ticks(ticks_upward(plot.height));
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
@@ -234,15 +168,29 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     }
     let other = [(corner.0, opposite.1), (opposite.0, corner.1)];
     area.draw(&PathElement::new([corner, other[0], opposite, other[1], corner], frame))?;
-    let below = at(LEFT + plot.across / 2, plot.top + plot.height + NUMBERS + NAME / 2 - 1);
+    let below = at(plot.left + plot.across / 2, plot.top + plot.height + NUMBERS + NAME / 2 - 1);
     let name = across.label();
-    let size = fitting(&name, f64::from(plot.across + LEFT), 12.0);
+    let size = fitting(&name, f64::from(plot.across + plot.left), 12.0);
     area.draw_text(&name, &text(size, HPos::Center, VPos::Center), below)?;
-    // A long name is drawn smaller.
-    let (name, room) = (up.label(), f64::from(plot.height + plot.top + NUMBERS / 2));
-    let size = fitting(&name, room, 12.0);
-    let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
-    area.draw_text(&name, &upright, at(14, plot.top + plot.height / 2))
+    // A long name has two lines.
+    let (name, room) = (up.label(), f64::from(plot.height + NUMBERS));
+    let lines = if wide(&name, SMALLEST) > room { halves(&name) } else { vec![name] };
+    let first = if lines.len() > 1 { 7 } else { plot.left.saturating_sub(60).clamp(10, 14) };
+    for (index, line) in lines.iter().enumerate() {
+        let size = fitting(line, room, 12.0);
+        let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
+        area.draw_text(line, &upright, at(first + 11 * index as u32, plot.top + plot.height / 2))?;
+    }
+    Ok(())
+}
+
+/// Splits a text at the space nearest to its middle.
+fn halves(text: &str) -> Vec<String> {
+    let spaces = text.match_indices(' ').map(|(place, _)| place);
+    match spaces.min_by_key(|place| place.abs_diff(text.len() / 2)) {
+        Some(place) => vec![text[..place].to_owned(), text[place + 1..].to_owned()],
+        None => vec![text.to_owned()],
+    }
 }
 
 fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<(), Error> {
@@ -255,20 +203,25 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
 
 /// Draws the legend above the panel, in rows.
 fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
-    for (layer, (row, column)) in layout.entries(panel) {
-        let middle = LEGEND / 2 + 1 + ROW * row;
-        let (from, to) = (at(column, middle), at(column + 18, middle));
-        match layer.shape {
-            LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
-            LayerShape::Area(_) => {
-                let [low, high] = [middle + 5, middle - 5];
-                let corners =
-                    [at(column, low), at(column + 18, low), at(column + 18, high), at(column, high)];
-                area.draw(&Polygon::new(corners, layer.style()))?;
+    let top = strip::height(layout, panel);
+    for entry in layout.entries(panel) {
+        let (middle, column) = (top + LEGEND / 2 + 1 + ROW * entry.row, entry.column);
+        let mut left = column;
+        if let Some(layer) = entry.layer {
+            left += crate::layout::MARK;
+            let (from, to) = (at(column, middle), at(column + 18, middle));
+            match layer.shape {
+                LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
+                LayerShape::Area(_) => {
+                    let [low, high] = [middle + 5, middle - 5];
+                    let corners =
+                        [at(column, low), at(column + 18, low), at(column + 18, high), at(column, high)];
+                    area.draw(&Polygon::new(corners, layer.style()))?;
+                }
+                _ => draw_mark(area, layer, at(column + 9, middle))?,
             }
-            _ => draw_mark(area, layer, at(column + 9, middle))?,
         }
-        area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(column + 23, middle))?;
+        area.draw_text(&entry.words, &text(LETTERS, HPos::Left, VPos::Center), at(left, middle))?;
     }
     Ok(())
 }
@@ -287,14 +240,6 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
 }
 
 impl Layer {
-    /// Whether a panel shows any of it.
-    fn is_shown(&self, panel: &Panel) -> bool {
-        let is_mark = !matches!(self.shape, LayerShape::Line(_) | LayerShape::Dashes | LayerShape::Area(_));
-        let window = Window { x: panel.x.extent(), y: panel.y.extent() };
-        let inside = |(x, y): &Point| window.contains((panel.x.place(*x), panel.y.place(*y)));
-        if is_mark { self.points.iter().any(inside) } else { !self.points.is_empty() }
-    }
-
     fn style(&self) -> ShapeStyle {
         match self.shape {
             LayerShape::Line(width) => stroke(self.colour, width),

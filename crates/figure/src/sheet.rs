@@ -15,8 +15,9 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     if let [only] = figures[..] {
         return only.laid_out(style);
     }
-    let heights: Vec<u32> = figures.iter().map(|figure| draw::height(figure, across)).collect();
-    let (width, height, columns) = columns(&heights, across);
+    let heights: Vec<u32> =
+        figures.iter().map(|figure| draw::height(figure, across, style.is_titled())).collect();
+    let (width, height, columns) = columns(&heights, across, style.columns());
     let mut sheet = format!(
         "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          xmlns=\"http://www.w3.org/2000/svg\">\n\
@@ -29,7 +30,8 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
         let plots = own.iter().map(|(figure, _)| figure.panels.len() as u32).sum::<u32>().max(1);
         let (x, higher, mut y) = (column as u32 * across, missing / plots, 0);
         for (figure, height) in own {
-            let svg = draw::svg(figure, across, higher).map_err(|error| error.to_string())?;
+            let svg =
+                draw::svg(figure, across, higher, style.is_titled()).map_err(|error| error.to_string())?;
             sheet.push_str(&svg.replacen("<svg ", &format!("<svg x=\"{x}\" y=\"{y}\" "), 1));
             y += height + higher * figure.panels.len() as u32;
         }
@@ -38,10 +40,10 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     Ok(sheet)
 }
 
-/// The width and height of a sheet of figures of these heights, and how many of them each of its columns has: its
+/// The width and height of a sheet with at most `most` columns of figures of these heights, and how many of them each of its columns has: its
 /// shape is near to that wanted, and its columns are near to one height.
-fn columns(heights: &[u32], across: u32) -> (u32, u32, Vec<usize>) {
-    let sheets = (1..=heights.len()).map(|count| {
+fn columns(heights: &[u32], across: u32, most: usize) -> (u32, u32, Vec<usize>) {
+    let sheets = (1..=heights.len().min(most)).map(|count| {
         let columns = parted(heights, count);
         let mut rest = heights.iter();
         let each = columns.iter().map(|count| rest.by_ref().take(*count).sum::<u32>());

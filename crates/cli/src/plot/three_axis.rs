@@ -12,28 +12,17 @@ use super::{time, title};
 
 /// Number of marks above which they are small.
 const MANY: usize = 100;
-/// Fraction of the values about other axes below which values are rounding errors, and drawn at the others' scale.
-const ROUNDING: f64 = 1e-9;
 
 /// Returns a panel for each axis, with lines of given names and colours.
 pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
-    let all = [0, 1, 2].map(lines);
-    let values = |layers: &[Layer]| -> Vec<f64> {
-        layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
-    };
-    let size =
-        |layers: &[Layer]| values(layers).into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let largest = all.iter().map(|layers| size(layers)).fold(0.0, f64::max);
-    let panel = |((axis, name), layers): ((usize, &&str), Vec<Layer>)| {
+    let panel = |(axis, name): (usize, &&str)| {
+        let layers = lines(axis);
         let x = time(0.0..story.end);
-        let y = if size(&layers) < ROUNDING * largest {
-            FigureAxis::around(name, unit, [-largest, largest])
-        } else {
-            FigureAxis::around(name, unit, values(&layers))
-        };
-        Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let y = FigureAxis::around(name, unit, values);
+        Panel::new(if axis == 2 { x } else { x.unnamed() }, y, layers)
     };
-    AXES.iter().enumerate().zip(all).map(panel).collect()
+    AXES.iter().enumerate().map(panel).collect()
 }
 
 pub const RATES: FigureSpec = FigureSpec {
@@ -79,7 +68,8 @@ fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
         let layers: Vec<Layer> =
             [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        Panel { x, y: FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
+        let y = FigureAxis::around(name, unit, values);
+        Panel::new(x, y, layers)
     };
     let x = time(0.0..story.end);
     let places: [fn(&Position) -> f64; 3] =
@@ -98,7 +88,10 @@ pub const ENERGY: FigureSpec = FigureSpec {
     contents: "Three axes: energy of the elastic modes, and propellant",
     rows: &[RowSource::new::<Energy>(), RowSource::new::<Jets>()],
     motion: MotionPart::Nothing,
-    is_in: |story| story.scenario.axis_count() == 3,
+    is_in: |story| {
+        let is_elastic = story.scenario.mode_count() > 0;
+        story.scenario.axis_count() == 3 && (is_elastic || story.scenario.study.fires())
+    },
     draw: |run| energy(run.story, run.cycles),
 };
 
@@ -106,11 +99,9 @@ pub const ENERGY: FigureSpec = FigureSpec {
 fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let [elastic, visible] = cycles.elastic_energies();
     let fuel = cycles.fuel(story);
-    let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
-        x,
-        y: FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
-        layers: vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)],
-        bar: None,
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| {
+        let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value));
+        Panel::new(x, y, vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)])
     };
     let x = time(0.0..story.end);
     let fires = fuel.iter().any(|(_, used)| used.is_finite());
@@ -203,8 +194,7 @@ fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let count = first.map_or(0, |(_, tracking)| tracking.trackers.len());
         let values_of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
-            let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
-            cycles.rows().map(|(time, tracking)| (time, hertz(tracking))).collect()
+            cycles.rows::<Tracking>().map(|(time, row)| (time, value(&row.trackers[mode]))).collect()
         };
         let mine = |mode: &usize| first.is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
         let mut layers = Vec::new();
@@ -226,9 +216,9 @@ fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
         }
         layers
     };
-    let mut panels = panels(story, "", lines);
+    let mut panels = panels(story, "rad/s", lines);
     for panel in &mut panels {
-        panel.y.name.push_str(" (Hz)");
+        panel.y = panel.y.clone().in_hertz();
     }
     Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }
