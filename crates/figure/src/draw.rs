@@ -17,6 +17,8 @@ use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour};
 const WIDTH: u32 = 800;
 /// Margins left and right of a panel's plot (px).
 const LEFT: u32 = 70;
+/// Part of the left margin that the name of the axis takes (px).
+const UNNAMED: u32 = 24;
 const RIGHT: u32 = 20;
 /// Margins below the plot, for numbers and for the name of the axis (px).
 const NUMBERS: u32 = 24;
@@ -28,11 +30,13 @@ const LEGEND: u32 = 22;
 const ROW: u32 = 16;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-/// Layout of a figure.
+/// Layout of a figure, or of a panel in a row of panels side by side.
 #[derive(Copy, Clone)]
 struct Layout {
-    /// Width of the figure (px).
+    /// Width (px).
     width: u32,
+    /// Margin to the left of the plot (px).
+    left: u32,
     /// Height of each plot (px).
     plot: u32,
 }
@@ -43,18 +47,31 @@ impl Layout {
         let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
         // Narrow figures are also lower, but less than proportionally.
         let plot = f64::from(figure.panel_height) * part.powf(0.6);
-        Self { width, plot: plot.round() as u32 + higher }
+        Self { width, left: LEFT, plot: plot.round() as u32 + higher }
+    }
+
+    /// Returns the layouts of the panels of a row, whose plots have one width: a panel without a name at its upward axis has a
+    /// narrower margin.
+    fn row(self, panels: &[Panel]) -> Vec<Self> {
+        let left =
+            |panel: &Panel| if panel.is_beside && panel.y.name.is_empty() { LEFT - UNNAMED } else { LEFT };
+        let margins: u32 = panels.iter().map(|panel| left(panel) + RIGHT).sum();
+        let plot = self.width.saturating_sub(margins) / panels.len().max(1) as u32;
+        panels
+            .iter()
+            .map(|panel| Self { width: left(panel) + plot + RIGHT, left: left(panel), ..self })
+            .collect()
     }
 
     /// Returns the height (px) of a figure with a title of `lines` lines.
     fn height(self, figure: &Figure, lines: usize) -> u32 {
         let title = TITLE + LINE * (lines.max(1) as u32 - 1);
-        title + figure.panels.iter().map(|panel| self.panel(panel)).sum::<u32>()
+        title + rows(figure).map(|row| self.row_height(row)).sum::<u32>()
     }
 
     /// Returns the width of a plot (px).
     fn across(self) -> u32 {
-        self.width - LEFT - RIGHT
+        self.width - self.left - RIGHT
     }
 
     /// Returns the height of a panel's legend (px).
@@ -64,12 +81,12 @@ impl Layout {
 
     /// Returns the layers in the legend, each with its row and the left end of its entry (px).
     fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
-        let (mut row, mut column) = (0, LEFT);
+        let (mut row, mut column) = (0, self.left);
         let mut entries = Vec::new();
         for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && layer.is_shown(panel)) {
             let wide = 23 + letters(&layer.name);
-            if column > LEFT && column + wide > self.width {
-                (row, column) = (row + 1, LEFT);
+            if column > self.left && column + wide > self.width {
+                (row, column) = (row + 1, self.left);
             }
             entries.push((layer, (row, column)));
             column += wide + 16;
@@ -80,8 +97,27 @@ impl Layout {
     /// Returns the height of a panel including all around its plot (px).
     fn panel(self, panel: &Panel) -> u32 {
         let name = if panel.x.name.is_empty() { 0 } else { NAME };
-        bar_height(panel) + self.legend(panel) + self.plot + NUMBERS + name
+        self.above(panel) + self.plot + NUMBERS + name
     }
+
+    /// Returns the height of the head and the legend above a panel's plot (px).
+    fn above(self, panel: &Panel) -> u32 {
+        let head = if panel.head.is_empty() { 0 } else { LINE };
+        head + self.legend(panel)
+    }
+
+    /// Returns the height of a row of panels (px), with a colour bar over its width.
+    fn row_height(self, panels: &[Panel]) -> u32 {
+        let each = || self.row(panels).into_iter().zip(panels);
+        let above = each().map(|(layout, panel)| layout.above(panel)).max().unwrap_or(0);
+        let rest = each().map(|(layout, panel)| layout.panel(panel) - layout.above(panel)).max().unwrap_or(0);
+        bar_height(panels) + above + rest
+    }
+}
+
+/// Returns the panels of each row: those side by side.
+pub fn rows(figure: &Figure) -> impl Iterator<Item = &[Panel]> {
+    figure.panels.chunk_by(|_, next| next.is_beside)
 }
 
 /// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's
@@ -136,14 +172,10 @@ pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
         }
         let mut rest = body;
         let upward = figure.upward();
-        for (panel, y) in figure.panels.iter().zip(&upward) {
-            let (area, below) = rest.split_vertically(layout.panel(panel) * UNITS);
-            let (key, area) = area.split_vertically(bar_height(panel) * UNITS);
-            if let Some(bar) = &panel.bar {
-                bar::draw(&key, bar, LEFT, layout.across())?;
-            }
-            draw_legend(&area, panel, layout)?;
-            draw_panel(&area, (panel, y), layout)?;
+        let mut upward = upward.iter();
+        for row in rows(figure) {
+            let (area, below) = rest.split_vertically(layout.row_height(row) * UNITS);
+            draw_row(&area, (row, upward.by_ref()), layout)?;
             rest = below;
         }
         root.present()?;
@@ -154,13 +186,47 @@ pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
     Ok(svg.replacen(&fine, &size, 1))
 }
 
-fn bar_height(panel: &Panel) -> u32 {
-    if panel.bar.is_some() { bar::HEIGHT } else { 0 }
+/// Draws panels side by side, whose plots begin at one height, below the colour bar that they share.
+fn draw_row<'a>(
+    area: &Area<'_>,
+    (panels, upward): (&[Panel], impl Iterator<Item = &'a FigureAxis>),
+    layout: Layout,
+) -> Result<(), Error> {
+    let (key, mut rest) = area.split_vertically(bar_height(panels) * UNITS);
+    if let Some(bar) = panels.iter().find_map(|panel| panel.bar.as_ref()) {
+        bar::draw(&key, bar, layout.left, layout.across())?;
+    }
+    let each = || layout.row(panels).into_iter().zip(panels);
+    let above = each().map(|(layout, panel)| layout.above(panel)).max().unwrap_or(0);
+    for ((layout, panel), y) in each().zip(upward) {
+        let (own, after) = rest.split_horizontally(layout.width * UNITS);
+        let (_, own) = own.split_vertically((above - layout.above(panel)) * UNITS);
+        let (head, own) = own.split_vertically((layout.above(panel) - layout.legend(panel)) * UNITS);
+        if !panel.head.is_empty() {
+            let size = fitting(&panel.head, f64::from(layout.across() + RIGHT), 12.0);
+            head.draw_text(
+                &panel.head,
+                &text(size, HPos::Left, VPos::Center),
+                at(layout.left, LINE / 2 + 2),
+            )?;
+        }
+        draw_legend(&own, panel, layout)?;
+        draw_panel(&own, (panel, y), layout)?;
+        rest = after;
+    }
+    Ok(())
+}
+
+/// Returns the height of the colour bar of panels side by side (px).
+fn bar_height(panels: &[Panel]) -> u32 {
+    if panels.iter().any(|panel| panel.bar.is_some()) { bar::HEIGHT } else { 0 }
 }
 
 /// Plot of a panel: the mapping from axis places to a rectangle of the backend.
 struct Plot {
     window: Window,
+    /// Distance from the left of the panel to the plot (px).
+    left: u32,
     /// Distance from the top of the panel to the plot, width and height of the plot (px).
     top: u32,
     across: u32,
@@ -171,7 +237,7 @@ impl Plot {
     /// Returns the backend's coordinates of a point.
     fn place(&self, (x, y): Point) -> (i32, i32) {
         let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
-        let x = f64::from(LEFT) + part(x, &self.window.x) * f64::from(self.across);
+        let x = f64::from(self.left) + part(x, &self.window.x) * f64::from(self.across);
         let y = f64::from(self.top) + (1.0 - part(y, &self.window.y)) * f64::from(self.height);
         ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32)
     }
@@ -180,11 +246,12 @@ impl Plot {
 fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout) -> Result<(), Error> {
     let plot = Plot {
         window: Window { x: panel.x.extent(), y: panel.y.extent() },
+        left: layout.left,
         top: layout.legend(panel),
         across: layout.across(),
         height: layout.plot,
     };
-    draw_axes(area, (&panel.x, y), &plot)?;
+    draw_axes(area, (&panel.x, y), &plot, panel.is_plain)?;
     for layer in &panel.layers {
         let points: Vec<Point> =
             layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
@@ -208,11 +275,28 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
             }
         }
     }
+    let visible = [
+        (f64::from(plot.left), f64::from(plot.top)),
+        (f64::from(plot.left + plot.across), f64::from(plot.top + plot.height)),
+    ];
+    for note in &panel.notes {
+        let point = (panel.x.place(note.point.0), panel.y.place(note.point.1));
+        if plot.window.contains(point) {
+            let (x, y) = plot.place(point);
+            let unit = f64::from(UNITS);
+            note.draw(area, (f64::from(x) / unit, f64::from(y) / unit), visible)?;
+        }
+    }
     Ok(())
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &Plot) -> Result<(), Error> {
+fn draw_axes(
+    area: &Area<'_>,
+    (across, up): (&FigureAxis, &FigureAxis),
+    plot: &Plot,
+    is_plain: bool,
+) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));
@@ -222,21 +306,23 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((across.place(*tick), y.start)).0, ticks.text(*tick)))
     {
-        area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
+        let end = if is_plain { corner.1 + gap / 2 } else { opposite.1 };
+        area.draw(&PathElement::new([(place, corner.1), (place, end)], if is_plain { frame } else { grid }))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
     let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
-        area.draw(&PathElement::new([(corner.0, place), (opposite.0, place)], grid))?;
+        let end = if is_plain { corner.0 - gap / 2 } else { opposite.0 };
+        area.draw(&PathElement::new([(corner.0, place), (end, place)], if is_plain { frame } else { grid }))?;
         area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, place))?;
     }
     let other = [(corner.0, opposite.1), (opposite.0, corner.1)];
     area.draw(&PathElement::new([corner, other[0], opposite, other[1], corner], frame))?;
-    let below = at(LEFT + plot.across / 2, plot.top + plot.height + NUMBERS + NAME / 2 - 1);
+    let below = at(plot.left + plot.across / 2, plot.top + plot.height + NUMBERS + NAME / 2 - 1);
     let name = across.label();
-    let size = fitting(&name, f64::from(plot.across + LEFT), 12.0);
+    let size = fitting(&name, f64::from(plot.across + plot.left), 12.0);
     area.draw_text(&name, &text(size, HPos::Center, VPos::Center), below)?;
     // A long name is drawn smaller.
     let (name, room) = (up.label(), f64::from(plot.height + plot.top + NUMBERS / 2));
@@ -279,7 +365,20 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
         LayerShape::Square => &[(-29, -29), (29, -29), (29, 29), (-29, 29)],
         LayerShape::Diamond => &[(0, -44), (44, 0), (0, 44), (-44, 0)],
         LayerShape::Dot => return area.draw(&Circle::new((x, y), 16, layer.style())),
-        LayerShape::Ring => return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2))),
+        LayerShape::Cross => {
+            for (dx, dy) in [(32, 32), (32, -32)] {
+                let ends = [(x - dx, y - dy), (x + dx, y + dy)];
+                area.draw(&PathElement::new(ends, stroke(layer.colour, 1.2)))?;
+            }
+            return Ok(());
+        }
+        LayerShape::Stroke => {
+            return area.draw(&PathElement::new([(x, y - 30), (x, y + 30)], stroke(layer.colour, 0.5)));
+        }
+        LayerShape::Ring => {
+            area.draw(&Circle::new((x, y), 38, WHITE.filled()))?;
+            return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2)));
+        }
         _ => return area.draw(&Circle::new((x, y), 32, layer.style())),
     };
     let corners: Vec<_> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();

@@ -8,6 +8,7 @@ mod draw;
 #[cfg(feature = "png")]
 mod image;
 mod line;
+mod note;
 mod origin;
 mod over_time;
 pub mod palette;
@@ -24,6 +25,7 @@ pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
+pub use note::{FigureNote, NoteSide};
 pub use origin::is_figure;
 pub use over_time::{OverTime, PanelLines};
 pub use plotters::style::RGBColor;
@@ -48,6 +50,8 @@ pub mod colour {
     pub const BLUE: RGBColor = RGBColor(0, 114, 178);
     /// Vermillion.
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+    /// Red, for limits alone.
+    pub const RED: RGBColor = RGBColor(193, 39, 45);
 }
 
 /// Figure of stacked panels.
@@ -73,6 +77,14 @@ pub struct Panel {
     pub layers: Vec<Layer>,
     /// Colour bar of a map.
     pub bar: Option<Bar>,
+    /// Line above the panel; empty for none.
+    pub head: String,
+    /// Words within the panel, above the layers.
+    pub notes: Vec<FigureNote>,
+    /// True for a panel to the right of the one before it, which is otherwise below that.
+    pub is_beside: bool,
+    /// True for a panel without grid lines.
+    pub is_plain: bool,
 }
 
 /// Set of points drawn with one shape and colour.
@@ -109,6 +121,10 @@ pub enum LayerShape {
     Square,
     /// Diamonds at the points.
     Diamond,
+    /// Crosses at the points.
+    Cross,
+    /// Upright strokes at the points.
+    Stroke,
 }
 
 impl Figure {
@@ -131,7 +147,33 @@ impl Figure {
 impl Panel {
     /// Creates a panel from its axes and layers.
     pub fn new(x: FigureAxis, y: FigureAxis, layers: Vec<Layer>) -> Self {
-        Self { x, y, layers, bar: None }
+        let (head, notes) = (String::new(), Vec::new());
+        Self { x, y, layers, bar: None, head, notes, is_beside: false, is_plain: false }
+    }
+
+    /// Returns the panel with a line above it.
+    #[must_use]
+    pub fn headed(self, head: impl Into<String>) -> Self {
+        Self { head: head.into(), ..self }
+    }
+
+    /// Returns the panel with words in it.
+    #[must_use]
+    pub fn noted(mut self, notes: impl IntoIterator<Item = FigureNote>) -> Self {
+        self.notes.extend(notes);
+        self
+    }
+
+    /// Returns the panel to the right of the one before it.
+    #[must_use]
+    pub fn beside(self) -> Self {
+        Self { is_beside: true, ..self }
+    }
+
+    /// Returns the panel without grid lines.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        Self { is_plain: true, ..self }
     }
 }
 

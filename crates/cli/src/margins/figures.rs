@@ -1,11 +1,8 @@
-//! Figures of a loop that is cut open: Bode, Nichols, Nyquist, singular values, and the root locus.
+//! Figures of a loop that is cut open: Bode, Nichols, Nyquist and singular values.
 
 use std::f64::consts::{PI, TAU};
 
-use flexsc_core::analysis::margins::{
-    GainPoles, SignalMargins, SingularValues, StabilityMargins, root_locus as poles_over_gain,
-};
-use flexsc_core::analysis::open_loop::OpenLoop;
+use flexsc_core::analysis::margins::{SignalMargins, SingularValues, StabilityMargins};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour};
 
 /// Colours of the loops.
@@ -18,18 +15,11 @@ const SHOWN: f64 = 3.0;
 /// Width of a Nyquist figure relative to its height.
 const ASPECT: f64 = 1.37;
 
-/// Exponents of the least and the largest factor of a root locus.
-const FACTORS: [f64; 2] = [-2.0, 1.0];
-/// Number of factors of a root locus.
-const FACTOR_COUNT: u32 = 181;
-/// Damping ratio up to which light damping is shown.
-const LIGHT: f64 = 0.05;
-
 /// Locus of a loop over frequency: a line of a figure.
 struct LocusLine {
     name: String,
     colour: RGBColor,
-    /// Frequency (rad/s), magnitude (dB) and phase (deg, without jumps) at each point.
+    /// Frequency (Hz), magnitude (dB) and phase (deg, without jumps) at each point.
     points: Vec<[f64; 3]>,
 }
 
@@ -65,7 +55,7 @@ impl LocusLine {
                 Some(before) => phase + TAU * ((before - phase) / TAU).round(),
             };
             last = Some(phase);
-            [point.angle / period, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
+            [point.angle / period / TAU, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
         });
         let points = points.collect();
         // Several loci of one loop have one name.
@@ -94,7 +84,7 @@ fn level(range: &std::ops::Range<f64>, height: f64) -> Layer {
 }
 
 fn bode(title: &str, lines: &[LocusLine]) -> Figure {
-    let x = FigureAxis::decades("frequency", "rad/s", values(lines, 0));
+    let x = FigureAxis::decades("frequency", "Hz", values(lines, 0));
     let panel = |quantity: usize, name: &str, unit: &'static str, marked: f64| {
         let y = FigureAxis::around(name, unit, values(lines, quantity).chain([marked]));
         let mut layers = vec![level(&x.range, marked)];
@@ -158,11 +148,11 @@ pub fn singular_values(name: &str, margins: &StabilityMargins) -> Figure {
     let all = &margins.singular_values;
     let line = |of: fn(&SingularValues) -> f64| -> Vec<Point> {
         let decibels = |value: f64| if value > 0.0 { 20.0 * value.log10() } else { f64::NAN };
-        let shown = all.iter().map(|at| (at.frequency_rad_s, decibels(of(at))));
+        let shown = all.iter().map(|at| (at.frequency_rad_s / TAU, decibels(of(at))));
         shown.map(|(x, y)| if y.abs() <= SHOWN_DB { (x, y) } else { (x, f64::NAN) }).collect()
     };
     let lines = [line(|at| at.sensitivity), line(|at| at.complementary)];
-    let x = FigureAxis::decades("frequency", "rad/s", all.iter().map(|at| at.frequency_rad_s));
+    let x = FigureAxis::decades("frequency", "Hz", all.iter().map(|at| at.frequency_rad_s / TAU));
     let y = FigureAxis::around(
         "largest singular value",
         "dB",
@@ -178,40 +168,5 @@ pub fn singular_values(name: &str, margins: &StabilityMargins) -> Figure {
         title: format!("{name}: singular values of all loops"),
         panels: vec![Panel::new(x, y, layers)],
         panel_height: 320,
-    }
-}
-
-/// Returns the figure of the poles of the closed loop over the gain of all loops: their damping ratios over their natural
-/// frequencies, all and the light ones.
-pub fn root_locus(name: &str, opened: &OpenLoop) -> Figure {
-    let factor = |k: u32| {
-        let part = f64::from(k) / f64::from(FACTOR_COUNT - 1);
-        10.0_f64.powf(FACTORS[0] * (1.0 - part) + FACTORS[1] * part)
-    };
-    let factors: Vec<f64> = (0..FACTOR_COUNT).map(factor).collect();
-    let points = |all: &[GainPoles]| -> Vec<Point> {
-        let poles = all.iter().flat_map(|at| &at.poles).filter(|pole| pole.im > 0.0);
-        poles.map(|pole| (pole.norm(), -pole.re / pole.norm())).collect()
-    };
-    let locus = points(&poles_over_gain(opened, &factors));
-    let [open, closed] = [0.0, 1.0].map(|factor| points(&poles_over_gain(opened, &[factor])));
-    let x =
-        FigureAxis::decades("natural frequency", "rad/s", locus.iter().chain(&closed).map(|point| point.0));
-    let panel = |low: f64, high: f64| {
-        let within = |points: &[Point]| -> Vec<Point> {
-            points.iter().copied().filter(|point| (low..=high).contains(&point.1)).collect()
-        };
-        let layers = vec![
-            level(&x.range, 0.0),
-            Layer::new("gain from 0.01 to 10 times its own", colour::GREY, LayerShape::Dot, within(&locus)),
-            Layer::new("without the loop", colour::BLACK, LayerShape::Triangle, within(&open)),
-            Layer::new("own gain", colour::BLUE, LayerShape::Disc, within(&closed)),
-        ];
-        Panel::new(x.clone(), FigureAxis::exact("damping ratio", "", low..high), layers)
-    };
-    Figure {
-        title: format!("{name}: root locus over the gain of all loops"),
-        panels: vec![panel(-0.2, 1.0), panel(-LIGHT, LIGHT)],
-        panel_height: 240,
     }
 }

@@ -1,6 +1,7 @@
 //! `flexsc margins`: stability margins of the loop of a scenario.
 
 mod figures;
+mod root_locus;
 
 use std::f64::consts::PI;
 use std::io::Write;
@@ -238,7 +239,8 @@ impl Results for LoopMargins {
             figures::figures(name, &self.margins.stability.loops, self.margins.stability.period_s);
         let values = figures::singular_values(name, &self.margins.stability);
         figures.push((format!("{name}-singular-values"), values));
-        figures.push((format!("{name}-root-locus"), figures::root_locus(name, &self.margins.cut)));
+        let locus = root_locus::figure(name, &self.margins.cut, &self.margins.stability.loops);
+        figures.extend(locus.map(|figure| (format!("{name}-root-locus"), figure)));
         figures
     }
 

@@ -31,7 +31,7 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
         } else {
             FigureAxis::around(name, unit, values(&layers))
         };
-        Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
+        Panel::new(if axis == 2 { x } else { x.unnamed() }, y, layers)
     };
     AXES.iter().enumerate().zip(all).map(panel).collect()
 }
@@ -79,7 +79,7 @@ fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
         let layers: Vec<Layer> =
             [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        Panel { x, y: FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
+        Panel::new(x, FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers)
     };
     let x = time(0.0..story.end);
     let places: [fn(&Position) -> f64; 3] =
@@ -106,11 +106,9 @@ pub const ENERGY: FigureSpec = FigureSpec {
 fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let [elastic, visible] = cycles.elastic_energies();
     let fuel = cycles.fuel(story);
-    let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
-        x,
-        y: FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
-        layers: vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)],
-        bar: None,
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| {
+        let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+        Panel::new(x, y, vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)])
     };
     let x = time(0.0..story.end);
     let fires = fuel.iter().any(|(_, used)| used.is_finite());
