@@ -74,7 +74,7 @@ pub fn modes(frequencies: &[f64], weights: &[f64], (name, unit): (&str, &'static
     if frequencies.is_empty() {
         return None;
     }
-    let x = FigureAxis::decades("natural frequency", "rad/s", frequencies.iter().copied());
+    let x = FigureAxis::decades("natural frequency", "rad/s", frequencies.iter().copied()).in_hertz();
     let y = FigureAxis::from_zero(name, unit, weights.iter().copied());
     let points: Vec<_> = frequencies.iter().copied().zip(weights.iter().copied()).collect();
     let stems = points.iter().flat_map(|(w, height)| [(*w, 0.0), (*w, *height), (f64::NAN, f64::NAN)]);

@@ -1,20 +1,26 @@
-//! Axes: a range, its unit with a prefix that keeps numbers short, and ticks at 1-2-5 steps or at powers of ten.
+//! Axes: a range, the unit in which people read it, and ticks at 1-2-5 steps or at powers of ten.
 
 use std::ops::Range;
+
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, grouped, known_unit};
 
 /// Axis of a panel.
 #[derive(Clone, Debug)]
 pub struct FigureAxis {
     /// Name of the quantity; empty for an axis that another panel names.
     pub name: String,
-    /// Unit of the values; empty for a ratio.
+    /// SI unit of the values; empty for a ratio.
     pub unit: &'static str,
-    /// Visible range, in the unit.
+    /// Visible range, in the SI unit.
     pub range: Range<f64>,
     /// Scale of the axis.
     pub scale: Scale,
-    /// Largest value of the stacked axes that share the prefix.
+    /// Unit of the numbers at the ticks, if it does not follow from the size of the values.
+    shown_in: Option<ReaderUnit>,
+    /// Largest value of the stacked axes that share the unit.
     stacked_size: f64,
+    /// Least and largest positive value of a logarithmic axis.
+    positive: Range<f64>,
 }
 
 /// Scale of an axis.
@@ -29,16 +35,20 @@ pub enum Scale {
 /// Ticks of an axis.
 #[derive(Clone, Debug)]
 pub struct Ticks {
-    /// Values of the ticks, in the axis' unit.
+    /// Values of the ticks, in the axis' SI unit.
     pub at: Vec<f64>,
+    /// Size of the unit of the numbers.
+    factor: f64,
     form: Form,
 }
 
 /// Format of the ticks.
 #[derive(Copy, Clone, Debug)]
 enum Form {
-    /// Decimal numbers in a prefixed unit, which is `factor` times the axis' own.
-    Decimal { factor: f64, decimals: usize },
+    /// Numbers with a count of decimals.
+    Decimal(usize),
+    /// Numbers with the decimals that each needs.
+    Short,
     /// Powers of ten.
     Power,
 }
@@ -49,19 +59,19 @@ const DECADES: f64 = 8.0;
 /// Largest size of a value that an axis shows: twice a larger one can be infinite.
 const MOST: f64 = 1e300;
 
-/// Maximum ratio of the largest values of axes that share a prefix, for axes of one quantity.
+/// Number of values of which one in a hundred may lie below a logarithmic axis, if it is far below the others.
+const MANY: usize = 20;
+/// Ratio by which the lowest values are far below the others.
+const FAR: f64 = 100.0;
+/// Powers of ten that are written as numbers.
+const SHORT_POWERS: Range<i32> = -4..5;
+
+/// Maximum ratio of the largest values of axes that share a unit, for axes of one quantity.
 const SAME: f64 = 1000.0;
-/// Maximum ratio of the largest values of axes that share a prefix, for axes of different quantities.
+/// Maximum ratio of the largest values of axes that share a unit, for axes of different quantities.
 const ALIKE: f64 = 10.0;
 /// Names of the three axes of one quantity.
 const DIRECTIONS: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
-
-/// Units of a long time: the longest range (s) that each shows, its name and its length (s).
-const TIMES: [(f64, &str, f64); 4] =
-    [(2500.0, "s", 1.0), (10_800.0, "min", 60.0), (345_600.0, "h", 3600.0), (f64::INFINITY, "d", 86_400.0)];
-
-/// SI prefixes, from the smallest.
-const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
 impl FigureAxis {
     /// Least size of a range, and of a value on a logarithmic axis: the power of ten of a smaller step can be 0.
@@ -77,7 +87,15 @@ impl FigureAxis {
         let middle = if is_finite { range.start } else { 0.0 };
         let half = if middle.abs() < Self::LEAST { 1.0 } else { 0.05 * middle.abs() };
         let range = if wide { range } else { middle - half..middle + half };
-        Self { name: name.to_owned(), unit, range, scale: Scale::Linear, stacked_size: 0.0 }
+        Self {
+            name: name.to_owned(),
+            unit,
+            range,
+            scale: Scale::Linear,
+            shown_in: None,
+            stacked_size: 0.0,
+            positive: 0.0..0.0,
+        }
     }
 
     /// Creates an axis around all values, with a small margin.
@@ -95,17 +113,60 @@ impl FigureAxis {
         Self::exact(name, unit, 0.0..1.06 * highest)
     }
 
-    /// Creates a logarithmic axis of whole decades for all positive values, with at most eight decades.
+    /// Creates a logarithmic axis of whole decades of the unit for all positive values, with at most eight decades. Of
+    /// many values, a hundredth is left out if it is far below the others.
     pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
-        let positive = values.into_iter().filter(|value| (Self::LEAST..=MOST).contains(value));
-        let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
-        let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
-        let low = low.min(high - 1.0).max(high - DECADES);
-        let range = 10_f64.powf(low)..10_f64.powf(high);
-        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic, stacked_size: 0.0 }
+        let mut positive: Vec<f64> =
+            values.into_iter().filter(|value| (Self::LEAST..=MOST).contains(value)).collect();
+        positive.sort_by(f64::total_cmp);
+        let shown = positive.first().zip(positive.last()).map(|(low, high)| {
+            let usual = positive[if positive.len() < MANY { 0 } else { positive.len().div_ceil(100) }];
+            if usual > FAR * low { usual..*high } else { *low..*high }
+        });
+        let axis = Self {
+            scale: Scale::Logarithmic,
+            positive: shown.unwrap_or(0.1..1.0),
+            ..Self::exact(name, unit, 0.0..1.0)
+        };
+        axis.in_whole_decades()
     }
 
-    /// Returns the axes of stacked panels: axes of one unit share a prefix, unless one of them would show too small
+    /// Returns the axis with its numbers in a unit, such as that in which a limit was written.
+    #[must_use]
+    pub fn in_unit(self, unit: ReaderUnit) -> Self {
+        let axis = Self { shown_in: Some(unit), ..self };
+        if axis.scale == Scale::Logarithmic { axis.in_whole_decades() } else { axis }
+    }
+
+    /// Returns the axis in Hz if its values are angular frequencies.
+    #[must_use]
+    pub fn in_hertz(self) -> Self {
+        if self.unit == "rad/s" { self.in_unit(ReaderUnits::Engineering.frequency()) } else { self }
+    }
+
+    /// Returns the axis in rpm if its values are speeds of rotors.
+    #[must_use]
+    pub fn in_rpm(self) -> Self {
+        if self.unit == "rad/s" { self.in_unit(ReaderUnits::Engineering.rotor_speed()) } else { self }
+    }
+
+    /// Returns the axis over another range.
+    #[must_use]
+    pub fn over(&self, range: Range<f64>) -> Self {
+        Self { shown_in: self.shown_in.clone(), ..Self::exact(&self.name, self.unit, range) }
+    }
+
+    /// Sets the range of a logarithmic axis to the decades of its unit that hold its values.
+    fn in_whole_decades(self) -> Self {
+        let unit = self.reader_unit().size();
+        let (low, high) = ((self.positive.start / unit).log10(), (self.positive.end / unit).log10());
+        // A value at a power of ten may be beside it by rounding.
+        let (low, high) = ((low + 1e-9).floor(), (high - 1e-9).ceil());
+        let low = low.min(high - 1.0).max(high - DECADES);
+        Self { range: unit * 10_f64.powf(low)..unit * 10_f64.powf(high), ..self }
+    }
+
+    /// Returns the axes of stacked panels: axes of one unit are shown alike, unless one of them would show too small
     /// numbers.
     pub(crate) fn stacked<'a>(axes: impl IntoIterator<Item = &'a Self>) -> Vec<Self> {
         let mut axes: Vec<Self> = axes.into_iter().cloned().collect();
@@ -143,44 +204,41 @@ impl FigureAxis {
         Self { name: String::new(), ..self.clone() }
     }
 
-    /// Returns the name with the prefixed unit.
+    /// Returns the name with the unit of the numbers.
     pub fn label(&self) -> String {
-        match (self.name.as_str(), self.unit) {
-            ("", _) | (_, "") => self.name.clone(),
-            // Special case: the kilogram already has a prefix.
-            (name, "kg") => match self.prefix().0 {
-                "M" => format!("{name} (t)"),
-                prefix => format!("{name} ({prefix}g)"),
-            },
-            (name, "s") if self.long().is_some() => {
-                format!("{name} ({})", self.long().map_or("s", |unit| unit.0))
-            }
-            (name, unit) => format!("{name} ({}{unit})", self.prefix().0),
+        let unit = self.reader_unit().name;
+        if self.name.is_empty() || unit.is_empty() {
+            return self.name.clone();
         }
+        format!("{} ({unit})", self.name)
     }
 
-    /// Returns the size of the prefixed unit in the axis' own unit.
+    /// Returns the size of the unit of the numbers in the axis' SI unit.
     pub fn factor(&self) -> f64 {
-        self.long().map_or_else(|| 10_f64.powi(self.prefix().1 - self.exponent_of_unit()), |unit| unit.1)
+        self.reader_unit().size()
     }
 
-    /// The name and the length (s) of the unit of a time that has no prefix.
-    fn long(&self) -> Option<(&'static str, f64)> {
-        let shown = self.range.end - self.range.start;
-        let (_, name, length) = TIMES.into_iter().find(|(most, ..)| shown <= *most)?;
-        (self.unit == "s" && self.scale == Scale::Linear && shown >= 2.5).then_some((name, length))
+    /// Returns the unit of the numbers.
+    pub fn reader_unit(&self) -> ReaderUnit {
+        if let Some(unit) = &self.shown_in {
+            return unit.clone();
+        }
+        let largest = match self.scale {
+            Scale::Linear => self.size().max(self.stacked_size),
+            Scale::Logarithmic => self.positive.end,
+        };
+        match self.unit {
+            "s" if self.scale == Scale::Linear => ReaderUnit::of_time_axis(self.range.end - self.range.start),
+            unit => ReaderUnits::Engineering.fitting(largest, unit),
+        }
     }
 
     /// Returns the ticks, about `most` at most.
     pub fn ticks(&self, most: u32) -> Ticks {
-        if self.scale == Scale::Logarithmic {
-            let Range { start, end } = self.extent();
-            let (first, last) = (start.round() as i32, end.round() as i32);
-            let step = (last - first).unsigned_abs().div_ceil(most.max(1)).max(1);
-            let positions = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
-            return Ticks { at: positions.collect(), form: Form::Power };
-        }
         let factor = self.factor();
+        if self.scale == Scale::Logarithmic {
+            return self.powers(most, factor);
+        }
         let (low, high) = (self.range.start / factor, self.range.end / factor);
         let rough = (high - low) / f64::from(most.max(1));
         let power = 10_f64.powf(rough.log10().floor());
@@ -194,46 +252,43 @@ impl FigureAxis {
         let (first, last) = ends(step);
         // The tolerance allows for rounding in the logarithm of a power of ten.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
-        Ticks {
-            at: (first..=last).map(|i| i as f64 * step * factor).collect(),
-            form: Form::Decimal { factor, decimals },
-        }
+        let at = (first..=last).map(|i| i as f64 * step * factor).collect();
+        Ticks { at, factor, form: Form::Decimal(decimals) }
+    }
+
+    /// Returns the ticks of a logarithmic axis: powers of ten of the unit, with 2 and 5 between them if they are few.
+    fn powers(&self, most: u32, factor: f64) -> Ticks {
+        let power = |value: f64| (value / factor).log10().round() as i32;
+        let (first, last) = (power(self.range.start), power(self.range.end));
+        let step = (last - first).unsigned_abs().div_ceil(most.max(1)).max(1);
+        let is_short = SHORT_POWERS.contains(&first) && SHORT_POWERS.contains(&last);
+        let between: &[f64] =
+            if is_short && 3 * (last - first).unsigned_abs() <= most { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let powers = (first..=last).rev().step_by(step as usize);
+        let all = powers.flat_map(|power| between.iter().rev().map(move |part| part * 10_f64.powi(power)));
+        let at = all.map(|value| value * factor).filter(|value| *value <= self.range.end * (1.0 + 1e-9));
+        Ticks { at: at.collect(), factor, form: if is_short { Form::Short } else { Form::Power } }
     }
 
     /// Returns the largest absolute value of the range.
     fn size(&self) -> f64 {
         self.range.start.abs().max(self.range.end.abs())
     }
-
-    fn prefix(&self) -> (&'static str, i32) {
-        if self.unit.is_empty() || self.scale == Scale::Logarithmic {
-            return ("", self.exponent_of_unit());
-        }
-        let size = self.size().max(self.stacked_size) * 10_f64.powi(self.exponent_of_unit());
-        let half = (self.range.end - self.range.start) / 2.0;
-        // A short time has the prefix of its length, however late it is.
-        let measure = if self.unit == "s" { half } else { size };
-        let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
-        PREFIXES.iter().find(fits).copied().unwrap_or(("", self.exponent_of_unit()))
-    }
-
-    /// Returns the power of ten of the prefix that the unit itself contains.
-    fn exponent_of_unit(&self) -> i32 {
-        if self.unit == "kg" { 3 } else { 0 }
-    }
 }
 
 impl Ticks {
     /// Returns the text of a tick.
     pub fn text(&self, value: f64) -> String {
-        let Form::Decimal { factor, decimals } = self.form else {
-            return format!("10{}", superscript(value.log10().round() as i32));
+        let value = value / self.factor;
+        let text = match self.form {
+            Form::Power => return format!("10{}", superscript(value.log10().round() as i32)),
+            // Rounding in the conversion of the unit is left out.
+            Form::Short => format!("{}", (value * 1e6).round() / 1e6),
+            Form::Decimal(decimals) if decimals <= 6 && value.abs() < 1e7 => format!("{value:.decimals$}"),
+            Form::Decimal(_) => format!("{value:.1e}"),
         };
-        let value = value / factor;
-        let plain = decimals <= 6 && value.abs() < 1e7;
-        let text = if plain { format!("{value:.decimals$}") } else { format!("{value:.1e}") };
         let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
-        if zero { "0".to_owned() } else { text.replace('-', "−") }
+        if zero { "0".to_owned() } else { grouped(&text).replace('-', "−") }
     }
 }
 
@@ -246,10 +301,13 @@ fn superscript(number: i32) -> String {
     number.to_string().chars().map(raised).collect()
 }
 
-/// Returns the name and the unit of the axis of a quantity: prefixes are for SI units, so that any other unit is part
-/// of the name.
+/// Returns the name and the unit of the axis of a quantity: a unit that readers see as it is becomes part of the name.
 pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
-    if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name} ({unit})"), "") }
+    match known_unit(unit) {
+        Some(known) => (name.to_owned(), known),
+        None if unit.is_empty() => (name.to_owned(), ""),
+        None => (format!("{name} ({unit})"), ""),
+    }
 }
 
 /// Returns the number 1, 2 or 5 times a power of ten that is nearest to a positive value.
@@ -272,36 +330,32 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         let angle = FigureAxis::exact("angle x", "rad", -6.2e-4..6.2e-4);
-        assert_eq!(angle.label(), "angle x (µrad)");
-        assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
+        assert_eq!(angle.label(), "angle x (arcsec)");
+        assert_eq!(texts(&angle, 7), ["−100", "−50", "0", "50", "100"]);
         let time = FigureAxis::exact("time", "s", 0.0..20_000.0);
         assert_eq!(time.label(), "time (h)");
         assert_eq!(texts(&time, 6), ["0", "1", "2", "3", "4", "5"]);
-        let minutes = FigureAxis::exact("time", "s", 0.0..4000.0);
-        assert_eq!((minutes.label().as_str(), minutes.factor()), ("time (min)", 60.0));
-        assert_eq!(texts(&minutes, 4), ["0", "20", "40", "60"]);
-        assert_eq!(FigureAxis::exact("time", "s", 0.0..2500.0).label(), "time (s)");
-        assert_eq!(FigureAxis::exact("time", "s", 0.0..1e6).label(), "time (d)");
+        assert_eq!(FigureAxis::exact("time", "s", 0.0..7200.0).label(), "time (s)");
+        assert_eq!(FigureAxis::exact("time", "s", 0.0..1e6).label(), "time (h)");
         assert_eq!(FigureAxis::exact("pulse", "s", 0.0..0.02).label(), "pulse (ms)");
         let short = FigureAxis::exact("time", "s", 0.0..3.0);
         assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
         let late = FigureAxis::exact("time", "s", 19_900.0..20_000.0);
         assert_eq!(late.label(), "time (s)");
-        assert_eq!(texts(&late, 2), ["19900", "19950", "20000"]);
+        assert_eq!(texts(&late, 2), ["19\u{202f}900", "19\u{202f}950", "20\u{202f}000"]);
         let gain = FigureAxis::exact("k_t", "", 0.305..0.325);
         assert_eq!(gain.label(), "k_t");
         assert_eq!(texts(&gain, 5), ["0.305", "0.310", "0.315", "0.320", "0.325"]);
         let turn = FigureAxis::exact("angle", "rad", -0.1..1.67);
         assert_eq!(
             (turn.label().as_str(), texts(&turn, 4)),
-            ("angle (rad)", ["0", "0.5", "1.0", "1.5"].map(str::to_owned).to_vec())
+            ("angle (deg)", ["0", "50"].map(str::to_owned).to_vec())
         );
         let propellant = |most: f64| FigureAxis::exact("propellant", "kg", 0.0..most);
-        assert_eq!(propellant(0.19).label(), "propellant (g)");
-        assert_eq!(texts(&propellant(0.19), 4), ["0", "50", "100", "150"]);
+        assert_eq!(propellant(0.09).label(), "propellant (g)");
+        assert_eq!(texts(&propellant(0.09), 4), ["0", "50"]);
         assert_eq!(propellant(3.7).label(), "propellant (kg)");
         assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
-        assert_eq!(propellant(4200.0).label(), "propellant (t)");
         // Two ticks at least.
         assert_eq!(texts(&FigureAxis::exact("x", "m", -45.0..45.0), 4), ["−40", "−20", "0", "20", "40"]);
         let huge = FigureAxis::exact("", "", -2e9..2e9);
@@ -309,27 +363,45 @@ mod tests {
     }
 
     #[test]
-    fn axes_one_below_the_other_have_one_prefix() {
+    fn axes_one_below_the_other_have_one_unit() {
         let axis = |most: f64, unit| FigureAxis::exact("angle", unit, -most..most);
         let stacked =
             FigureAxis::stacked(&[axis(3e-3, "rad"), axis(2e-5, "rad"), axis(1e-6, "rad"), axis(1e-5, "m")]);
         let labels: Vec<String> = stacked.iter().map(FigureAxis::label).collect();
         // The third is too small for the first, but not for the second.
-        assert_eq!(labels, ["angle (mrad)", "angle (mrad)", "angle (µrad)", "angle (µm)"]);
-        assert_eq!(texts(&stacked[1], 3), ["−0.02", "0", "0.02"]);
+        assert_eq!(labels, ["angle (deg)", "angle (deg)", "angle (arcsec)", "angle (µm)"]);
+        assert_eq!(texts(&stacked[1], 3), ["−0.001", "0", "0.001"]);
     }
 
     #[test]
     fn decades_are_whole_and_at_most_eight() {
-        let residual = FigureAxis::decades("phi4 left", "rad", [3e-5, 0.0, f64::NAN, 4e-2]);
-        assert_eq!(residual.label(), "phi4 left (rad)");
-        assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
-        assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
+        let residual = FigureAxis::decades("phi4 left", "m", [3e-5, 0.0, f64::NAN, 4e-2]);
+        assert_eq!(residual.label(), "phi4 left (mm)");
+        assert_eq!(texts(&residual, 8), ["100", "10", "1", "0.1", "0.01"]);
+        assert_eq!(texts(&residual, 2), ["100", "1", "0.01"]);
         // Distances are those of the logarithms, and zero has no place.
         let extent = residual.extent();
         assert!((extent.start + 5.0).abs() < 1e-12 && (extent.end + 1.0).abs() < 1e-12);
         assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);
         assert!(!residual.place(0.0).is_finite() && !residual.place(-1.0).is_finite());
+        // Decades of the unit that is shown: 0.3 and 41 arcsec, 2 and 900 deg.
+        let arcsec = std::f64::consts::PI / 180.0 / 3600.0;
+        let fine = FigureAxis::decades("error", "rad", [0.3 * arcsec, 41.0 * arcsec]);
+        assert_eq!(
+            (fine.label().as_str(), texts(&fine, 4)),
+            ("error (arcsec)", vec!["100".into(), "10".into(), "1".into(), "0.1".into()])
+        );
+        let degrees = fine.in_unit(ReaderUnits::Engineering.fitting(1.0, "rad"));
+        // 41 arcsec are 0.0114 deg, 0.3 arcsec are 0.000083 deg.
+        assert_eq!(
+            (degrees.label().as_str(), texts(&degrees, 5)),
+            ("error (deg)", ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"].map(str::to_owned).to_vec())
+        );
+        let hertz = FigureAxis::decades("frequency", "rad/s", [0.2 * 6.2832, 0.9 * 6.2832]).in_hertz();
+        assert_eq!(texts(&hertz, 6), ["1", "0.5", "0.2", "0.1"]);
+        // The first sample of a hundred does not decide the axis.
+        let run = (0..100).map(|i| if i == 0 { 1e-12 } else { 0.3 });
+        assert_eq!(FigureAxis::decades("norm", "", run).range, 0.1..1.0);
         let deep = FigureAxis::decades("x", "m", [1e-17, 2e3]).extent();
         assert!((deep.start + 4.0).abs() < 1e-12 && (deep.end - 4.0).abs() < 1e-12);
         for values in [vec![], vec![0.0], vec![1.0], vec![1e300], vec![-3.0, f64::NAN]] {

@@ -28,6 +28,7 @@ pub struct PanelLines {
     line_count: usize,
     width: f64,
     is_from_zero: bool,
+    is_of_rotors: bool,
 }
 
 impl OverTime {
@@ -39,7 +40,7 @@ impl OverTime {
     /// Adds a panel; nothing if it has no layers.
     #[must_use]
     pub fn panel(mut self, name: &str, unit: &'static str, lines: PanelLines) -> Self {
-        let PanelLines { layers: own, limit, is_from_zero, .. } = lines;
+        let PanelLines { layers: own, limit, is_from_zero, is_of_rotors, .. } = lines;
         if own.is_empty() {
             return self;
         }
@@ -55,6 +56,7 @@ impl OverTime {
         } else {
             FigureAxis::around(name, unit, values)
         };
+        let y = if is_of_rotors { y.in_rpm() } else { y };
         if let Some(above) = self.figure.panels.last_mut() {
             above.x = above.x.unnamed();
         }
@@ -70,7 +72,14 @@ impl OverTime {
 
 impl Default for PanelLines {
     fn default() -> Self {
-        Self { layers: Vec::new(), limit: None, line_count: 0, width: 1.2, is_from_zero: false }
+        Self {
+            layers: Vec::new(),
+            limit: None,
+            line_count: 0,
+            width: 1.2,
+            is_from_zero: false,
+            is_of_rotors: false,
+        }
     }
 }
 
@@ -85,6 +94,12 @@ impl PanelLines {
     #[must_use]
     pub fn from_zero(self) -> Self {
         Self { is_from_zero: true, ..self }
+    }
+
+    /// Shows the speeds of rotors (rad/s) in rpm.
+    #[must_use]
+    pub fn of_rotors(self) -> Self {
+        Self { is_of_rotors: true, ..self }
     }
 
     /// Sets the width of the lines that follow (pixels).

@@ -57,7 +57,8 @@ const LADDERS: [(&str, &[Rung]); 5] = [
 ];
 
 /// Units with prefixes in steps of a thousand, such as mN m.
-const PREFIXED: [&str; 10] = ["N m", "N m s", "J", "N", "N s", "m", "m/s²", "A m²", "J/(kg m²)", "N m s/rad"];
+const PREFIXED: [&str; 12] =
+    ["N m", "N m s", "J", "N", "N s", "m", "m/s", "m/s²", "A m²", "T", "J/(kg m²)", "N m s/rad"];
 
 /// Prefixes with their sizes, and the least value for which each is chosen.
 const PREFIXES: [(&str, f64, f64); 6] = [
@@ -118,7 +119,27 @@ impl ReaderUnits {
     }
 }
 
+/// Units of times on an axis, with their sizes (s) and the longest axis (s) that has each.
+const TIMES: [(&str, f64, f64); 4] =
+    [("µs", 1e-6, 1e-4), ("ms", 1e-3, 0.1), ("s", 1.0, 7200.0), ("h", 3600.0, f64::INFINITY)];
+
+/// Returns a unit that has a ladder or prefixes.
+pub fn known_unit(unit: &str) -> Option<&'static str> {
+    LADDERS.iter().map(|(name, _)| *name).chain(PREFIXED).find(|name| *name == unit)
+}
+
 impl ReaderUnit {
+    /// Returns the unit of an axis over a length of time (s): s up to two hours, h beyond.
+    pub fn of_time_axis(length: f64) -> Self {
+        let (name, size, _) = TIMES.into_iter().find(|(.., most)| length <= *most).unwrap_or(TIMES[2]);
+        Self { name: name.into(), size, is_si: false }
+    }
+
+    /// Returns the size of the unit in SI.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
     fn plain(unit: &str) -> Self {
         Self { name: unit.to_owned().into(), size: 1.0, is_si: false }
     }
@@ -236,7 +257,7 @@ fn decimals(value: f64) -> usize {
 }
 
 /// Returns the text of a number with thin spaces between the thousands of its whole part, from five digits on.
-fn grouped(text: &str) -> String {
+pub fn grouped(text: &str) -> String {
     let (whole, rest) = text.find('.').map_or((text, ""), |point| text.split_at(point));
     let (sign, digits) = whole.strip_prefix('-').map_or(("", whole), |digits| ("-", digits));
     if digits.len() < 5 || !digits.bytes().all(|byte| byte.is_ascii_digit()) {

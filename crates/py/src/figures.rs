@@ -24,6 +24,9 @@ use super::parts;
 use super::table::column;
 use super::{Scenario, detail};
 
+/// Largest number of ticks of a logarithmic axis.
+const TICKS: u32 = 8;
+
 /// A figure.
 #[pyclass(frozen, module = "flexsc._native")]
 pub struct Figure(Arc<flexsc_figure::Figure>);
@@ -86,6 +89,9 @@ fn axis<'py>(py: Python<'py>, axis: &FigureAxis) -> PyResult<Bound<'py, PyDict>>
     reported.set_item("high", axis.range.end)?;
     reported.set_item("factor", axis.factor())?;
     reported.set_item("logarithmic", axis.scale == Scale::Logarithmic)?;
+    let ticks = axis.ticks(TICKS);
+    let texts: Vec<(f64, String)> = ticks.at.iter().map(|value| (*value, ticks.text(*value))).collect();
+    reported.set_item("ticks", texts)?;
     Ok(reported)
 }
 

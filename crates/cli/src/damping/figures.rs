@@ -21,7 +21,7 @@ fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> FigureAxis {
 pub fn figure(rows: &[DampedMode], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
     let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);
-    let x = |name: &str| FigureAxis::exact(name, "rad/s", range.clone());
+    let x = |name: &str| FigureAxis::exact(name, "rad/s", range.clone()).in_hertz();
     let line = |value: &dyn Fn(&DampedMode) -> Option<f64>| -> Vec<Point> {
         rows.iter().map(|row| (row.frequency_rad_s, value(row).unwrap_or(f64::NAN))).collect()
     };

@@ -102,7 +102,7 @@ pub fn figure(map: &MapResults) -> Figure {
     // Contours of the positions on the colour scale cross the edges of cells where the colours change.
     field.values.iter_mut().for_each(|radius| *radius = place(*radius));
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
-    let x = FigureAxis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
+    let x = FigureAxis::exact("frequency of the dominant mode", "rad/s", ends(&field.x)).in_hertz();
     let y = FigureAxis::exact("period of the samples (s)", "", ends(&field.y));
 
     // Only the shades that occur are in the bar.

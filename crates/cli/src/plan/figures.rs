@@ -51,8 +51,7 @@ impl CommandFamily<'_> {
     fn angle(&self) -> Figure {
         let lines =
             self.lines(|plan| self.motion(plan).into_iter().map(|(t, motion)| (t, motion[0])).collect());
-        // Several radians in milliradians would be long numbers.
-        let y = FigureAxis::around("hub angle (rad)", "", heights(&lines));
+        let y = FigureAxis::around("hub angle", "rad", heights(&lines));
         let (plan, end) = (self.plan, self.end());
         let target = self.body.angle.get() + plan.angle;
         let goal = vec![(plan.time, target), (end, target + plan.end_rate * (end - plan.time))];

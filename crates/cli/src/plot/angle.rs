@@ -1,5 +1,6 @@
 //! Figure `angle`: the hub's angle over the run with its goal, its distance from the goal, and the settling time.
 
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -116,7 +117,7 @@ impl SettlingCurve {
 
     fn layers(&self, story: &RunEvents, y: &FigureAxis) -> Vec<Layer> {
         let level = |height: f64| [(self.from, height), (story.end, height)];
-        let width = format!("within ±{} mrad", super::short(1e3 * self.band));
+        let width = format!("within ±{}", ReaderUnits::Engineering.quantity(self.band, "rad"));
         let within = band(&level(-self.band), &level(self.band));
         let mut layers = vec![Layer::new(&width, colour::GREEN, LayerShape::Area(0.25), within)];
         if let Some(settling) = self.settled_at {

@@ -1,6 +1,7 @@
 //! Figure `drives` of a spacecraft with turning appendages: drive angles, and natural frequencies relative to their
 //! highest.
 
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, OverTime, PanelLines, Point};
 
@@ -29,7 +30,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         let highest = line.iter().map(|(_, value)| *value).fold(0.0, f64::max);
         let varies = line.iter().any(|(_, value)| *value < CONSTANT * highest);
         let ratio = line.into_iter().map(|(time, value)| (time, value / highest)).collect();
-        varies.then(|| (format!("{highest:.3} rad/s"), ratio))
+        varies.then(|| (ReaderUnits::Engineering.frequency().quantity(highest), ratio))
     };
     let frequencies: Vec<(String, Vec<Point>)> = (0..modes).filter_map(relative).collect();
     let subject = match (frequencies.len(), modes - frequencies.len()) {

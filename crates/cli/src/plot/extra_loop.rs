@@ -32,15 +32,16 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let gain = |w: f64| extra(story).map_or(0.0, |extra| extra.gain(w));
     let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
     let x = time(0.0..story.end);
-    let panel = |x: FigureAxis, name: &str, line: Vec<Point>, named: bool| {
-        let y = FigureAxis::around(name, "", line.iter().map(|point| point.1));
+    let panel = |x: FigureAxis, (name, unit): (&str, &'static str), line: Vec<Point>, named: bool| {
+        let y = FigureAxis::around(name, unit, line.iter().map(|point| point.1)).in_hertz();
         let mut layers = filter_lock::spans(motion, &y, named);
-        let (label, _) = name.split_once(" (").unwrap_or((name, ""));
-        layers.push(Layer::new(label, colour::BLUE, LayerShape::Line(1.4), line));
+        layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.4), line));
         Panel::new(x, y, layers)
     };
-    let panels =
-        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read (rad/s)", read, false)];
+    let panels = vec![
+        panel(x.unnamed(), ("gain k_d", ""), gains, true),
+        panel(x, ("frequency read", "rad/s"), read, false),
+    ];
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 

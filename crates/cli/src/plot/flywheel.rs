@@ -21,6 +21,9 @@ pub const SPEC: FigureSpec = FigureSpec {
     draw,
 };
 
+/// Name of the speed of the rotor.
+const SPEED: &str = "speed";
+
 fn draw(run: &RunData<'_>) -> Figure {
     if wheels::wheels(run.story).is_some() { wheels::figure(run) } else { figure(run.story, run.motion) }
 }
@@ -37,6 +40,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
         let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
         let y = FigureAxis::around(name, unit, values.iter().chain(&limits).copied());
+        let y = if name == SPEED { y.in_rpm() } else { y };
         let level = |(index, height): (usize, &f64)| {
             let name = if index == 0 { "limits" } else { "" };
             Layer::new(
@@ -57,7 +61,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     };
     let [speeds, momenta] = &motion.wheel;
     let panels = vec![
-        panel(x.unnamed(), "speed", "rad/s", speeds, limit.map(|(speed, _)| speed)),
+        panel(x.unnamed(), SPEED, "rad/s", speeds, limit.map(|(speed, _)| speed)),
         panel(x, momentum, unit, momenta, limit.map(|(speed, inertia)| speed * inertia)),
     ];
     Figure { title: title(story, "flywheel"), panels, panel_height: 200 }

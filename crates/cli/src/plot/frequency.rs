@@ -40,7 +40,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let heights = |points: &[Point]| points.iter().map(|point| point.1).collect::<Vec<_>>();
     let most = BEYOND * heights(&truth).into_iter().fold(0.0, f64::max);
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
-    let y = FigureAxis::around("frequency (rad/s)", "", shown.map(|value| value.clamp(0.0, most)));
+    let y = FigureAxis::around("frequency", "rad/s", shown.map(|value| value.clamp(0.0, most))).in_hertz();
     let x = time(0.0..story.end);
     let mut layers = filter_lock::spans(motion, &y, true);
     layers.extend([
@@ -58,7 +58,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let error = line(&|e| e.frequency - e.true_frequency);
     let [lower, upper] = [-2.0, 2.0].map(|deviations| line(&|e| deviations * e.frequency_sd));
     let shown = [&error, &lower, &upper].into_iter().flat_map(|points| heights(points));
-    let y = FigureAxis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most)));
+    let y = FigureAxis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most))).in_hertz();
     let mut layers = filter_lock::spans(motion, &y, false);
     layers.extend([
         Layer::new("", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),

@@ -36,7 +36,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         let most = BEYOND * truth.iter().map(|point| point.1).fold(0.0, f64::max);
         let shown = [&estimated, &truth, &lower, &upper].into_iter().flatten();
         let values = shown.map(|point| point.1.clamp(0.0, most)).collect::<Vec<_>>();
-        let y = FigureAxis::around(&format!("mode {mode} (rad/s)"), "", values);
+        let y = FigureAxis::around(&format!("mode {mode}"), "rad/s", values).in_hertz();
         let x = time(0.0..story.end);
         let name = |name| if index == 0 { name } else { "" };
         let ends = truth.first().into_iter().chain(truth.last()).copied().collect();

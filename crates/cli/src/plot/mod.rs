@@ -69,7 +69,7 @@ use figure_spec::{FigureSpec, MotionPart, RunData};
 use motion::MotionData;
 use run_events::RunEvents;
 pub use title::readable;
-use title::{short, title};
+use title::title;
 
 #[derive(clap::Args)]
 pub struct PlotArgs {

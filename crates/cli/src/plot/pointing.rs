@@ -1,5 +1,6 @@
 //! Figure `pointing` of three axes: the pointing error about each axis, with its goal and the dead zone.
 
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::record::Pointing;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
@@ -40,7 +41,8 @@ fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
             panel.y = FigureAxis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
         }
         let level = |height: f64| [(0.0, height), (story.end, height)];
-        let wide = |name: &str, half: f64| format!("{name} ±{} mrad", super::short(1e3 * half));
+        let wide =
+            |name: &str, half: f64| format!("{name} ±{}", ReaderUnits::Engineering.quantity(half, "rad"));
         let mut below = Vec::new();
         if let Some(half) = goal {
             let area = band(&level(-half), &level(half));

@@ -79,7 +79,8 @@ fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
         let layers: Vec<Layer> =
             [colour::BLUE, colour::ORANGE, colour::GREEN].into_iter().enumerate().map(line).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        Panel::new(x, FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers)
+        let y = FigureAxis::around(name, unit, values);
+        Panel::new(x, y, layers)
     };
     let x = time(0.0..story.end);
     let places: [fn(&Position) -> f64; 3] =
@@ -107,7 +108,7 @@ fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let [elastic, visible] = cycles.elastic_energies();
     let fuel = cycles.fuel(story);
     let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| {
-        let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
+        let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value));
         Panel::new(x, y, vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)])
     };
     let x = time(0.0..story.end);
@@ -201,8 +202,7 @@ fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let count = first.map_or(0, |(_, tracking)| tracking.trackers.len());
         let values_of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
-            let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
-            cycles.rows().map(|(time, tracking)| (time, hertz(tracking))).collect()
+            cycles.rows::<Tracking>().map(|(time, row)| (time, value(&row.trackers[mode]))).collect()
         };
         let mine = |mode: &usize| first.is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
         let mut layers = Vec::new();
@@ -224,9 +224,9 @@ fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
         }
         layers
     };
-    let mut panels = panels(story, "", lines);
+    let mut panels = panels(story, "rad/s", lines);
     for panel in &mut panels {
-        panel.y.name.push_str(" (Hz)");
+        panel.y = panel.y.clone().in_hertz();
     }
     Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }

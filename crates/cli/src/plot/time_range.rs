@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Scale};
+use flexsc_figure::{Figure, Layer, LayerShape, Panel, Scale};
 
 use crate::error::CliError;
 
@@ -33,13 +33,11 @@ pub fn crop(mut figure: Figure, shown: &Range<f64>) -> Figure {
     for panel in
         figure.panels.iter_mut().filter(|panel| panel.x.unit == "s" && panel.x.scale == Scale::Linear)
     {
-        let name = std::mem::take(&mut panel.x.name);
-        panel.x = FigureAxis::exact(&name, "s", shown.clone());
+        panel.x = panel.x.over(shown.clone());
         if panel.y.scale == Scale::Linear
             && let Some(range) = heights(panel)
         {
-            let name = std::mem::take(&mut panel.y.name);
-            panel.y = FigureAxis::exact(&name, panel.y.unit, range);
+            panel.y = panel.y.over(range);
         }
     }
     figure
@@ -82,7 +80,7 @@ fn value_at(layer: &Layer, time: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use flexsc_figure::colour;
+    use flexsc_figure::{FigureAxis, colour};
 
     use super::*;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use flexsc_core::record::{Column, Columns, Log};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour, name_and_unit};
 
 use super::time;
 use super::title::readable;
@@ -16,30 +16,41 @@ const COLOURS: [RGBColor; 5] = [colour::BLUE, colour::VERMILLION, colour::GREEN,
 const MOST: usize = 12;
 /// Columns of indices, that distinguish the rows of one topic.
 const INDICES: [&str; 3] = ["axis", "sensor", "wheel"];
-/// Endings of the engine's field names with their units.
-const UNITS: [(&str, &str); 15] = [
-    ("_rad_s", "rad/s"),
-    ("_rad", "rad"),
-    ("_nm_s", "N m s"),
-    ("_nm", "N m"),
-    ("_m_s2", "m/s²"),
-    ("_m_s", "m/s"),
-    ("_m", "m"),
-    ("_am2", "A m²"),
-    ("_on_s", "s"),
-    ("_from_s", "s"),
-    ("_to_s", "s"),
-    ("_kg", "kg"),
-    ("_j", "J"),
-    ("_t", "T"),
-    ("_1_s", "1/s"),
+/// Endings of the engine's field names with their units, and the quantity of several such fields.
+const UNITS: [(&str, &str, &str); 15] = [
+    ("_rad_s", "rad/s", "rate"),
+    ("_rad", "rad", "angle"),
+    ("_nm_s", "N m s", "momentum"),
+    ("_nm", "N m", "torque"),
+    ("_m_s2", "m/s²", "acceleration"),
+    ("_m_s", "m/s", "velocity"),
+    ("_m", "m", "length"),
+    ("_am2", "A m²", "magnetic moment"),
+    ("_on_s", "s", "time"),
+    ("_from_s", "s", "time"),
+    ("_to_s", "s", "time"),
+    ("_kg", "kg", "mass"),
+    ("_j", "J", "energy"),
+    ("_t", "T", "magnetic field"),
+    ("_1_s", "1/s", "rate"),
 ];
+/// Unit of rates, and the words in the names of fields that are speeds of rotors and angular frequencies.
+const RATE: (&str, &str, &str) = ("rad/s", "speed", "frequency");
 
 /// Line of a figure: name, unit, and points.
 struct NumberLine {
     name: String,
     unit: String,
     points: Vec<Point>,
+}
+
+impl NumberLine {
+    /// Returns the quantity of a rate that is shown in a unit of its own.
+    fn special(&self) -> Option<&'static str> {
+        let (unit, speed, frequency) = RATE;
+        let is_it = |word: &&str| self.unit == unit && self.name.split(' ').any(|own| own == *word);
+        [speed, frequency].into_iter().find(is_it)
+    }
 }
 
 /// Returns the figure of a topic of a log.
@@ -53,7 +64,8 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
     collect(&columns, times, &log.units(topic), &mut lines);
     let mut panels: Vec<(String, Vec<NumberLine>)> = Vec::new();
     for line in lines {
-        match panels.iter_mut().find(|(unit, own)| *unit == line.unit && own.len() < MOST) {
+        let is_alike = |other: &NumberLine| other.unit == line.unit && other.special() == line.special();
+        match panels.iter_mut().find(|(_, own)| own.len() < MOST && own.iter().all(is_alike)) {
             Some((_, own)) => own.push(line),
             None => panels.push((line.unit.clone(), vec![line])),
         }
@@ -68,10 +80,16 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
     let panel = |(index, (unit, lines)): (usize, (String, Vec<NumberLine>))| {
         let values: Vec<f64> = lines.iter().flat_map(|line| &line.points).map(|point| point.1).collect();
         let single = if let [line] = &lines[..] { line.name.clone() } else { String::new() };
-        let mut y = FigureAxis::around(&single, "", values);
-        if !unit.is_empty() {
-            format!("{single} ({unit})").trim_start().clone_into(&mut y.name);
-        }
+        let special = lines[0].special();
+        let quantity = || UNITS.iter().find(|(_, own, _)| *own == unit).map(|(.., quantity)| *quantity);
+        let name = if single.is_empty() { special.or(quantity()).unwrap_or("value") } else { &single };
+        let (name, unit) = name_and_unit(name, &unit);
+        let y = FigureAxis::around(&name, unit, values);
+        let y = match special {
+            Some(word) if word == RATE.1 => y.in_rpm(),
+            Some(_) => y.in_hertz(),
+            None => y,
+        };
         let x = time(start..end);
         let is_alone = !single.is_empty();
         let layers = lines.into_iter().enumerate().map(|(index, line)| {
@@ -155,13 +173,13 @@ fn indices(columns: &Columns) -> Vec<u64> {
 
 /// Returns the unit of a field: as the log gives it, or by the ending of its name.
 fn unit(field: &str, units: &BTreeMap<String, String>) -> String {
-    let by_name = || UNITS.iter().find(|(ending, _)| field.ends_with(ending)).map(|(_, unit)| *unit);
+    let by_name = || UNITS.iter().find(|(ending, ..)| field.ends_with(ending)).map(|(_, unit, _)| *unit);
     units.get(field).cloned().unwrap_or_else(|| by_name().unwrap_or_default().to_owned())
 }
 
 /// Returns the name of a field in words, without the ending for its unit.
 fn words(field: &str, unit: &str) -> String {
     let stem =
-        UNITS.iter().filter(|(_, own)| *own == unit).find_map(|(ending, _)| field.strip_suffix(ending));
+        UNITS.iter().filter(|(_, own, _)| *own == unit).find_map(|(ending, ..)| field.strip_suffix(ending));
     stem.unwrap_or(field).replace('_', " ")
 }

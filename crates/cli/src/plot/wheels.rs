@@ -29,7 +29,7 @@ pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         PanelLines::default().limits("limits", limit).numbered("wheel", (0..count).map(line))
     };
     let figure = OverTime::new(title(story, "wheels"), story.end, 200)
-        .panel("speed", "rad/s", each(speed, |wheel| wheel.speed_rad_s))
+        .panel("speed", "rad/s", each(speed, |wheel| wheel.speed_rad_s).of_rotors())
         .panel("torque", "N m", each(torque, |wheel| wheel.torque_nm));
     if !story.scenario.study.bearings.iter().any(Bearing::can_stick) {
         return figure.figure();

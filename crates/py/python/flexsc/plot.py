@@ -255,10 +255,14 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
 
 
 def _axis(ax: Axes, side: str, axis: Any, description: dict[str, Any], most: int) -> None:
-    from matplotlib.ticker import FuncFormatter
+    from matplotlib.ticker import FixedFormatter, FixedLocator, FuncFormatter, NullFormatter
 
     if description["logarithmic"]:
         getattr(ax, f"set_{side}scale")("log")
+        places, texts = zip(*description["ticks"], strict=True)
+        axis.set_major_locator(FixedLocator(places))
+        axis.set_major_formatter(FixedFormatter(texts))
+        axis.set_minor_formatter(NullFormatter())
     else:
         axis.set_major_locator(_in_units_of(description["factor"], most))
         axis.set_major_formatter(FuncFormatter(partial(_number, axis, description["factor"])))
@@ -285,6 +289,8 @@ def _number(axis: Any, factor: float, value: float, _: int | None = None) -> str
     if abs(scaled) < 1e-9 * step:
         return "0"
     text = f"{scaled:.{decimals}f}" if decimals <= 6 and abs(scaled) < 1e7 else f"{scaled:.1e}"
+    if abs(scaled) >= 1e4 and "e" not in text:
+        text = f"{scaled:,.{decimals}f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
     return text.replace("-", "\N{MINUS SIGN}")
 
 
