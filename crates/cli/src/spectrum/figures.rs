@@ -1,10 +1,8 @@
-//! Figures of noise: densities with the cumulative rms, and lines of the wheels over their speed.
+//! Figures of noise: densities with the cumulative rms.
 
-use std::f64::consts::TAU;
-
-use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, WheelSpectrum, WindowRms};
+use flexsc_core::analysis::noise::{NoiseReport, OutputNoise};
 use flexsc_figure::{
-    Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour, name_and_unit, palette,
+    Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour, name_and_unit,
 };
 
 use super::welch::WelchEstimate;
@@ -12,8 +10,6 @@ use super::welch::WelchEstimate;
 /// Colours of the sources.
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::GREY];
-/// Decades of amplitudes that a waterfall shows.
-const DECADES: usize = 5;
 
 /// Returns a figure of the density and the cumulative rms of each output.
 pub fn densities(name: &str, report: &NoiseReport, welch: &[WelchEstimate]) -> Vec<Named> {
@@ -61,59 +57,4 @@ fn density_figure(
 fn estimate_layer(estimate: &WelchEstimate) -> Layer {
     let points = estimate.frequency_hz.iter().copied().zip(estimate.density.iter().copied());
     Layer::new("log (Welch)", colour::SKY, LayerShape::Line(1.0), points.collect())
-}
-
-/// Returns a figure of the lines of each output over frequency and speed, and of their rms over speed.
-pub fn waterfalls(name: &str, report: &NoiseReport) -> Vec<Named> {
-    let Some(wheels) = &report.wheels else { return Vec::new() };
-    let figure = |(index, output): (usize, &OutputNoise)| {
-        (format!("{name}-waterfall_{}", output.output), waterfall(name, wheels, (index, output)))
-    };
-    report.outputs.iter().enumerate().map(figure).collect()
-}
-
-fn waterfall(name: &str, wheels: &WheelSpectrum, (index, output): (usize, &OutputNoise)) -> Figure {
-    let mut lines: Vec<(Point, f64)> = Vec::new();
-    for of_wheel in &wheels.lines {
-        let found = &of_wheel.outputs[index];
-        for line in found.aliases.iter().chain([&found.direct]) {
-            lines.push(((line.frequency_rad_s / TAU, of_wheel.speed_rad_s), line.amplitude));
-        }
-    }
-    let largest = lines.iter().map(|(_, amplitude)| *amplitude).fold(0.0, f64::max);
-    let top = largest.log10().ceil();
-    let colours = palette::viridis(DECADES);
-    let layer = |decade: usize| {
-        let high = top - decade as f64;
-        let range = 10_f64.powf(high - 1.0)..10_f64.powf(high);
-        let points = lines.iter().filter(|(_, amplitude)| range.contains(amplitude)).map(|(point, _)| *point);
-        let name = format!("to 1e{high} {}", output.unit);
-        Layer::new(&name, colours[DECADES - 1 - decade], LayerShape::Dot, points.collect())
-    };
-    let layers: Vec<Layer> = if largest > 0.0 { (0..DECADES).rev().map(layer).collect() } else { Vec::new() };
-    let speed = || FigureAxis::around("speed", "rad/s", wheels.speed_rad_s.iter().copied());
-    let frequency = FigureAxis::around("frequency", "Hz", lines.iter().map(|(point, _)| point.0));
-    let rms = &wheels.rms[index];
-    let over_speed = |name: &str, colour: RGBColor, values: &[f64]| {
-        let points = wheels.speed_rad_s.iter().copied().zip(values.iter().copied()).collect();
-        Layer::new(name, colour, LayerShape::Line(1.5), points)
-    };
-    let mut all = rms.clone();
-    let curves = match wheels.windows.get(index) {
-        Some(windows) => {
-            let of = |value: fn(&WindowRms) -> f64| windows.iter().map(value).collect::<Vec<f64>>();
-            let (mpe, rpe) = (of(|index| index.mpe), of(|index| index.rpe_uniform));
-            all.extend(mpe.iter().chain(&rpe));
-            let length = windows.first().map_or(0.0, |index| index.window_s);
-            vec![
-                over_speed("rms", colour::BLUE, rms),
-                over_speed(&format!("MPE, {length} s"), colour::GREEN, &mpe),
-                over_speed(&format!("RPE uniform, {length} s"), colour::VERMILLION, &rpe),
-            ]
-        }
-        None => vec![over_speed("", colour::BLUE, rms)],
-    };
-    let size = FigureAxis::decades(&format!("rms ({})", output.unit), "", all);
-    let panels = vec![Panel::new(frequency, speed(), layers), Panel::new(speed(), size, curves)];
-    Figure { title: format!("{name}: lines of the wheels in {}", output.output), panels, panel_height: 260 }
 }
