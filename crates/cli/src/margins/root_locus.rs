@@ -61,7 +61,7 @@ pub fn figure(name: &str, opened: &OpenLoop, loops: &[SignalMargins]) -> Option<
     let edges = (1..classes()).map(edge).collect();
     let what = one.signal.replace('_', " ");
     panels[0].bar =
-        Some(Bar { name: format!("gain of the loop {what} (dB), 0 as designed"), colours, edges });
+        Some(Bar { name: format!("gain of {what} (dB)"), colours, edges });
     Some(Figure { title: format!("{name}: root locus"), panels, panel_height: 330 })
 }
 

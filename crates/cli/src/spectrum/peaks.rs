@@ -43,15 +43,20 @@ fn rows(one: &OutputWaterfall<'_>) -> Vec<Json> {
     let mut sorted = rms.to_vec();
     sorted.sort_by(f64::total_cmp);
     let level = RISE * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    // The largest within the windows may be far below the largest of all frequencies.
+    let within_largest = within.as_ref().and_then(|within| {
+        (0..within.len()).max_by(|a, b| within[*a].total_cmp(&within[*b]))
+    });
     let is_peak = |place: &usize| {
         let value = rms[*place];
         let rises = *place == 0 || rms[*place - 1] < value;
         let falls = rms.get(*place + 1).is_none_or(|next| *next <= value);
-        value > level && rises && falls
+        value > level && rises && falls && within_largest != Some(*place)
     };
     let mut peaks: Vec<usize> = (0..rms.len()).filter(is_peak).collect();
     peaks.sort_by(|a, b| rms[*b].total_cmp(&rms[*a]));
     peaks.truncate(MOST);
+    peaks.extend(within_largest);
     peaks.sort_unstable();
     let row = |(index, place): (usize, usize)| {
         json!({

@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, SpectralLine, WheelSpectrum};
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, number};
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, four_digits, number};
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{
     Bar, Figure, FigureAxis, FigureNote, Layer, LayerShape, Named, NoteSide, Panel, Point, colour, name_and_unit,
@@ -163,6 +163,7 @@ impl<'a> OutputWaterfall<'a> {
         let slowest = self.wheels.speed_rad_s.first().copied().unwrap_or(1.0);
         let direct = orders(0).fold(f64::INFINITY, f64::min) * slowest / TAU;
         let lowest = met.iter().map(|mode| mode.frequency_rad_s / TAU).fold(direct, f64::min);
+        let fastest = orders(0).fold(f64::INFINITY, f64::min) * self.speed().range.end / TAU;
         let highest = all().map(|(_, line)| line.0).fold(0.0, f64::max);
         let frequency = FigureAxis::decades("frequency", "Hz", [LOWEST * lowest, highest]);
         let largest = all().map(|(_, line)| line.1).fold(0.0, f64::max);
@@ -190,13 +191,25 @@ impl<'a> OutputWaterfall<'a> {
             let before: Vec<String> = hertz.iter().map(|height| number(*height)).collect();
             let and = if before.is_empty() { String::new() } else { format!("{} and ", before.join(", ")) };
             let text = format!("{name}, {and}{} Hz", number(last));
-            notes.push(FigureNote::new(text, (0.0, last), NoteSide::Above, colour::GREEN));
+            // The lines at the frequency of the wheels end at the upper right.
+            let end = if last < 0.4 * fastest { x.range.end } else { 0.0 };
+            notes.push(FigureNote::new(text, (end, last), NoteSide::Above, colour::GREEN));
+        }
+        let mut named: Vec<f64> = orders(0).collect();
+        named.dedup();
+        for order in &named {
+            let ends = [slowest, x.range.end].map(|speed| (speed, order * speed / TAU));
+            // A straight line is a curve over a logarithm.
+            let along = |part: u32| {
+                let part = f64::from(part) / 100.0;
+                (ends[0].0 + part * (ends[1].0 - ends[0].0), ends[0].1 + part * (ends[1].1 - ends[0].1))
+            };
+            let line = (0..=100).map(along).collect();
+            layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.7), line));
         }
         if largest > 0.0 {
             layers.extend((0..DECADES * PER_DECADE).map(layer));
         }
-        let mut named: Vec<f64> = orders(0).collect();
-        named.dedup();
         for order in named.into_iter().take(3) {
             let speed = 0.75 * x.range.end;
             let text = if order == 1.0 { "once per turn".to_owned() } else { format!("{order} per turn") };
@@ -209,7 +222,7 @@ impl<'a> OutputWaterfall<'a> {
         }
         let edge = |class: usize| {
             let power = top - DECADES as f64 + (class / PER_DECADE) as f64;
-            if class % PER_DECADE == 0 { number(10_f64.powf(power)) } else { String::new() }
+            if class % PER_DECADE == 0 { four_digits(10_f64.powf(power)) } else { String::new() }
         };
         let bar = Bar {
             name: format!("amplitude ({})", if unit.name.is_empty() { &self.output.unit } else { &*unit.name }),
