@@ -23,6 +23,7 @@ mod grid;
 mod help;
 mod human;
 mod identify;
+mod key_axis;
 mod layout;
 #[cfg_attr(not(feature = "live"), path = "live/unavailable.rs")]
 mod live;

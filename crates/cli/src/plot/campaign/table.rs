@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_core::metrics::{self, list_element};
 use flexsc_core::record::atomic_file;
 use flexsc_core::scenario::AssessedRequirement;
+use flexsc_figure::FigureAxis;
 
 use super::metric_column::{
     MetricColumn, elements, required_metric, requirement_label, value_of_requirement,
@@ -14,6 +16,7 @@ use super::metric_column::{
 use super::text_cells::TextCells;
 use crate::campaign::SCENARIO;
 use crate::error::CliError;
+use crate::key_axis::key_axis;
 
 /// Runs of a campaign, in the order of their numbers.
 pub struct CampaignRuns {
@@ -37,6 +40,16 @@ pub enum ScenarioSource {
     File(PathBuf),
     /// Directory of the campaign's parts.
     Directory(PathBuf),
+}
+
+/// Limit on a metric, by a requirement.
+pub struct RequiredLimit {
+    /// Largest allowed value.
+    pub limit: f64,
+    /// The limit as it was written.
+    pub text: String,
+    /// Unit of the limit.
+    pub unit: ReaderUnit,
 }
 
 /// Key that varies.
@@ -230,33 +243,38 @@ impl CampaignRuns {
         (all.iter().enumerate().map(column).collect(), all.iter().filter_map(required_metric).collect())
     }
 
-    /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
-    /// it.
-    pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
+    /// Returns the limit on a metric, if there is one.
+    pub fn required(&self, metric: &MetricColumn) -> Option<RequiredLimit> {
         let (scenario, _) = self.scenario.as_ref()?;
-        let requirements = &scenario.study.requirements;
-        let of_metric = |(index, requirement): (usize, &AssessedRequirement)| {
-            let name = value_of_requirement(index);
-            let is_it =
-                metric.name == name || required_metric(requirement).is_some_and(|name| name == metric.name);
-            is_it.then_some(requirement.limit)
-        };
-        let most = requirements.iter().enumerate().find_map(of_metric)?;
-        let sorted = metric.sorted();
-        let successes = sorted.iter().filter(|value| **value <= most).count();
-        let part = 100.0 * successes as f64 / sorted.len().max(1) as f64;
-        Some((most, format!("requirement, met by {successes} of {} runs ({part:.0} %)", sorted.len())))
+        let mut requirements = scenario.study.requirements.iter().enumerate();
+        let (_, own) = requirements.find(|(index, requirement)| {
+            let limited = required_metric(requirement);
+            metric.name == value_of_requirement(*index) || limited.is_some_and(|name| name == metric.name)
+        })?;
+        let written = own.written_limit.as_deref();
+        let unit = ReaderUnits::Engineering.as_written(written, own.limit, own.unit);
+        Some(RequiredLimit { limit: own.limit, text: format!("at most {}", unit.limit(own.limit, written)), unit })
     }
 
-    /// Returns the label of an axis along a key: its name and its unit.
-    pub fn label_of(&self, key: &CampaignKey) -> String {
-        let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));
-        unit.map_or_else(|| key.name.clone(), |unit| format!("{} ({unit})", key.name))
+    /// Returns an axis around the values of a key.
+    pub fn key_axis(&self, key: &CampaignKey) -> FigureAxis {
+        let scenario = self.scenario.as_ref().map(|(scenario, _)| scenario);
+        key_axis(scenario, &key.name, key.values.iter().copied())
     }
 
     /// Returns the keys that are drawn.
     pub fn drawn(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| !key.swept).collect()
+    }
+}
+
+impl RequiredLimit {
+    /// Returns an axis with its numbers in the unit of the limit, if there is one.
+    pub fn shown(required: Option<&Self>, axis: FigureAxis) -> FigureAxis {
+        match required {
+            Some(own) if !own.unit.name.is_empty() => axis.in_unit(own.unit.clone()),
+            _ => axis,
+        }
     }
 }
 
