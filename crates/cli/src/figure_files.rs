@@ -39,8 +39,9 @@ pub struct FigureLook {
 impl FigureLook {
     /// Returns the style of the figures with their size.
     pub fn style(&self) -> Result<Style, CliError> {
-        Style::new(self.width, self.font)
-            .map_err(|why| CliError::Arguments(format!("--width, --font: {why}")))
+        let style = Style::new(self.width, self.font)
+            .map_err(|why| CliError::Arguments(format!("--width, --font: {why}")))?;
+        Ok(if self.title.is_some() { style.titled() } else { style })
     }
 
     /// Returns the figures with the title that is asked for.

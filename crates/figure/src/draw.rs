@@ -9,157 +9,45 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
+use crate::layout::{
+    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, rows, split, wide,
+};
 use crate::line::{Point, Window, pieces, straighten, thin};
+use crate::note::{self, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
-use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour};
+use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
 
-/// Width of a figure whose panels have their nominal height (px).
-const WIDTH: u32 = 800;
-/// Margins left and right of a panel's plot (px).
-const LEFT: u32 = 70;
-/// Part of the left margin that the name of the axis takes (px).
-const UNNAMED: u32 = 24;
-const RIGHT: u32 = 20;
-/// Margins below the plot, for numbers and for the name of the axis (px).
-const NUMBERS: u32 = 24;
-const NAME: u32 = 18;
-/// Heights of the title, of each further line of it, of a legend, and of each further row of it (px).
+/// Height of a title, and of each further line of it (px).
 const TITLE: u32 = 30;
 const LINE: u32 = 17;
-const LEGEND: u32 = 22;
-const ROW: u32 = 16;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-/// Layout of a figure, or of a panel in a row of panels side by side.
-#[derive(Copy, Clone)]
-struct Layout {
-    /// Width (px).
-    width: u32,
-    /// Margin to the left of the plot (px).
-    left: u32,
-    /// Height of each plot (px).
-    plot: u32,
-}
-
-impl Layout {
-    /// The layout of a figure of this width, each of whose plots is higher than usual (px).
-    fn new(figure: &Figure, width: u32, higher: u32) -> Self {
-        let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
-        // Narrow figures are also lower, but less than proportionally.
-        let plot = f64::from(figure.panel_height) * part.powf(0.6);
-        Self { width, left: LEFT, plot: plot.round() as u32 + higher }
-    }
-
-    /// Returns the layouts of the panels of a row, whose plots have one width: a panel without a name at its upward axis has a
-    /// narrower margin.
-    fn row(self, panels: &[Panel]) -> Vec<Self> {
-        let left =
-            |panel: &Panel| if panel.is_beside && panel.y.name.is_empty() { LEFT - UNNAMED } else { LEFT };
-        let margins: u32 = panels.iter().map(|panel| left(panel) + RIGHT).sum();
-        let plot = self.width.saturating_sub(margins) / panels.len().max(1) as u32;
-        panels
-            .iter()
-            .map(|panel| Self { width: left(panel) + plot + RIGHT, left: left(panel), ..self })
-            .collect()
-    }
-
-    /// Returns the height (px) of a figure with a title of `lines` lines.
-    fn height(self, figure: &Figure, lines: usize) -> u32 {
-        let title = TITLE + LINE * (lines.max(1) as u32 - 1);
-        title + rows(figure).map(|row| self.row_height(row)).sum::<u32>()
-    }
-
-    /// Returns the width of a plot (px).
-    fn across(self) -> u32 {
-        self.width - self.left - RIGHT
-    }
-
-    /// Returns the height of a panel's legend (px).
-    fn legend(self, panel: &Panel) -> u32 {
-        LEGEND + ROW * self.entries(panel).last().map_or(0, |(_, (row, _))| *row)
-    }
-
-    /// Returns the layers in the legend, each with its row and the left end of its entry (px).
-    fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
-        let (mut row, mut column) = (0, self.left);
-        let mut entries = Vec::new();
-        for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && layer.is_shown(panel)) {
-            let wide = 23 + letters(&layer.name);
-            if column > self.left && column + wide > self.width {
-                (row, column) = (row + 1, self.left);
-            }
-            entries.push((layer, (row, column)));
-            column += wide + 16;
-        }
-        entries
-    }
-
-    /// Returns the height of a panel including all around its plot (px).
-    fn panel(self, panel: &Panel) -> u32 {
-        let name = if panel.x.name.is_empty() { 0 } else { NAME };
-        self.above(panel) + self.plot + NUMBERS + name
-    }
-
-    /// Returns the height of the head and the legend above a panel's plot (px).
-    fn above(self, panel: &Panel) -> u32 {
-        let head = if panel.head.is_empty() { 0 } else { LINE };
-        head + self.legend(panel)
-    }
-
-    /// Returns the height of a row of panels (px), with a colour bar over its width.
-    fn row_height(self, panels: &[Panel]) -> u32 {
-        let each = || self.row(panels).into_iter().zip(panels);
-        let above = each().map(|(layout, panel)| layout.above(panel)).max().unwrap_or(0);
-        let rest = each().map(|(layout, panel)| layout.panel(panel) - layout.above(panel)).max().unwrap_or(0);
-        bar_height(panels) + above + rest
-    }
-}
-
-/// Returns the panels of each row: those side by side.
-pub fn rows(figure: &Figure) -> impl Iterator<Item = &[Panel]> {
-    figure.panels.chunk_by(|_, next| next.is_beside)
-}
-
-/// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's
-/// size wide.
-fn letters(text: &str) -> u32 {
-    text.chars().count() as u32 * 62 / 10
-}
-
-/// Returns the font size, at most `most` (px), at which a text fits into `room` (px): a letter is about 0.57 of it
-/// wide.
-fn fitting(text: &str, room: f64, most: f64) -> f64 {
-    (room / (0.57 * text.chars().count() as f64)).min(most)
-}
-
-/// Splits a title between words into lines of legible size, the first as long as possible.
+/// Splits a title between words into lines of legible size.
 fn title_lines(title: &str, width: u32) -> Vec<String> {
-    let room = f64::from(width - 20);
-    let smallest = 11.0;
-    let mut lines: Vec<String> = Vec::new();
-    for word in title.split(' ') {
-        match lines.last_mut() {
-            Some(line) if fitting(&format!("{line} {word}"), room, 14.0) >= smallest => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
+    split(title, |line| wide(line, 11.0) <= f64::from(width - 20))
+}
+
+/// Returns the height of a title of lines (px).
+fn title_height(lines: &[String]) -> u32 {
+    if lines.is_empty() { 0 } else { TITLE + LINE * (lines.len() as u32 - 1) }
+}
+
+/// Returns the lines of the title that a figure of this width (px) shows.
+fn shown_title(figure: &Figure, width: u32, is_titled: bool) -> Vec<String> {
+    if is_titled && !figure.title.is_empty() { title_lines(&figure.title, width) } else { Vec::new() }
 }
 
 /// Returns the height (px) of a figure of this width (px).
-pub fn height(figure: &Figure, width: u32) -> u32 {
-    Layout::new(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
+pub fn height(figure: &Figure, width: u32, is_titled: bool) -> u32 {
+    Layout::new(figure, width, 0).height(figure) + title_height(&shown_title(figure, width, is_titled))
 }
 
-/// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px).
-pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
+/// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px), with its title or without.
+pub fn svg(figure: &Figure, width: u32, higher: u32, is_titled: bool) -> Result<String, Error> {
     let layout = Layout::new(figure, width, higher);
-    let lines = title_lines(&figure.title, width);
-    let title = TITLE + LINE * (lines.len().max(1) as u32 - 1);
-    let height = layout.height(figure, lines.len());
+    let lines = shown_title(figure, width, is_titled);
+    let title = title_height(&lines);
+    let height = layout.height(figure) + title;
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (width * UNITS, height * UNITS)).into_drawing_area();
@@ -196,20 +84,11 @@ fn draw_row<'a>(
     if let Some(bar) = panels.iter().find_map(|panel| panel.bar.as_ref()) {
         bar::draw(&key, bar, layout.left, layout.across())?;
     }
-    let each = || layout.row(panels).into_iter().zip(panels);
-    let above = each().map(|(layout, panel)| layout.above(panel)).max().unwrap_or(0);
-    for ((layout, panel), y) in each().zip(upward) {
+    let top = layout.row_top(panels);
+    for ((layout, panel), y) in layout.row(panels).into_iter().zip(panels).zip(upward) {
         let (own, after) = rest.split_horizontally(layout.width * UNITS);
-        let (_, own) = own.split_vertically((above - layout.above(panel)) * UNITS);
-        let (head, own) = own.split_vertically((layout.above(panel) - layout.legend(panel)) * UNITS);
-        if !panel.head.is_empty() {
-            let size = fitting(&panel.head, f64::from(layout.across() + RIGHT), 12.0);
-            head.draw_text(
-                &panel.head,
-                &text(size, HPos::Left, VPos::Center),
-                at(layout.left, LINE / 2 + 2),
-            )?;
-        }
+        let (_, own) = own.split_vertically((top - layout.top(panel)) * UNITS);
+        strip::draw(&own, panel, layout)?;
         draw_legend(&own, panel, layout)?;
         draw_panel(&own, (panel, y), layout)?;
         rest = after;
@@ -217,15 +96,10 @@ fn draw_row<'a>(
     Ok(())
 }
 
-/// Returns the height of the colour bar of panels side by side (px).
-fn bar_height(panels: &[Panel]) -> u32 {
-    if panels.iter().any(|panel| panel.bar.is_some()) { bar::HEIGHT } else { 0 }
-}
-
 /// Plot of a panel: the mapping from axis places to a rectangle of the backend.
 struct Plot {
     window: Window,
-    /// Distance from the left of the panel to the plot (px).
+    /// Distance from the left end of the figure to the plot (px).
     left: u32,
     /// Distance from the top of the panel to the plot, width and height of the plot (px).
     top: u32,
@@ -247,7 +121,7 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
     let plot = Plot {
         window: Window { x: panel.x.extent(), y: panel.y.extent() },
         left: layout.left,
-        top: layout.legend(panel),
+        top: layout.top(panel),
         across: layout.across(),
         height: layout.plot,
     };
@@ -275,28 +149,19 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
             }
         }
     }
-    let visible = [
-        (f64::from(plot.left), f64::from(plot.top)),
-        (f64::from(plot.left + plot.across), f64::from(plot.top + plot.height)),
-    ];
-    for note in &panel.notes {
-        let point = (panel.x.place(note.point.0), panel.y.place(note.point.1));
-        if plot.window.contains(point) {
-            let (x, y) = plot.place(point);
-            let unit = f64::from(UNITS);
-            note.draw(area, (f64::from(x) / unit, f64::from(y) / unit), visible)?;
-        }
-    }
-    Ok(())
+    let [left, top] = [plot.left, plot.top].map(f64::from);
+    let (right, bottom) = (left + f64::from(plot.across), top + f64::from(plot.height));
+    let pixels = |x: f64, y: f64| {
+        let (x, y) = plot.place((panel.x.place(x), panel.y.place(y)));
+        (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
+    };
+    let notes = panel.notes.iter().map(|note| (note, pixels(note.at.0, note.at.1)));
+    let shown = notes.filter(|(_, (x, _))| (left - 1.0..=right + 1.0).contains(x));
+    note::draw(area, shown, PlotBox { left, top, right, bottom })
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(
-    area: &Area<'_>,
-    (across, up): (&FigureAxis, &FigureAxis),
-    plot: &Plot,
-    is_plain: bool,
-) -> Result<(), Error> {
+fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &Plot, is_plain: bool) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));
@@ -324,11 +189,25 @@ fn draw_axes(
     let name = across.label();
     let size = fitting(&name, f64::from(plot.across + plot.left), 12.0);
     area.draw_text(&name, &text(size, HPos::Center, VPos::Center), below)?;
-    // A long name is drawn smaller.
-    let (name, room) = (up.label(), f64::from(plot.height + plot.top + NUMBERS / 2));
-    let size = fitting(&name, room, 12.0);
-    let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
-    area.draw_text(&name, &upright, at(14, plot.top + plot.height / 2))
+    // A long name has two lines.
+    let (name, room) = (up.label(), f64::from(plot.height + NUMBERS));
+    let lines = if wide(&name, SMALLEST) > room { halves(&name) } else { vec![name] };
+    let first = if lines.len() > 1 { plot.left - 64 } else { plot.left - 56 };
+    for (index, line) in lines.iter().enumerate() {
+        let size = fitting(line, room, 12.0);
+        let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
+        area.draw_text(line, &upright, at(first + 11 * index as u32, plot.top + plot.height / 2))?;
+    }
+    Ok(())
+}
+
+/// Splits a text at the space nearest to its middle.
+fn halves(text: &str) -> Vec<String> {
+    let spaces = text.match_indices(' ').map(|(place, _)| place);
+    match spaces.min_by_key(|place| place.abs_diff(text.len() / 2)) {
+        Some(place) => vec![text[..place].to_owned(), text[place + 1..].to_owned()],
+        None => vec![text.to_owned()],
+    }
 }
 
 fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<(), Error> {
@@ -341,20 +220,25 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
 
 /// Draws the legend above the panel, in rows.
 fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
-    for (layer, (row, column)) in layout.entries(panel) {
-        let middle = LEGEND / 2 + 1 + ROW * row;
-        let (from, to) = (at(column, middle), at(column + 18, middle));
-        match layer.shape {
-            LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
-            LayerShape::Area(_) => {
-                let [low, high] = [middle + 5, middle - 5];
-                let corners =
-                    [at(column, low), at(column + 18, low), at(column + 18, high), at(column, high)];
-                area.draw(&Polygon::new(corners, layer.style()))?;
+    let top = strip::height(layout, panel);
+    for entry in layout.entries(panel) {
+        let (middle, column) = (top + LEGEND / 2 + 1 + ROW * entry.row, entry.column);
+        let mut left = column;
+        if let Some(layer) = entry.layer {
+            left += crate::layout::MARK;
+            let (from, to) = (at(column, middle), at(column + 18, middle));
+            match layer.shape {
+                LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
+                LayerShape::Area(_) => {
+                    let [low, high] = [middle + 5, middle - 5];
+                    let corners =
+                        [at(column, low), at(column + 18, low), at(column + 18, high), at(column, high)];
+                    area.draw(&Polygon::new(corners, layer.style()))?;
+                }
+                _ => draw_mark(area, layer, at(column + 9, middle))?,
             }
-            _ => draw_mark(area, layer, at(column + 9, middle))?,
         }
-        area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(column + 23, middle))?;
+        area.draw_text(&entry.words, &text(LETTERS, HPos::Left, VPos::Center), at(left, middle))?;
     }
     Ok(())
 }
@@ -386,14 +270,6 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
 }
 
 impl Layer {
-    /// Whether a panel shows any of it.
-    fn is_shown(&self, panel: &Panel) -> bool {
-        let is_mark = !matches!(self.shape, LayerShape::Line(_) | LayerShape::Dashes | LayerShape::Area(_));
-        let window = Window { x: panel.x.extent(), y: panel.y.extent() };
-        let inside = |(x, y): &Point| window.contains((panel.x.place(*x), panel.y.place(*y)));
-        if is_mark { self.points.iter().any(inside) } else { !self.points.is_empty() }
-    }
-
     fn style(&self) -> ShapeStyle {
         match self.shape {
             LayerShape::Line(width) => stroke(self.colour, width),

@@ -7,6 +7,7 @@ mod contour;
 mod draw;
 #[cfg(feature = "png")]
 mod image;
+mod layout;
 mod line;
 mod note;
 mod origin;
@@ -15,6 +16,7 @@ pub mod palette;
 #[cfg(feature = "png")]
 mod pdf;
 mod sheet;
+mod strip;
 mod style;
 mod svg;
 
@@ -25,11 +27,12 @@ pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
-pub use note::{FigureNote, NoteSide};
+pub use note::{Note, NoteSide};
 pub use origin::is_figure;
 pub use over_time::{OverTime, PanelLines};
 pub use plotters::style::RGBColor;
 pub use sheet::sheet;
+pub use strip::{Strip, StripSpan};
 pub use style::Style;
 
 /// Colours that are distinguishable with colour blindness (Okabe and Ito).
@@ -48,15 +51,15 @@ pub mod colour {
     pub const GREEN: RGBColor = RGBColor(0, 158, 115);
     /// Blue.
     pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+    /// Red, for limits alone.
+    pub const RED: RGBColor = RGBColor(190, 30, 45);
     /// Vermillion.
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
-    /// Red, for limits alone.
-    pub const RED: RGBColor = RGBColor(193, 39, 45);
 }
 
 /// Figure of stacked panels.
 pub struct Figure {
-    /// Title of the figure.
+    /// Title of the figure, which its caption says and which is drawn on demand.
     pub title: String,
     /// Panels, from top to bottom.
     pub panels: Vec<Panel>,
@@ -77,10 +80,12 @@ pub struct Panel {
     pub layers: Vec<Layer>,
     /// Colour bar of a map.
     pub bar: Option<Bar>,
-    /// Line above the panel; empty for none.
-    pub head: String,
-    /// Words within the panel, above the layers.
-    pub notes: Vec<FigureNote>,
+    /// Strips above the panel, from top to bottom.
+    pub strips: Vec<Strip>,
+    /// Notes at points.
+    pub notes: Vec<Note>,
+    /// Words above the axes that belong to no layer; empty for none.
+    pub remark: String,
     /// True for a panel to the right of the one before it, which is otherwise below that.
     pub is_beside: bool,
     /// True for a panel without grid lines.
@@ -133,33 +138,42 @@ impl Figure {
         self.laid_out(&Style::default())
     }
 
-    /// Returns the vertical axes of the panels as drawn: axes of one unit share a prefix.
+    /// Returns the vertical axes of the panels as drawn: axes of one quantity share a unit.
     pub fn upward(&self) -> Vec<FigureAxis> {
         FigureAxis::stacked(self.panels.iter().map(|panel| &panel.y))
     }
 
     /// Returns the figure as SVG, laid out for a style but in pixels of the layout: [`Style::sized`] sets its size.
     pub fn laid_out(&self, style: &Style) -> Result<String, String> {
-        draw::svg(self, style.layout_width(), 0).map_err(|error| error.to_string())
+        draw::svg(self, style.layout_width(), 0, style.is_titled()).map_err(|error| error.to_string())
     }
 }
 
 impl Panel {
     /// Creates a panel from its axes and layers.
     pub fn new(x: FigureAxis, y: FigureAxis, layers: Vec<Layer>) -> Self {
-        let (head, notes) = (String::new(), Vec::new());
-        Self { x, y, layers, bar: None, head, notes, is_beside: false, is_plain: false }
+        Self {
+            x,
+            y,
+            layers,
+            bar: None,
+            strips: Vec::new(),
+            notes: Vec::new(),
+            remark: String::new(),
+            is_beside: false,
+            is_plain: false,
+        }
     }
 
-    /// Returns the panel with a line above it.
+    /// Returns the panel with words above its axes.
     #[must_use]
-    pub fn headed(self, head: impl Into<String>) -> Self {
-        Self { head: head.into(), ..self }
+    pub fn headed(self, remark: impl Into<String>) -> Self {
+        Self { remark: remark.into(), ..self }
     }
 
     /// Returns the panel with words in it.
     #[must_use]
-    pub fn noted(mut self, notes: impl IntoIterator<Item = FigureNote>) -> Self {
+    pub fn noted(mut self, notes: impl IntoIterator<Item = Note>) -> Self {
         self.notes.extend(notes);
         self
     }

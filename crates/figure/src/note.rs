@@ -1,92 +1,134 @@
-//! Words within a panel, beside a point of its axes.
+//! Notes: words at a point of a panel, such as the value of a limit.
 
-use plotters::element::Rectangle;
+use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, WHITE};
 
+use crate::layout::wide;
 use crate::line::Point;
 use crate::svg::{Area, Error, UNITS, text};
 
-/// Words beside a point of a panel.
+/// Words at a point of a panel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FigureNote {
-    /// Text; its lines are one below the other.
+pub struct Note {
+    /// Words.
     pub text: String,
-    /// Point, in the units of the axes; a note on a point out of the panel is not drawn.
-    pub point: Point,
+    /// Point, above or below which they are.
+    pub at: Point,
+    /// Colour.
+    pub colour: RGBColor,
     /// Side of the point on which the words are.
     pub side: NoteSide,
-    /// Colour of the words.
-    pub colour: RGBColor,
 }
 
 /// Side of a point.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum NoteSide {
-    /// To the left of the point, at its height.
-    Left,
-    /// To the right of the point, at its height.
-    Right,
-    /// Above the point, centred.
-    Above,
-    /// Below the point, centred.
+    /// Above the point, or below it where there is no room.
+    Free,
+    /// Below the point.
     Below,
-    /// On the point itself.
+    /// To the left of the point.
+    Left,
+    /// To the right of the point.
+    Right,
+    /// On the point.
     Centre,
     /// On the point, read upwards.
     Upright,
 }
 
-/// Size of the letters, height of a line, and distance from the point (px).
-const SIZE: f64 = 10.0;
-const LINE: f64 = 12.0;
-const GAP: f64 = 4.0;
-/// Width of a letter (px), on average.
-const LETTER: f64 = 5.6;
-
-impl FigureNote {
-    /// Creates a note from its text, point, side and colour.
-    pub fn new(text: impl Into<String>, point: Point, side: NoteSide, colour: RGBColor) -> Self {
-        Self { text: text.into(), point, side, colour }
+impl Note {
+    /// Creates a note above a point; its lines are one below the other.
+    pub fn new(text: impl Into<String>, at: Point, colour: RGBColor) -> Self {
+        Self { text: text.into(), at, colour, side: NoteSide::Free }
     }
 
-    /// Draws the words beside a place (px) on a white ground, within a rectangle from its left and upper to its right and lower
-    /// end (px).
-    pub(crate) fn draw(
-        &self,
-        area: &Area<'_>,
-        (x, y): Point,
-        [least, largest]: [Point; 2],
-    ) -> Result<(), Error> {
-        let lines: Vec<&str> = self.text.lines().collect();
-        let letters = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
-        let (width, height) = (LETTER * letters as f64, LINE * lines.len() as f64);
-        let is_upright = self.side == NoteSide::Upright;
+    /// Returns the note on a side of its point.
+    #[must_use]
+    pub fn on(self, side: NoteSide) -> Self {
+        Self { side, ..self }
+    }
+}
+
+/// Rectangle of a plot (px).
+#[derive(Copy, Clone)]
+pub struct PlotBox {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+/// Size of the letters, and distance of a note from its point (px).
+const LETTERS: f64 = 10.5;
+const DISTANCE: f64 = 4.0;
+const HEIGHT: f64 = 13.0;
+/// Opacity of the ground under the words.
+const GROUND: f64 = 0.7;
+
+/// Draws notes, each with its point (px), within a plot: above their points where there is room, and beside each other.
+pub fn draw<'a>(
+    area: &Area<'_>,
+    notes: impl IntoIterator<Item = (&'a Note, (f64, f64))>,
+    plot: PlotBox,
+) -> Result<(), Error> {
+    let mut taken: Vec<PlotBox> = Vec::new();
+    for (note, (x, y)) in notes {
+        let lines: Vec<&str> = note.text.lines().collect();
+        let width = lines.iter().map(|line| wide(line, LETTERS)).fold(0.0, f64::max) + 4.0;
+        let height = HEIGHT * lines.len() as f64;
+        let is_upright = note.side == NoteSide::Upright;
         let (width, height) = if is_upright { (height, width) } else { (width, height) };
-        let (x, y) = match self.side {
-            NoteSide::Left => (x - GAP - width / 2.0, y),
-            NoteSide::Right => (x + GAP + width / 2.0, y),
-            NoteSide::Above => (x, y - GAP - height / 2.0),
-            NoteSide::Below => (x, y + GAP + height / 2.0),
-            NoteSide::Centre | NoteSide::Upright => (x, y),
+        let boxed = |(x, y): (f64, f64)| {
+            let left = (x - width / 2.0).min(plot.right - width - 1.0).max(plot.left + 1.0);
+            let top = y - height / 2.0;
+            PlotBox { left, top, right: left + width, bottom: top + height }
         };
-        let held =
-            |value: f64, half: f64, low: f64, high: f64| value.min(high - half - 1.0).max(low + half + 1.0);
-        let (x, y) = (held(x, width / 2.0, least.0, largest.0), held(y, height / 2.0, least.1, largest.1));
+        let (up, across) = (DISTANCE + height / 2.0, DISTANCE + width / 2.0);
+        let offsets = match note.side {
+            NoteSide::Free => [(0.0, -up), (0.0, up), (0.0, -up - HEIGHT), (0.0, up + HEIGHT)],
+            NoteSide::Below => [(0.0, up); 4],
+            NoteSide::Left => [(-across, 0.0), (-across, -HEIGHT), (-across, HEIGHT), (-across, -2.0 * HEIGHT)],
+            NoteSide::Right => [(across, 0.0), (across, -HEIGHT), (across, HEIGHT), (across, -2.0 * HEIGHT)],
+            NoteSide::Centre | NoteSide::Upright => [(0.0, 0.0); 4],
+        };
+        let places = offsets.map(|(dx, dy)| boxed((x + dx, y + dy)));
+        let inside = |place: &&PlotBox| place.top >= plot.top && place.bottom <= plot.bottom;
+        let free = |place: &&PlotBox| !taken.iter().any(|other| place.covers(other));
+        let place = places.iter().filter(inside).find(free).or(places.iter().find(inside)).copied();
+        let held = |top: f64| top.clamp(plot.top, (plot.bottom - height).max(plot.top));
+        let place = place.unwrap_or_else(|| boxed((x + offsets[0].0, held(places[0].top) + height / 2.0)));
         let at =
             |x: f64, y: f64| ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32);
-        let corners = [at(x - width / 2.0, y - height / 2.0), at(x + width / 2.0, y + height / 2.0)];
-        area.draw(&Rectangle::new(corners, WHITE.mix(0.7).filled()))?;
+        let corners = [
+            at(place.left, place.top),
+            at(place.right, place.top),
+            at(place.right, place.bottom),
+            at(place.left, place.bottom),
+        ];
+        area.draw(&Polygon::new(corners, WHITE.mix(GROUND).filled()))?;
+        let (x, y) = ((place.left + place.right) / 2.0, (place.top + place.bottom) / 2.0);
         for (index, line) in lines.iter().enumerate() {
-            let off = LINE * (index as f64 + 0.5 - lines.len() as f64 / 2.0);
-            let style = text(SIZE, HPos::Center, VPos::Center).color(&self.colour);
-            let (style, place) = if is_upright {
+            let off = HEIGHT * (index as f64 + 0.5 - lines.len() as f64 / 2.0);
+            let style = text(LETTERS, HPos::Center, VPos::Center).color(&note.colour);
+            let (style, middle) = if is_upright {
                 (style.transform(FontTransform::Rotate270), at(x + off, y))
             } else {
                 (style, at(x, y + off))
             };
-            area.draw_text(line, &style, place)?;
+            area.draw_text(line, &style, middle)?;
         }
-        Ok(())
+        taken.push(place);
+    }
+    Ok(())
+}
+
+impl PlotBox {
+    fn covers(&self, other: &Self) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
     }
 }

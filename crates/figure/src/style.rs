@@ -21,6 +21,8 @@ pub struct Style {
     width: Option<f64>,
     /// Size of the axes' names (pt).
     font: Option<f64>,
+    /// True if titles are drawn.
+    is_titled: bool,
 }
 
 impl Style {
@@ -35,12 +37,23 @@ impl Style {
         if let Some(font) = font.filter(|font| !(4.0..=24.0).contains(font)) {
             return Err(format!("the font must have 4 to 24 pt, got {font}"));
         }
-        let style = Self { width, font };
+        let style = Self { width, font, is_titled: false };
         if !LAYOUTS.contains(&style.across()) {
             let (width, font) = (style.width_mm(), font.unwrap_or(USUAL));
             return Err(format!("a figure {width:.0} mm wide has no room for letters of {font} pt"));
         }
         Ok(style)
+    }
+
+    /// Returns the style with the titles of figures above them.
+    #[must_use]
+    pub fn titled(self) -> Self {
+        Self { is_titled: true, ..self }
+    }
+
+    /// Returns true if titles are drawn.
+    pub fn is_titled(&self) -> bool {
+        self.is_titled
     }
 
     fn width_mm(&self) -> f64 {

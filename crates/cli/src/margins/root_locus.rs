@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use flexsc_core::analysis::margins::{LocusCrossing, RootLocus, SignalMargins};
 use flexsc_core::analysis::open_loop::OpenLoop;
 use flexsc_figure::palette::viridis;
-use flexsc_figure::{Bar, Figure, FigureAxis, FigureNote, Layer, LayerShape, NoteSide, Panel, Point, colour};
+use flexsc_figure::{Bar, Figure, FigureAxis, Note, Layer, LayerShape, NoteSide, Panel, Point, colour};
 use rustfft::num_complex::Complex;
 
 /// Gains of the locus (dB): the least, their number, and steps per dB.
@@ -102,10 +102,10 @@ fn panel(locus: &RootLocus, view: &PlaneView) -> Panel {
     let corners = vec![(0.0, 0.0), (right, 0.0), (right, high), (0.0, high)];
     let mut layers = vec![Layer::new("", colour::RED, LayerShape::Area(0.1), corners)];
     let mut notes =
-        vec![FigureNote::new("unstable", (0.5 * right, 0.3 * high), NoteSide::Upright, colour::RED)];
+        vec![Note::new("unstable", (0.5 * right, 0.3 * high), colour::RED).on(NoteSide::Upright)];
     for (end, text) in rays(view) {
         layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.5), vec![(0.0, 0.0), end]));
-        notes.push(FigureNote::new(text, (0.93 * end.0, 0.93 * end.1), NoteSide::Centre, colour::GREY));
+        notes.push(Note::new(text, (0.93 * end.0, 0.93 * end.1), colour::GREY).on(NoteSide::Centre));
     }
     let axis = vec![(0.0, 0.0), (0.0, high)];
     layers.push(Layer::new("", colour::BLACK, LayerShape::Line(1.0), axis));
@@ -169,6 +169,6 @@ fn mark(panel: &mut Panel, crossing: &LocusCrossing, frequency: f64) {
     let decibels = 20.0 * crossing.factor.log10();
     let gain = format!("{decibels:+.1} dB").replace('-', "−");
     let text = format!("{gain}\n{} Hz", flexsc_core::formats::reader_units::number(frequency));
-    panel.notes.push(FigureNote::new(text, (0.0, frequency), NoteSide::Left, colour::RED));
+    panel.notes.push(Note::new(text, (0.0, frequency), colour::RED).on(NoteSide::Left));
     panel.layers.push(Layer::new("", colour::RED, LayerShape::Disc, vec![(0.0, frequency)]));
 }

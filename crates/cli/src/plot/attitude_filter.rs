@@ -1,9 +1,11 @@
 //! Figure `consistency` of three axes: the errors of an attitude filter with three of its standard deviations, and its
 //! normalised error squared, which is about 1 for each state of a consistent filter.
 
+use flexsc_core::formats::reader_units::time as time_text;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::consistency::{FAR, averages};
 use super::cycle_data::CycleData;
 use super::pointing::{decades, norm};
 use super::run_events::RunEvents;
@@ -12,6 +14,9 @@ use super::{assessed_mean, time, title};
 
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
+
+/// Number of samples above which a line is a running mean over so many parts of the run.
+const RUNNING: usize = 400;
 
 /// Returns true if a run has an attitude filter.
 pub fn applies_to(story: &RunEvents) -> bool {
@@ -33,7 +38,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
                 LayerShape::Area(0.2),
                 band(&low, &high),
             ),
-            Layer::new(name("error of the attitude"), colour::BLUE, LayerShape::Line(1.0), errors),
+            Layer::new(name("error of the attitude"), colour::BLUE, LayerShape::Line(0.6), errors),
         ]
     });
     if let Some(last) = panels.last_mut() {
@@ -47,14 +52,26 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     };
     let layers = vec![
         Layer::new("", colour::GREEN, LayerShape::Line(1.4), norm_of(|axis| 3.0 * axis.angle_sd_rad)),
-        Layer::new("", colour::BLUE, LayerShape::Line(1.0), norm_of(|axis| axis.angle_error_rad)),
+        Layer::new("", colour::BLUE, LayerShape::Line(0.6), norm_of(|axis| axis.angle_error_rad)),
     ];
     let lengths = decades(story, "norm", layers);
     panels.push(Panel { x: lengths.x.unnamed(), ..lengths });
     let nees: Vec<Point> = cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, row.nees)).collect();
     let mean = assessed_mean::mean(story, &nees);
+    let window = nees.len().div_ceil(RUNNING).max(1);
+    let (nees, name) = if window > 1 {
+        let length = nees[window - 1].0 - nees[0].0;
+        (averages(&nees, window), format!("mean over {}", time_text(length)))
+    } else {
+        (nees, "NEES / states".to_owned())
+    };
     let level = |height: f64| [(0.0, height), (story.end, height)];
-    let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
+    let values = || nees.iter().map(|point| point.1).chain(INSIDE);
+    let y = if values().any(|value| value > FAR) {
+        FigureAxis::decades("NEES / states", "", values())
+    } else {
+        FigureAxis::from_zero("NEES / states", "", values())
+    };
     let mut layers = vec![
         Layer::new(
             "95 % of chi-square",
@@ -62,7 +79,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
             LayerShape::Area(0.2),
             band(&level(INSIDE[0]), &level(INSIDE[1])),
         ),
-        Layer::new("NEES / states", colour::BLUE, LayerShape::Line(1.0), nees),
+        Layer::new(&name, colour::BLUE, LayerShape::Line(1.0), nees),
     ];
     layers.extend(mean);
     panels.push(Panel::new(time(0.0..story.end), y, layers));

@@ -32,7 +32,7 @@ fn draw(run: &RunData<'_>) -> Figure {
 /// Number of samples in an average, as in the filter's own test of lost lock.
 const WINDOW: usize = 50;
 /// Value above which an axis is logarithmic.
-const FAR: f64 = 10.0;
+pub const FAR: f64 = 10.0;
 
 fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let scenario = &story.scenario;
@@ -84,7 +84,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
 }
 
 /// Returns the moving averages over `window` samples, each at its last sample. Samples without a value are skipped.
-fn averages(values: &[Point], window: usize) -> Vec<Point> {
+pub fn averages(values: &[Point], window: usize) -> Vec<Point> {
     let mean = |row: &[Point]| {
         let finite = || row.iter().map(|point| point.1).filter(|value| value.is_finite());
         (row[row.len() - 1].0, finite().sum::<f64>() / finite().count() as f64)

@@ -108,6 +108,15 @@ impl FigureKind {
         LOG_FIGURES.into_iter().filter(|spec| (spec.is_in)(story)).map(Self::Log).collect()
     }
 
+    /// Returns the figures that are drawn if none is named: deflections in place of elastic energies.
+    pub fn usual_in(story: &RunEvents) -> Vec<Self> {
+        let is_replaced = |kind: &Self| {
+            let is_energy = kind.log_spec().is_some_and(|spec| spec.name == three_axis::ENERGY.name);
+            is_energy && (deflection::SPEC.is_in)(story) && !story.scenario.study.fires()
+        };
+        Self::all_in(story).into_iter().filter(|kind| !is_replaced(kind)).collect()
+    }
+
     /// Returns the declaration of the figure of a log.
     pub fn log_spec(self) -> Option<&'static FigureSpec> {
         if let Self::Log(spec) = self { Some(spec) } else { None }

@@ -1,8 +1,9 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
 use flexsc_core::control::actuator::FlywheelRotor;
+use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::{Bearings, Pointing, Wheels};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, colour};
 
 use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
@@ -12,7 +13,7 @@ use super::{time, title, wheels};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "wheel",
-    contents: "Speed and momentum of the flywheel, or speed and torque of each wheel, with limits",
+    contents: "Speed and momentum of the flywheel, or speed of each wheel with limits and the pointing error",
     rows: &[RowSource::new::<Wheels>(), RowSource::new::<Bearings>(), RowSource::new::<Pointing>()],
     motion: MotionPart::All,
     is_in: |story| {
@@ -33,6 +34,11 @@ fn rotor(story: &RunEvents) -> Option<&FlywheelRotor> {
     story.scenario.actuator.flywheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
 }
 
+/// Returns the largest speed of the wheel of a single-axis body (rad/s), if it is limited.
+pub fn speed_limit(story: &RunEvents) -> Option<f64> {
+    rotor(story).filter(|_| story.scenario.axis_count() == 1)?.speed_limit.map(Positive::get)
+}
+
 fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
     let x = time(0.0..story.end);
@@ -41,18 +47,15 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
         let y = FigureAxis::around(name, unit, values.iter().chain(&limits).copied());
         let y = if name == SPEED { y.in_rpm() } else { y };
-        let level = |(index, height): (usize, &f64)| {
-            let name = if index == 0 { "limits" } else { "" };
-            Layer::new(
-                name,
-                colour::VERMILLION,
-                LayerShape::Dashes,
-                vec![(0.0, *height), (story.end, *height)],
-            )
+        let level = |height: &f64| {
+            let points = vec![(0.0, *height), (story.end, *height)];
+            Layer::new("", colour::RED, LayerShape::Line(1.6), points)
         };
-        let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
-        layers.push(Layer::new(name, colour::BLACK, LayerShape::Line(1.2), line));
-        Panel::new(x, y, layers)
+        let mut layers: Vec<Layer> = limits.iter().map(level).collect();
+        layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.2), line));
+        let unit = y.reader_unit();
+        let note = |limit: f64| Note::new(format!("limit {}", unit.quantity(limit)), (story.end, limit), colour::RED);
+        Panel { notes: limit.map(note).into_iter().collect(), ..Panel::new(x, y, layers) }
     };
     // For a body without inertia, torques are accelerations of the body, and their integral is a rate.
     let (momentum, unit) = match super::unit_of_torque(story) {

@@ -11,10 +11,10 @@ mod cycle_data;
 mod dead_zone;
 mod deflection;
 mod drives;
+mod empty_panels;
 mod envelope;
 mod estimate;
 mod extra_loop;
-mod failures;
 mod figure_kind;
 mod figure_name;
 mod figure_spec;
@@ -31,16 +31,16 @@ mod magnetorquers;
 mod manoeuvre_torque;
 mod modes;
 mod motion;
-mod operation;
 mod orbit;
 mod outputs;
 mod overlay;
 mod phase_plane;
 mod pointing;
 mod repeated_run;
+mod requirement_lines;
 mod run_events;
-mod sky;
 mod stale_check;
+mod strips;
 mod three_axis;
 mod time_range;
 mod title;
@@ -53,8 +53,7 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::record::row::TopicRow;
-use flexsc_core::record::{Log, Orbit};
+use flexsc_core::record::{Log, Orbit, Wheels};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, colour, round_to_nice};
 
 use crate::error::CliError;
@@ -100,6 +99,9 @@ pub struct PlotArgs {
     /// End of the time range to show (s) [default: the end of the run]
     #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     to: Option<f64>,
+    /// Draw the pointing error about each axis, not its norm
+    #[arg(long)]
+    axes: bool,
     /// Campaigns: metrics to plot and to list the worst runs of [default: the main ones that vary]
     #[arg(long, value_delimiter = ',', value_name = "METRICS")]
     metric: Vec<String>,
@@ -118,8 +120,8 @@ impl PlotArgs {
         if !self.json {
             stale_check::warn_if_stale(&log, path);
         }
-        let range = ShownRange { from: self.from, to: self.to };
-        drawn_over(&log, path, asked, range, RunSource { known: None, is_noted: !self.json })
+        let part = ShownPart { from: self.from, to: self.to, is_by_axis: self.axes };
+        drawn_over(&log, path, asked, part, RunSource { known: None, is_noted: !self.json })
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
@@ -159,11 +161,13 @@ impl PlotArgs {
     }
 }
 
-/// Interval of time that figures show (s); by default that which each figure chooses.
+/// Interval of time that figures show (s), by default that which each figure chooses, and whether the pointing error is shown
+/// about each axis.
 #[derive(Copy, Clone, Default)]
-struct ShownRange {
+struct ShownPart {
     from: Option<f64>,
     to: Option<f64>,
+    is_by_axis: bool,
 }
 
 /// Source of a run that is repeated.
@@ -183,7 +187,7 @@ struct RunSource<'a> {
 pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -> Result<Figure, CliError> {
     let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
     let source = RunSource { known, is_noted: false };
-    let drawn = drawn_over(log, path, &[kind], ShownRange::default(), source)?.into_iter().next();
+    let drawn = drawn_over(log, path, &[kind], ShownPart::default(), source)?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
@@ -199,6 +203,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
             ("more than one path", !args.others.is_empty()),
             ("--from", args.from.is_some()),
             ("--to", args.to.is_some()),
+            ("--axes", args.axes),
         ];
         if let Some((is_given, _)) = log_options.into_iter().find(|(_, is_given)| *is_given) {
             let path = args.path.display();
@@ -226,7 +231,7 @@ fn drawn_over(
     log: &Log,
     path: &Path,
     asked: &[FigureName],
-    ShownRange { from, to }: ShownRange,
+    ShownPart { from, to, is_by_axis }: ShownPart,
     source: RunSource<'_>,
 ) -> Result<Vec<(String, Figure)>, CliError> {
     let (kinds, topics) = FigureName::split(asked);
@@ -240,8 +245,11 @@ fn drawn_over(
     }
     let mut story = RunEvents::read(log, path, source.known)?;
     story.is_noted = source.is_noted;
+    story.is_by_axis = is_by_axis;
     story.shown = time_range::resolve(from, to, story.end)?;
-    let chosen = figure_kind::select(&kinds, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
+    let usual = FigureKind::usual_in(&story);
+    let wanted = if kinds.is_empty() { &usual } else { &kinds };
+    let chosen = figure_kind::select(wanted, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
         CliError::Arguments(format!(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
@@ -251,11 +259,12 @@ fn drawn_over(
     let is_three_axis = story.scenario.axis_count() == 3;
     let part = chosen.iter().map(|spec| spec.motion).max().unwrap_or(MotionPart::Nothing);
     let mut rows: Vec<RowSource> = chosen.iter().flat_map(|spec| spec.rows).copied().collect();
-    // Every figure shows the eclipses; a run that is repeated has them anyway.
-    let is_orbit = |source: &RowSource| source.topic == Orbit::TOPIC.name;
-    let has_orbit = log.topics().iter().any(|topic| topic == Orbit::TOPIC.name);
-    if has_orbit && !rows.is_empty() && !rows.iter().any(is_orbit) {
-        rows.extend(orbit::SPEC.rows);
+    // Every figure has strips of eclipses and of wheels at limits; a run that is repeated has them anyway.
+    for source in [RowSource::new::<Orbit>(), RowSource::new::<Wheels>()] {
+        let has_rows = log.topics().iter().any(|topic| topic == source.topic);
+        if has_rows && !rows.is_empty() && rows.iter().all(|other| other.topic != source.topic) {
+            rows.push(source);
+        }
     }
     let cycles = if is_three_axis && !rows.is_empty() {
         CycleData::read(&story, log, path, &rows)?
@@ -274,14 +283,19 @@ fn drawn_over(
         MotionData::default()
     };
     let run = RunData { story: &story, motion: &motion, cycles: &cycles };
-    let drawn = chosen.into_iter().map(|spec| {
-        let figure = story.shown.iter().fold((spec.draw)(&run), time_range::crop);
-        let figure = sky::shaded(figure, &story, &cycles);
-        (spec.name.to_owned(), failures::shaded(operation::shaded(figure, &story), &story))
+    let drawn = chosen.into_iter().filter_map(|spec| {
+        let figure = empty_panels::left_out((spec.draw)(&run))?;
+        let figure = story.shown.iter().fold(figure, time_range::crop);
+        Some((spec.name.to_owned(), strips::add(figure, &run)))
     });
     let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
     let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));
-    Ok(drawn.chain(topics).collect())
+    let all: Vec<(String, Figure)> = drawn.chain(topics).collect();
+    if all.is_empty() {
+        let why = "there is nothing to draw: all values are zero".to_owned();
+        return Err(CliError::Draw { path: path.to_owned(), why });
+    }
+    Ok(all)
 }
 
 /// Returns the unit of the torque: of an acceleration for a body without inertia.

@@ -30,8 +30,11 @@ fn applies_to(story: &RunEvents) -> bool {
 }
 
 fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let shown: [(&str, &str, AxisSeries); 3] =
-        [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
+    let shown: [(&str, &str, AxisSeries); 3] = [
+        ("magnetic field", "T", |axis| axis.field_t),
+        ("nadir", "", |axis| axis.nadir),
+        ("Sun", "", |axis| axis.sun),
+    ];
     let mut panels = Vec::new();
     for (name, unit, value_of) in shown {
         let line = |axis: usize| -> Vec<Point> {
@@ -52,5 +55,7 @@ fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = time(0.0..story.end);
     }
-    Figure { title: title(story, "magnetic field, nadir and Sun in body axes"), panels, panel_height: 160 }
+    let shown: Vec<&str> = panels.iter().map(|panel| panel.y.name.as_str()).collect();
+    let subject = format!("{} in body axes", shown.join(", "));
+    Figure { title: title(story, &subject), panels, panel_height: 160 }
 }

@@ -1,28 +1,97 @@
-//! Figure `pointing` of three axes: the pointing error about each axis, with its goal and the dead zone.
+//! Figure `pointing` of three axes: the norm of the pointing error after the acquisition with the limits of requirements, or
+//! the error about each axis with its goal and the dead zone.
 
-use flexsc_core::formats::reader_units::ReaderUnits;
+use std::ops::Range;
+
+use flexsc_core::formats::reader_units::{ReaderUnits, number, time as time_text};
+use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::Pointing;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
+use flexsc_core::scenario::{ErrorAxis, SampledQuantity};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, band, colour};
 
 use super::cycle_data::{CycleData, RowSource};
 use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::RunEvents;
 use super::three_axis::panels;
-use super::{time, title};
+use super::{requirement_lines, time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "pointing",
-    contents: "Three axes: pointing error, with its goal band and dead zone",
+    contents: "Three axes: pointing error after the acquisition, with limits; with --axes about each axis",
     rows: &[RowSource::new::<Pointing>()],
     motion: MotionPart::Nothing,
     is_in: |story| story.scenario.axis_count() == 3,
-    draw: |run| figure(run.story, run.cycles),
+    draw: |run| {
+        if run.story.is_by_axis { by_axis(run.story, run.cycles) } else { norms(run.story, run.cycles) }
+    },
 };
 
 /// Ratio of a band to the errors above which the band does not determine the height of a panel.
 const WIDE: f64 = 3.0;
+/// Multiple of the median below which an error ends the acquisition, and the largest part of a run that is left out.
+const ACQUIRED: f64 = 10.0;
+const MOST_LEFT_OUT: f64 = 1.0 / 3.0;
+/// Part of the errors that may lie below the axis.
+const BELOW: f64 = 0.02;
 
-fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+fn norms(story: &RunEvents, cycles: &CycleData) -> Figure {
+    let errors = cycles.errors(norm);
+    let start = acquisition_end(story, &errors);
+    let shown = story.shown.clone().unwrap_or(start..story.end);
+    let mut panel = error_panel(story, &errors, shown);
+    if story.shown.is_none() && start > 0.0 {
+        panel.remark = format!("from {}: acquisition left out", time_text(start.round()));
+    }
+    Figure { title: title(story, "pointing error"), panels: vec![panel], panel_height: 300 }
+}
+
+/// Returns the panel of the norm of the error over an interval of time, with limits, goal and largest value.
+pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Panel {
+    let limits = requirement_lines::limits(story, |own| *own == SampledQuantity::PointingError, None);
+    let inside: Vec<Point> =
+        errors.iter().filter(|(time, _)| (shown.start..=shown.end).contains(time)).copied().collect();
+    let goal = story.scenario.reference.band.map(Positive::get).filter(|_| story.scenario.has_goal());
+    let mut sizes: Vec<f64> = inside.iter().map(|point| point.1).filter(|size| *size > 0.0).collect();
+    sizes.sort_by(f64::total_cmp);
+    let usual = &sizes[(BELOW * sizes.len() as f64) as usize..];
+    let lines = limits.iter().map(|own| own.limit).chain(goal);
+    let y = FigureAxis::decades("pointing error", "rad", usual.iter().copied().chain(lines));
+    let y = limits.first().map_or(y.clone(), |own| y.in_unit(own.unit.clone()));
+    let unit = y.reader_unit();
+    let line = Layer::new("", colour::BLUE, LayerShape::Line(1.0), inside.clone());
+    let mut panel = Panel::new(time(shown.clone()), y, vec![line]);
+    if let Some(band) = goal {
+        let name = format!("goal of each axis, {}", ReaderUnits::Engineering.quantity(band, "rad"));
+        let level = vec![(shown.start, band), (shown.end, band)];
+        panel.layers.push(Layer::new(&name, colour::GREEN, LayerShape::Dashes, level));
+    }
+    requirement_lines::add(&mut panel, &limits, false);
+    let largest = inside.iter().filter(|point| point.1 > 0.0).max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((at, size)) = largest {
+        panel.layers.push(Layer::new("", colour::BLACK, LayerShape::Disc, vec![(*at, *size)]));
+        panel.notes.push(Note::new(format!("{} at {} s", unit.quantity(*size), number(*at)), (*at, *size), colour::BLACK));
+    }
+    panel
+}
+
+/// Returns the time at which the acquisition ends (s): the error falls below ten times its median, after the start of the
+/// first mode with a target. 0 if there is none, or if too much of the run would be left out.
+fn acquisition_end(story: &RunEvents, errors: &[Point]) -> f64 {
+    let scenario = &story.scenario;
+    let has_target = |index: usize| scenario.mode.get(index).is_some_and(|mode| mode.target.is_some());
+    let targeted = story.modes.iter().find(|start| scenario.has_mode_targets() && has_target(start.index));
+    let first = targeted.map_or(0.0, |start| start.time);
+    let pursued = || errors.iter().filter(|(time, size)| *time >= first && size.is_finite());
+    let mut sizes: Vec<f64> = pursued().map(|point| point.1).collect();
+    sizes.sort_by(f64::total_cmp);
+    let Some(median) = sizes.get(sizes.len() / 2) else { return 0.0 };
+    let acquired = pursued().find(|point| point.1 < ACQUIRED * median).map_or(first, |point| point.0);
+    let is_cut = acquired > errors[0].0 && acquired <= MOST_LEFT_OUT * story.end;
+    if is_cut { acquired } else { 0.0 }
+}
+
+/// Returns the figure of the error about each axis.
+fn by_axis(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |axis: usize| {
         let points = cycles.errors(|error| error[axis]);
         let name = if axis == 0 { "pointing error" } else { "" };
@@ -32,13 +101,24 @@ fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let largest_error =
         |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     for (axis, panel) in panels.iter_mut().enumerate() {
+        let about = [ErrorAxis::X, ErrorAxis::Y, ErrorAxis::Z][axis];
+        let limits =
+            requirement_lines::limits(story, |own| *own == SampledQuantity::PointingError, Some(about));
         let [goal, zone] = bands(story, axis);
         let largest = largest_error(panel);
-        let shown =
-            [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
+        let required = limits.iter().map(|own| own.limit);
+        let shown = [goal, zone]
+            .into_iter()
+            .flatten()
+            .chain(required)
+            .filter(|half| *half <= WIDE * largest)
+            .fold(0.0, f64::max);
         let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();
         if shown > 0.0 {
             panel.y = FigureAxis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
+        }
+        if let Some(own) = limits.first() {
+            panel.y = panel.y.clone().in_unit(own.unit.clone());
         }
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let wide =
@@ -62,13 +142,9 @@ fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         }
         below.append(&mut panel.layers);
         panel.layers = below;
+        requirement_lines::add(panel, &limits, true);
     }
-    if let Some(last) = panels.last_mut() {
-        last.x = last.x.unnamed();
-    }
-    let length = cycles.errors(norm);
-    panels.push(decades(story, "norm", vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), length)]));
-    Figure { title: title(story, "pointing error"), panels, panel_height: 160 }
+    Figure { title: title(story, "pointing error about each axis"), panels, panel_height: 160 }
 }
 
 /// Returns the length of a vector.
@@ -87,7 +163,7 @@ pub fn decades(story: &RunEvents, name: &str, layers: Vec<Layer>) -> Panel {
 fn bands(story: &RunEvents, axis: usize) -> [Option<f64>; 2] {
     let scenario = &story.scenario;
     let own = scenario.study.expected_bands.get(axis).copied().flatten();
-    let goal = scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get).or(own);
+    let goal = scenario.reference.band.map(Positive::get).or(own);
     let zone = scenario.law.about(axis).coasting_zone();
     [goal.filter(|half| *half > 0.0 && scenario.has_goal()), zone.filter(|half| *half > 0.0)]
 }

@@ -25,6 +25,8 @@ pub struct RunEvents {
     pub(super) absent_parts: Option<String>,
     /// True if a repetition of the run is noted on the terminal.
     pub is_noted: bool,
+    /// True if the pointing error is shown about each axis.
+    pub is_by_axis: bool,
     /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
@@ -129,6 +131,7 @@ impl RunEvents {
             commanded,
             absent_parts,
             is_noted: false,
+            is_by_axis: false,
             shown: None,
             start,
             switchings,

@@ -99,7 +99,10 @@ pub const ENERGY: FigureSpec = FigureSpec {
     contents: "Three axes: energy of the elastic modes, and propellant",
     rows: &[RowSource::new::<Energy>(), RowSource::new::<Jets>()],
     motion: MotionPart::Nothing,
-    is_in: |story| story.scenario.axis_count() == 3,
+    is_in: |story| {
+        let is_elastic = story.scenario.mode_count() > 0;
+        story.scenario.axis_count() == 3 && (is_elastic || story.scenario.study.fires())
+    },
     draw: |run| energy(run.story, run.cycles),
 };
 

@@ -7,7 +7,7 @@ use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, SpectralLine, Wheel
 use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, four_digits, number};
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{
-    Bar, Figure, FigureAxis, FigureNote, Layer, LayerShape, Named, NoteSide, Panel, Point, colour, name_and_unit,
+    Bar, Figure, FigureAxis, Note, Layer, LayerShape, Named, NoteSide, Panel, Point, colour, name_and_unit,
 };
 
 use super::named_mode::NamedMode;
@@ -141,18 +141,18 @@ impl<'a> OutputWaterfall<'a> {
         if let Some(own) = self.required {
             let ends = vec![(0.0, own.limit), (x.range.end, own.limit)];
             layers.push(Layer::new("", colour::RED, LayerShape::Line(1.4), ends));
-            notes.push(FigureNote::new(&own.text, (x.range.end, own.limit), NoteSide::Above, colour::RED));
+            notes.push(Note::new(&own.text, (x.range.end, own.limit), colour::RED));
         }
         let y = FigureAxis::decades(&label, unit, values).in_unit(self.unit());
         Panel::new(x.unnamed(), y, layers).noted(notes)
     }
 
     /// Returns a note at the largest of some values over the speed.
-    fn largest(&self, values: &[f64], colour: flexsc_figure::RGBColor) -> Option<FigureNote> {
+    fn largest(&self, values: &[f64], colour: flexsc_figure::RGBColor) -> Option<Note> {
         let all = self.wheels.speed_rad_s.iter().zip(values);
         let (speed, value) = all.max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, value)| **value > 0.0)?;
         let text = format!("{} at {:.0} rpm", self.unit().quantity(*value), speed * 30.0 / PI);
-        Some(FigureNote::new(text, (*speed, *value), NoteSide::Above, colour))
+        Some(Note::new(text, (*speed, *value), colour))
     }
 
     /// Returns the panel of the frequencies of the lines over the speed, coloured by their amplitude.
@@ -193,7 +193,7 @@ impl<'a> OutputWaterfall<'a> {
             let text = format!("{name}, {and}{} Hz", number(last));
             // The lines at the frequency of the wheels end at the upper right.
             let end = if last < 0.4 * fastest { x.range.end } else { 0.0 };
-            notes.push(FigureNote::new(text, (end, last), NoteSide::Above, colour::GREEN));
+            notes.push(Note::new(text, (end, last), colour::GREEN));
         }
         let mut named: Vec<f64> = orders(0).collect();
         named.dedup();
@@ -213,11 +213,11 @@ impl<'a> OutputWaterfall<'a> {
         for order in named.into_iter().take(3) {
             let speed = 0.75 * x.range.end;
             let text = if order == 1.0 { "once per turn".to_owned() } else { format!("{order} per turn") };
-            notes.push(FigureNote::new(text, (speed, order * speed / TAU), NoteSide::Below, colour::BLACK));
+            notes.push(Note::new(text, (speed, order * speed / TAU), colour::BLACK).on(NoteSide::Below));
         }
         if self.wheels.lines.iter().any(|own| !own.outputs[self.index].aliases.is_empty()) {
             let height = frequency.range.start * 1.0001;
-            let note = FigureNote::new("aliases", (0.5 * x.range.end, height), NoteSide::Above, colour::BLACK);
+            let note = Note::new("aliases", (0.5 * x.range.end, height), colour::BLACK);
             notes.push(note);
         }
         let edge = |class: usize| {

@@ -5,7 +5,7 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{grouped, percent};
 use flexsc_core::statistics::{quantile, wilson};
 use flexsc_figure::{
-    Figure, FigureAxis, FigureNote, Layer, LayerShape, NoteSide, Panel, Point, RGBColor, colour, round_to_nice,
+    Figure, FigureAxis, Note, Layer, LayerShape, NoteSide, Panel, Point, RGBColor, colour, round_to_nice,
 };
 
 use super::super::readable;
@@ -62,7 +62,7 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
             let top = if part > 0.5 { 1.13 } else { 1.06 } * highest;
             layers.push(Layer::new("", colour::BLACK, LayerShape::Dashes, vec![(value, 0.0), (value, top)]));
             let text = format!("{word} {}", shown.quantity(value));
-            notes.push(FigureNote::new(text, (value, top), side, colour::BLACK));
+            notes.push(Note::new(text, (value, top), colour::BLACK).on(side));
         }
     }
     if let Some(RequiredLimit { limit, text, .. }) = &required {
@@ -70,7 +70,7 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
         layers.push(Layer::new("", colour::RED, LayerShape::Line(1.6), line));
         let is_left = *limit > f64::midpoint(x.range.start, x.range.end);
         let side = if is_left { NoteSide::Left } else { NoteSide::Right };
-        notes.push(FigureNote::new(text, (*limit, 1.3 * highest), side, colour::RED));
+        notes.push(Note::new(text, (*limit, 1.3 * highest), colour::RED).on(side));
     }
     let head = head(&sorted, limit, runs.numbers.len() - sorted.len());
     let panel = Panel::new(x, y, layers).noted(notes).headed(head);

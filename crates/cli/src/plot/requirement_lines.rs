@@ -1,0 +1,77 @@
+//! Limits of requirements as lines over the time in which they count, with their values as they were written.
+
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, percent};
+use flexsc_core::scenario::{
+    AssessedRequirement, ErrorAxis, IndexWindow, Interpretation, RequirementSource, SampledQuantity,
+};
+use flexsc_figure::{Layer, LayerShape, Note, Panel, colour};
+
+use super::run_events::RunEvents;
+
+/// Part of the time of a figure from which on a limit is seen as a line.
+const SEEN: f64 = 0.01;
+
+/// Limit of a requirement.
+pub struct RequiredLimit {
+    /// Intervals in which it counts (s).
+    windows: Vec<[f64; 2]>,
+    /// Limit (SI).
+    pub limit: f64,
+    /// Unit in which it was written.
+    pub unit: ReaderUnit,
+    /// Identifier, limit and level in words.
+    words: String,
+}
+
+/// Returns the limits on an error of a quantity itself, of its norm or about an axis.
+pub fn limits(
+    story: &RunEvents,
+    is_quantity: impl Fn(&SampledQuantity) -> bool,
+    axis: Option<ErrorAxis>,
+) -> Vec<RequiredLimit> {
+    let limit = |(index, own): (usize, &AssessedRequirement)| {
+        let RequirementSource::Error(error) = &own.source else { return None };
+        if error.index != IndexWindow::Absolute || error.axis != axis || !is_quantity(&error.quantity) {
+            return None;
+        }
+        let [from, to] = [error.from, error.to].map(|at| at.seconds());
+        let written = own.written_limit.as_deref();
+        let unit = ReaderUnits::Engineering.as_written(written, own.limit, own.unit);
+        let level = match own.interpretation {
+            _ if own.level >= 1.0 => String::new(),
+            Interpretation::Ensemble => format!(", {} of runs", percent(own.level)),
+            Interpretation::Temporal | Interpretation::Mixed => {
+                format!(", {} of the time", percent(own.level))
+            }
+        };
+        let words = format!("R{}: {}{level}", index + 1, unit.limit(own.limit, written));
+        let windows = vec![[from, if from > to { story.end } else { to.min(story.end) }]];
+        Some(RequiredLimit { windows, limit: own.limit, unit, words })
+    };
+    story.scenario.study.requirements.iter().enumerate().filter_map(limit).collect()
+}
+
+/// Adds limits to a panel over time: a line over each window, or a mark where it is short, and the words once.
+pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
+    let shown = panel.x.range.clone();
+    for own in limits {
+        let inside = |[from, to]: &[f64; 2]| [from.max(shown.start), to.min(shown.end)];
+        let windows = own.windows.iter().map(inside).filter(|[from, to]| from <= to);
+        let windows: Vec<[f64; 2]> = windows.collect();
+        let signs: &[f64] = if is_mirrored { &[1.0, -1.0] } else { &[1.0] };
+        for sign in signs {
+            let height = sign * own.limit;
+            let (mut line, mut marks) = (Vec::new(), Vec::new());
+            for [from, to] in &windows {
+                line.extend([(*from, height), (*to, height), (f64::NAN, f64::NAN)]);
+                if to - from < SEEN * (shown.end - shown.start) {
+                    marks.push(((from + to) / 2.0, height));
+                }
+            }
+            panel.layers.push(Layer::new("", colour::RED, LayerShape::Line(1.8), line));
+            panel.layers.push(Layer::new("", colour::RED, LayerShape::Diamond, marks));
+        }
+        let longest = windows.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+        panel.notes.extend(longest.map(|[from, to]| Note::new(own.words.clone(), ((from + to) / 2.0, own.limit), colour::RED)));
+    }
+}

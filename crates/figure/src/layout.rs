@@ -1,0 +1,181 @@
+//! Layout of a figure: places and sizes of its panels, and of the words above their axes.
+
+use crate::{Figure, Layer, LayerShape, Panel, bar, strip};
+
+/// Width of a figure whose panels have their nominal height (px).
+const WIDTH: u32 = 800;
+/// Least margin left of a panel's plot, and margin right of it (px).
+const LEFT: u32 = 70;
+pub const RIGHT: u32 = 20;
+/// Part of the left margin that the name of the upward axis takes (px).
+const UNNAMED: u32 = 24;
+/// Margins below the plot, for numbers and for the name of the axis (px).
+pub const NUMBERS: u32 = 24;
+pub const NAME: u32 = 18;
+/// Margin above a plot without a legend, height of a legend, and of each further row of it (px).
+const TOP: u32 = 10;
+pub const LEGEND: u32 = 22;
+pub const ROW: u32 = 16;
+/// Width of a mark in the legend with the space after it, and space between entries (px).
+pub const MARK: u32 = 23;
+const BETWEEN: u32 = 16;
+/// Size of the letters of a legend, and the least size of letters (px): 5.5 pt where the axes' names have 7 pt.
+pub const LETTERS: f64 = 11.0;
+pub const SMALLEST: f64 = 9.5;
+
+/// Layout of a figure, or of a panel in a row of panels side by side.
+#[derive(Copy, Clone)]
+pub struct Layout {
+    /// Width (px).
+    pub width: u32,
+    /// Margin left of each plot (px).
+    pub left: u32,
+    /// Height of each plot (px).
+    pub plot: u32,
+}
+
+/// Entry of a legend: a line of words, with the mark of a layer before the first.
+pub struct LegendEntry<'a> {
+    /// Layer whose mark is drawn.
+    pub layer: Option<&'a Layer>,
+    /// Words.
+    pub words: String,
+    /// Row, and left end (px).
+    pub row: u32,
+    pub column: u32,
+}
+
+impl Layout {
+    /// Returns the layout of a figure of this width, each of whose plots is higher than usual (px).
+    pub fn new(figure: &Figure, width: u32, higher: u32) -> Self {
+        let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
+        // Narrow figures are also lower, but less than proportionally.
+        let plot = f64::from(figure.panel_height) * part.powf(0.6);
+        let names = figure.panels.iter().map(|panel| strip::names_width(&panel.strips)).max().unwrap_or(0);
+        Self { width, left: LEFT.max(names), plot: plot.round() as u32 + higher }
+    }
+
+    /// Returns the height (px) of all panels of a figure.
+    pub fn height(self, figure: &Figure) -> u32 {
+        rows(figure).map(|row| self.row_height(row)).sum()
+    }
+
+    /// Returns the layouts of the panels of a row, whose plots have one width: a panel without a name at its upward axis has a
+    /// narrower margin.
+    pub fn row(self, panels: &[Panel]) -> Vec<Self> {
+        let left = |panel: &Panel| {
+            if panel.is_beside && panel.y.name.is_empty() { self.left - UNNAMED } else { self.left }
+        };
+        let margins: u32 = panels.iter().map(|panel| left(panel) + RIGHT).sum();
+        let plot = self.width.saturating_sub(margins) / panels.len().max(1) as u32;
+        let own = |panel: &Panel| Self { width: left(panel) + plot + RIGHT, left: left(panel), ..self };
+        panels.iter().map(own).collect()
+    }
+
+    /// Returns the height of a row of panels (px), with a colour bar over its width.
+    pub fn row_height(self, panels: &[Panel]) -> u32 {
+        let name = if panels.iter().all(|panel| panel.x.name.is_empty()) { 0 } else { NAME };
+        bar_height(panels) + self.row_top(panels) + self.plot + NUMBERS + name
+    }
+
+    /// Returns the distance from the top of a row, below its colour bar, to its plots (px).
+    pub fn row_top(self, panels: &[Panel]) -> u32 {
+        self.row(panels).into_iter().zip(panels).map(|(layout, panel)| layout.top(panel)).max().unwrap_or(0)
+    }
+
+    /// Returns the width of a plot (px).
+    pub fn across(self) -> u32 {
+        self.width - self.left - RIGHT
+    }
+
+    /// Returns the distance from the top of a panel, below its colour bar, to its plot (px).
+    pub fn top(self, panel: &Panel) -> u32 {
+        strip::height(self, panel) + self.legend(panel)
+    }
+
+    /// Returns the height of a panel's legend (px).
+    fn legend(self, panel: &Panel) -> u32 {
+        self.entries(panel).last().map_or(TOP, |entry| LEGEND + ROW * entry.row)
+    }
+
+    /// Returns the words above a panel: the names of its layers, and its remark. None goes beyond the plot.
+    pub fn entries(self, panel: &Panel) -> Vec<LegendEntry<'_>> {
+        let named = panel.layers.iter().filter(|layer| !layer.name.is_empty() && is_shown(layer, panel));
+        let all = named.map(|layer| (Some(layer), layer.name.as_str()));
+        let remark = Some((None, panel.remark.as_str())).filter(|(_, text)| !text.is_empty());
+        let end = self.width - RIGHT;
+        let (mut row, mut column) = (0, self.left);
+        let mut entries: Vec<LegendEntry<'_>> = Vec::new();
+        for (layer, text) in all.chain(remark) {
+            let mark = if layer.is_some() { MARK } else { 0 };
+            if column > self.left && column + mark + letters(text) > end {
+                (row, column) = (row + 1, self.left);
+            }
+            // A text that is wider than the plot has several rows.
+            for (index, words) in wrapped(text, end - self.left - mark).into_iter().enumerate() {
+                if index > 0 {
+                    (row, column) = (row + 1, self.left);
+                }
+                let wide = mark + letters(&words);
+                let (layer, at) = (layer.filter(|_| index == 0), column + if index > 0 { mark } else { 0 });
+                entries.push(LegendEntry { layer, words, row, column: at });
+                column += wide + BETWEEN;
+            }
+        }
+        entries
+    }
+}
+
+/// Returns the panels of each row: those side by side.
+pub fn rows(figure: &Figure) -> impl Iterator<Item = &[Panel]> {
+    figure.panels.chunk_by(|_, next| next.is_beside)
+}
+
+/// Returns the height of the colour bar of panels side by side (px).
+pub fn bar_height(panels: &[Panel]) -> u32 {
+    if panels.iter().any(|panel| panel.bar.is_some()) { bar::HEIGHT } else { 0 }
+}
+
+/// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's
+/// size wide.
+fn letters(text: &str) -> u32 {
+    wide(text, LETTERS).round() as u32
+}
+
+/// Estimates the width of a text of a size (px).
+pub fn wide(text: &str, size: f64) -> f64 {
+    0.57 * size * text.chars().count() as f64
+}
+
+/// Returns the font size, at most `most` (px), at which a text fits into `room` (px), but no smaller than legible.
+pub fn fitting(text: &str, room: f64, most: f64) -> f64 {
+    (room / wide(text, 1.0)).clamp(SMALLEST, most)
+}
+
+/// Splits a text between words into lines of legend letters within `room` (px).
+fn wrapped(text: &str, room: u32) -> Vec<String> {
+    split(text, |line| letters(line) <= room)
+}
+
+/// Splits a text between words into lines that fit, each as long as possible.
+pub fn split(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if fits(&format!("{line} {word}")) => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Whether a panel shows any of a layer.
+fn is_shown(layer: &Layer, panel: &Panel) -> bool {
+    let is_mark = !matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes | LayerShape::Area(_));
+    let window = crate::Window { x: panel.x.extent(), y: panel.y.extent() };
+    let inside = |(x, y): &crate::Point| window.contains((panel.x.place(*x), panel.y.place(*y)));
+    if is_mark { layer.points.iter().any(inside) } else { !layer.points.is_empty() }
+}
