@@ -262,6 +262,12 @@ impl CampaignRuns {
         key_axis(scenario, &key.name, key.values.iter().copied())
     }
 
+    /// Returns the point of the scenario itself over two keys, if it has both.
+    pub fn own_point(&self, first: &CampaignKey, second: &CampaignKey) -> Vec<(f64, f64)> {
+        let own = |key: &CampaignKey| self.scenario.as_ref()?.0.number_at(&key.name);
+        own(first).zip(own(second)).into_iter().collect()
+    }
+
     /// Returns the keys that are drawn.
     pub fn drawn(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| !key.swept).collect()
