@@ -150,6 +150,24 @@ impl FigureAxis {
         if self.unit == "rad/s" { self.in_unit(ReaderUnits::Engineering.rotor_speed()) } else { self }
     }
 
+    /// Returns the axis that shows what two axes of one quantity show.
+    #[must_use]
+    pub fn covering(&self, other: &Self) -> Self {
+        let union = |a: &Range<f64>, b: &Range<f64>| a.start.min(b.start)..a.end.max(b.end);
+        let axis = Self {
+            range: union(&self.range, &other.range),
+            positive: union(&self.positive, &other.positive),
+            ..self.clone()
+        };
+        if axis.scale == Scale::Logarithmic { axis.in_whole_decades() } else { axis }
+    }
+
+    /// Returns the axis in the unit that another one was given.
+    #[must_use]
+    pub fn like(self, other: &Self) -> Self {
+        other.shown_in.clone().map_or(self.clone(), |unit| self.in_unit(unit))
+    }
+
     /// Returns the axis over another range.
     #[must_use]
     pub fn over(&self, range: Range<f64>) -> Self {
@@ -246,9 +264,9 @@ impl FigureAxis {
         let ends = |step: f64| ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
         let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
         let place = steps.iter().position(|step| *step >= rough).unwrap_or(4);
-        // At least two ticks are needed to read a value.
+        // Two ticks are few to read a value.
         let (first, last) = ends(steps[place]);
-        let step = if place > 0 && last - first < 1 { steps[place - 1] } else { steps[place] };
+        let step = if place > 0 && last - first < 2 { steps[place - 1] } else { steps[place] };
         let (first, last) = ends(step);
         // The tolerance allows for rounding in the logarithm of a power of ten.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;

@@ -62,7 +62,8 @@ pub struct PlotBox {
 
 /// Size of the letters, and distance of a note from its point (px).
 const LETTERS: f64 = 10.5;
-const DISTANCE: f64 = 4.0;
+const DISTANCE: f64 = 5.0;
+const BESIDE: f64 = 8.0;
 const HEIGHT: f64 = 13.0;
 /// Opacity of the ground under the words.
 const GROUND: f64 = 0.7;
@@ -85,16 +86,25 @@ pub fn draw<'a>(
             let top = y - height / 2.0;
             PlotBox { left, top, right: left + width, bottom: top + height }
         };
-        let (up, across) = (DISTANCE + height / 2.0, DISTANCE + width / 2.0);
+        let (up, across) = (DISTANCE + height / 2.0, BESIDE + width / 2.0);
+        let beside = |across: f64| [0.0, -HEIGHT, HEIGHT, -2.0 * HEIGHT].map(|down| (across, down));
+        let (above, below) = ([(0.0, -up), (0.0, -up - HEIGHT)], [(0.0, up), (0.0, up + HEIGHT)]);
         let offsets = match note.side {
-            NoteSide::Free => [(0.0, -up), (0.0, up), (0.0, -up - HEIGHT), (0.0, up + HEIGHT)],
-            NoteSide::Below => [(0.0, up); 4],
-            NoteSide::Left => [(-across, 0.0), (-across, -HEIGHT), (-across, HEIGHT), (-across, -2.0 * HEIGHT)],
-            NoteSide::Right => [(across, 0.0), (across, -HEIGHT), (across, HEIGHT), (across, -2.0 * HEIGHT)],
-            NoteSide::Centre | NoteSide::Upright => [(0.0, 0.0); 4],
+            NoteSide::Free => {
+                vec![above[0], (across, 0.0), (-across, 0.0), below[0], above[1], below[1]]
+            }
+            NoteSide::Below => below.to_vec(),
+            NoteSide::Left => beside(-across).to_vec(),
+            NoteSide::Right => beside(across).to_vec(),
+            NoteSide::Centre | NoteSide::Upright => vec![(0.0, 0.0)],
         };
-        let places = offsets.map(|(dx, dy)| boxed((x + dx, y + dy)));
-        let inside = |place: &&PlotBox| place.top >= plot.top && place.bottom <= plot.bottom;
+        let places: Vec<PlotBox> = offsets.iter().map(|(dx, dy)| boxed((x + dx, y + dy))).collect();
+        // Words beside a point are not moved over it.
+        let is_over = |place: &PlotBox| place.left < x && x < place.right && place.top < y && y < place.bottom;
+        let is_on = matches!(note.side, NoteSide::Centre | NoteSide::Upright);
+        let inside = |place: &&PlotBox| {
+            place.top >= plot.top && place.bottom <= plot.bottom && (is_on || !is_over(place))
+        };
         let free = |place: &&PlotBox| !taken.iter().any(|other| place.covers(other));
         let place = places.iter().filter(inside).find(free).or(places.iter().find(inside)).copied();
         let held = |top: f64| top.clamp(plot.top, (plot.bottom - height).max(plot.top));

@@ -18,7 +18,7 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     }
     let heights: Vec<u32> =
         figures.iter().map(|figure| draw::height(figure, across, style.is_titled())).collect();
-    let (width, height, columns) = columns(&heights, across);
+    let (width, height, columns) = columns(&heights, across, style.columns());
     let mut sheet = format!(
         "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          xmlns=\"http://www.w3.org/2000/svg\">\n\
@@ -41,10 +41,10 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     Ok(sheet)
 }
 
-/// The width and height of a sheet of figures of these heights, and how many of them each of its columns has: its
+/// The width and height of a sheet with at most so many columns of figures of these heights, and how many of them each of its columns has: its
 /// shape is near to that wanted, and its columns are near to one height.
-fn columns(heights: &[u32], across: u32) -> (u32, u32, Vec<usize>) {
-    let sheets = (1..=heights.len()).map(|count| {
+fn columns(heights: &[u32], across: u32, most: usize) -> (u32, u32, Vec<usize>) {
+    let sheets = (1..=heights.len().min(most)).map(|count| {
         let columns = parted(heights, count);
         let mut rest = heights.iter();
         let each = columns.iter().map(|count| rest.by_ref().take(*count).sum::<u32>());

@@ -9,6 +9,9 @@ const PER_PT: f64 = 96.0 / 72.0;
 const NAMES: f64 = 12.0;
 /// Width of the layout for screens (px).
 const SCREEN: f64 = 800.0;
+/// Largest number of columns of a sheet for screens, and width of a page (mm).
+const COLUMNS: usize = 3;
+const PAGE: f64 = 181.0;
 /// Size of the axes' names if only a width is given (pt).
 const USUAL: f64 = 8.0;
 /// Minimum and maximum width of the layout (px).
@@ -63,6 +66,12 @@ impl Style {
     /// Returns true if the sizes are those for screens.
     pub fn is_for_screens(&self) -> bool {
         self.width.is_none() && self.font.is_none()
+    }
+
+    /// Returns the largest number of columns of a sheet whose letters stay legible: those of a page of 180 mm, or of a wide
+    /// screen.
+    pub(crate) fn columns(&self) -> usize {
+        if self.is_for_screens() { COLUMNS } else { ((PAGE / self.width_mm()) as usize).max(1) }
     }
 
     /// Returns the pixels on paper per pixel of the layout.

@@ -1,7 +1,7 @@
 //! Figure `consistency` of three axes: the errors of an attitude filter with three of its standard deviations, and its
 //! normalised error squared, which is about 1 for each state of a consistent filter.
 
-use flexsc_core::formats::reader_units::time as time_text;
+use flexsc_core::formats::reader_units::four_digits;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
@@ -61,7 +61,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let window = nees.len().div_ceil(RUNNING).max(1);
     let (nees, name) = if window > 1 {
         let length = nees[window - 1].0 - nees[0].0;
-        (averages(&nees, window), format!("mean over {}", time_text(length)))
+        (averages(&nees, window), format!("mean over {} s", four_digits(length)))
     } else {
         (nees, "NEES / states".to_owned())
     };

@@ -10,7 +10,7 @@ use super::estimate::filters_one_axis;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
-use super::{assessed_mean, attitude_filter, filter_lock, time, title};
+use super::{assessed_mean, attitude_filter, time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "consistency",
@@ -39,11 +39,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let measurements = 1 + usize::from(scenario.sensor.rate_noise(0).is_some());
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
-    let panel = |name: &str,
-                 ratio: fn(&DominantModeEstimate) -> f64,
-                 degrees: usize,
-                 averaged: usize,
-                 named: bool| {
+    let panel = |name: &str, ratio: fn(&DominantModeEstimate) -> f64, degrees: usize, averaged: usize| {
         let values: Vec<Point> = motion.estimates.iter().map(|e| (e.time, ratio(e))).collect();
         let line = averages(&values, window);
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
@@ -54,10 +50,9 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         } else {
             FigureAxis::from_zero(name, "", shown())
         };
-        let mut layers = filter_lock::spans(motion, &y, named);
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let samples = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
-        layers.extend([
+        let mut layers = vec![
             Layer::new(
                 &format!("95 % of chi-square, {samples}"),
                 colour::GREEN,
@@ -71,14 +66,14 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
                 LayerShape::Line(1.2),
                 line,
             ),
-        ]);
+        ];
         layers.extend(assessed_mean::mean(story, &values));
         Panel::new(time(0.0..story.end), y, layers)
     };
     // Innovations of a consistent filter are independent from sample to sample. Errors are not: within a window they
     // are nearly a single draw.
-    let nis = panel("NIS / measurements", |e| e.nis, measurements, window, true);
-    let nees = panel("NEES / states", |e| e.nees, states.max(1), 1, false);
+    let nis = panel("NIS / measurements", |e| e.nis, measurements, window);
+    let nees = panel("NEES / states", |e| e.nees, states.max(1), 1);
     let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
 }

@@ -6,7 +6,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 use super::figure_spec::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::{filter_lock, time, title};
+use super::{time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "estimate",
@@ -31,16 +31,16 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let x = time(0.0..story.end);
     let heights = estimated.iter().chain(&truth).map(|point| point.1);
     let y = FigureAxis::around("displacement", "rad", heights);
-    let mut layers = filter_lock::spans(motion, &y, true);
-    layers.extend([
+    let layers = vec![
         Layer::new("estimated, as the law reads it", colour::ORANGE, LayerShape::Line(2.0), estimated),
         Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
-    ]);
+    ];
     let whole = Panel::new(x.unnamed(), y, layers);
     let y = FigureAxis::around("error", "rad", error.iter().map(|point| point.1));
-    let mut layers = filter_lock::spans(motion, &y, false);
-    layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]));
-    layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.0), error));
+    let layers = vec![
+        Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),
+        Layer::new("", colour::BLUE, LayerShape::Line(1.0), error),
+    ];
     let panels = vec![whole, Panel::new(x, y, layers)];
     Figure { title: title(story, "displacement of the dominant mode"), panels, panel_height: 200 }
 }

@@ -7,7 +7,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 use super::figure_spec::{FigureSpec, MotionPart};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::{filter_lock, time, title};
+use super::{time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "extra",
@@ -32,16 +32,12 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let gain = |w: f64| extra(story).map_or(0.0, |extra| extra.gain(w));
     let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
     let x = time(0.0..story.end);
-    let panel = |x: FigureAxis, (name, unit): (&str, &'static str), line: Vec<Point>, named: bool| {
+    let panel = |x: FigureAxis, (name, unit): (&str, &'static str), line: Vec<Point>| {
         let y = FigureAxis::around(name, unit, line.iter().map(|point| point.1)).in_hertz();
-        let mut layers = filter_lock::spans(motion, &y, named);
-        layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.4), line));
-        Panel::new(x, y, layers)
+        Panel::new(x, y, vec![Layer::new("", colour::BLUE, LayerShape::Line(1.4), line)])
     };
-    let panels = vec![
-        panel(x.unnamed(), ("gain k_d", ""), gains, true),
-        panel(x, ("frequency read", "rad/s"), read, false),
-    ];
+    let panels =
+        vec![panel(x.unnamed(), ("gain k_d", ""), gains), panel(x, ("frequency read", "rad/s"), read)];
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 

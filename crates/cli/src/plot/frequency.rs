@@ -9,7 +9,7 @@ use super::estimate::filters_one_axis;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
-use super::{filter_lock, identified_frequencies, time, title};
+use super::{identified_frequencies, time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "frequency",
@@ -42,12 +42,11 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = FigureAxis::around("frequency", "rad/s", shown.map(|value| value.clamp(0.0, most))).in_hertz();
     let x = time(0.0..story.end);
-    let mut layers = filter_lock::spans(motion, &y, true);
-    layers.extend([
+    let mut layers = vec![
         Layer::new("± 2 standard deviations", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
         Layer::new("estimated", colour::BLUE, LayerShape::Line(1.4), estimated),
         Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
-    ]);
+    ];
     if motion.estimates.iter().any(|estimate| estimate.read_frequency != estimate.frequency) {
         let apart = |e: &DominantModeEstimate| e.read_frequency != e.frequency;
         let read = line(&|e| if apart(e) { e.read_frequency } else { f64::NAN });
@@ -59,12 +58,11 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let [lower, upper] = [-2.0, 2.0].map(|deviations| line(&|e| deviations * e.frequency_sd));
     let shown = [&error, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = FigureAxis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most))).in_hertz();
-    let mut layers = filter_lock::spans(motion, &y, false);
-    layers.extend([
+    let layers = vec![
         Layer::new("", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
         Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),
         Layer::new("", colour::BLUE, LayerShape::Line(1.2), error),
-    ]);
+    ];
     let panels = vec![whole, Panel::new(x, y, layers)];
     Figure { title: title(story, "frequency of the dominant mode"), panels, panel_height: 200 }
 }

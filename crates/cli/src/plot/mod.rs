@@ -18,7 +18,6 @@ mod extra_loop;
 mod figure_kind;
 mod figure_name;
 mod figure_spec;
-mod filter_lock;
 mod flywheel;
 mod frequency;
 mod gain;

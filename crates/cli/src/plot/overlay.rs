@@ -1,14 +1,18 @@
-//! Overlay of the figures of several runs, with a colour for each run.
+//! Overlay of the figures of several runs, and the difference of two.
 
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, Scale, colour};
+use flexsc_figure::{
+    Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, Scale, Strip, colour,
+};
 
 /// Colours of the runs, cyclic.
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
 /// Fraction by which each further line of a run in a panel is lighter.
-const LIGHTER: f64 = 0.45;
+const LIGHTER: f64 = 0.3;
+/// Largest number of points of a line that is a limit, a target or a mark.
+const LEVEL: usize = 6;
 
-/// Returns the overlay of the named runs' figures; `None` if their panels differ.
+/// Returns the overlay of the named runs' figures, of two runs with their difference below; `None` if their panels differ.
 pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
@@ -35,19 +39,24 @@ pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
             let [first, last] = &mut layer.points[..] else { continue };
             (first.1, last.1) = (y.range.start, y.range.end);
         }
-        Panel::new(x, y, layers)
+        Panel { notes: notes(&panels), strips: strips(&panels), ..Panel::new(x, y, layers) }
     };
-    Some(Figure { title, panels: (0..count).map(panel).collect(), panel_height })
+    let mut panels: Vec<Panel> = (0..count).map(panel).collect();
+    if let [(a, one), (b, other)] = runs
+        && let Some(below) = difference((a, one), (b, other))
+    {
+        if let Some(last) = panels.last_mut() {
+            last.x = last.x.unnamed();
+        }
+        panels.push(below);
+    }
+    Some(Figure { title, panels, panel_height })
 }
 
 /// Returns the axis that contains the axes of all panels.
 fn axis(panels: &[(&str, &Panel)], axis_of: fn(&Panel) -> &FigureAxis) -> FigureAxis {
-    let mut all = axis_of(panels[0].1).clone();
-    for (_, panel) in panels {
-        let range = &axis_of(panel).range;
-        all.range = all.range.start.min(range.start)..all.range.end.max(range.end);
-    }
-    all
+    let first = axis_of(panels[0].1).clone();
+    panels[1..].iter().fold(first, |all, (_, panel)| all.covering(axis_of(panel)))
 }
 
 /// Returns the abscissa of a vertical line; `None` for other layers.
@@ -58,6 +67,12 @@ fn upright(layer: &Layer) -> Option<f64> {
     }
 }
 
+/// Returns true for a curve or marks of a run, in contrast to bands, limits and targets.
+fn is_data(layer: &Layer) -> bool {
+    !matches!(layer.shape, LayerShape::Area(_)) && layer.colour != colour::RED
+}
+
+/// Returns the layers of all runs, each run in its colour; only the first panel names the runs.
 fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
     let mut layers: Vec<Layer> = Vec::new();
     let same = |a: &Layer, b: &Layer| {
@@ -69,12 +84,14 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
         |layer: &Layer| panels.iter().all(|(_, panel)| panel.layers.iter().any(|other| same(layer, other)));
     layers.extend(panels[0].1.layers.iter().filter(|layer| common(layer)).cloned());
     for (run, (name, panel)) in panels.iter().enumerate() {
-        let own: Vec<&Layer> = panel.layers.iter().filter(|layer| !common(layer)).collect();
+        // Bands of several runs would hide each other. Limits stay those of each run.
+        let own = || panel.layers.iter().filter(|layer| !common(layer));
+        layers.extend(own().filter(|layer| layer.colour == colour::RED).cloned());
+        let own: Vec<&Layer> = own().filter(|layer| is_data(layer)).collect();
         // The widest line is the main one of the panel.
         let width = |layer: &Layer| if let LayerShape::Line(width) = layer.shape { width } else { 0.0 };
         let main = (0..own.len()).max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
         let mut lines = 0;
-        let mut reported = false;
         for (place, layer) in own.iter().enumerate() {
             let mut layer = (*layer).clone();
             let is_line = matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes);
@@ -85,17 +102,99 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
                 LIGHTER + 0.2 * f64::from((lines - 1).min(2))
             };
             layer.colour = lighter(COLOURS[run % COLOURS.len()], shade);
-            layer.name = match (layer.name.as_str(), named) {
-                (_, true) if layer.points.is_empty() => String::new(),
-                ("", true) if Some(place) == main && !reported => (*name).to_owned(),
-                ("", _) => String::new(),
-                (own, _) => format!("{name}, {own}"),
-            };
-            reported |= !layer.name.is_empty();
+            layer.name = if named && Some(place) == main { (*name).to_owned() } else { String::new() };
             layers.push(layer);
         }
     }
     layers
+}
+
+/// Returns the notes of all runs: those that all share once, those at data in the colour of the run.
+fn notes(panels: &[(&str, &Panel)]) -> Vec<Note> {
+    let mut notes: Vec<Note> = Vec::new();
+    for (run, (_, panel)) in panels.iter().enumerate() {
+        for note in &panel.notes {
+            let is_limit = note.colour == colour::RED;
+            let colour = if is_limit { note.colour } else { COLOURS[run % COLOURS.len()] };
+            if !notes.iter().any(|known| known.text == note.text && (is_limit || known.at == note.at)) {
+                notes.push(Note { colour, ..note.clone() });
+            }
+        }
+    }
+    notes
+}
+
+/// Returns the strips of all runs: those that all share once, others with the name of the run.
+fn strips(panels: &[(&str, &Panel)]) -> Vec<Strip> {
+    let common = |strip: &Strip| panels.iter().all(|(_, panel)| panel.strips.contains(strip));
+    let shared = panels[0].1.strips.iter().filter(|strip| common(strip)).cloned();
+    let own = panels.iter().flat_map(|(name, panel)| {
+        let own = panel.strips.iter().filter(|strip| !common(strip)).cloned();
+        own.map(move |strip| Strip { name: format!("{}, {name}", strip.name), ..strip })
+    });
+    shared.chain(own).collect()
+}
+
+/// Returns the panel of the second run less the first, of the curves over time of one quantity; `None` without any.
+fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<Panel> {
+    let curves = |figure: &Figure| -> Vec<(String, Vec<Point>)> {
+        let first = &figure.panels[0];
+        let panels = figure.panels.iter().filter(|panel| panel.x.unit == "s" && panel.y.unit == first.y.unit);
+        let data = |layer: &&Layer| {
+            let is_line = matches!(layer.shape, LayerShape::Line(_));
+            is_line && is_data(layer) && layer.points.len() > LEVEL
+        };
+        let named = |panel: &Panel| -> Vec<(String, Vec<Point>)> {
+            let is_one = panel.layers.iter().filter(data).count() == 1;
+            let name = |layer: &Layer| match (is_one, layer.name.is_empty()) {
+                (true, _) | (_, true) => panel.y.name.clone(),
+                _ => layer.name.clone(),
+            };
+            panel.layers.iter().filter(data).map(|layer| (name(layer), layer.points.clone())).collect()
+        };
+        panels.flat_map(named).collect()
+    };
+    let (first, last) = (one.panels.first()?, one.panels.last()?);
+    let pairs = curves(one).into_iter().zip(curves(other)).filter(|(one, other)| one.0 == other.0);
+    let lines = pairs.filter_map(|((name, one), (_, other))| Some((name, subtracted(&other, &one)?)));
+    let lines: Vec<(String, Vec<Point>)> = lines.collect();
+    let y = FigureAxis::around(
+        &format!("{b} − {a}"),
+        first.y.unit,
+        lines.iter().flat_map(|(_, line)| line).map(|point| point.1),
+    );
+    let is_named = lines.len() > 1;
+    let layer = |(index, (name, line)): (usize, (String, Vec<Point>))| {
+        let name = if is_named { name } else { String::new() };
+        let colour = if is_named { COLOURS[index % COLOURS.len()] } else { colour::BLACK };
+        Layer::new(&name, colour, LayerShape::Line(1.0), line)
+    };
+    let is_something = lines.iter().flat_map(|(_, line)| line).any(|point| point.1.abs() > 0.0);
+    let layers: Vec<Layer> = lines.into_iter().enumerate().map(layer).collect();
+    is_something.then(|| {
+        Panel::new(last.x.covering(&other.panels[other.panels.len() - 1].x), y.like(&first.y), layers)
+    })
+}
+
+/// Returns a line less another, which is interpolated, where both are; `None` if one goes back in time or they share none.
+fn subtracted(line: &[Point], other: &[Point]) -> Option<Vec<Point>> {
+    let finite = |line: &[Point]| -> Vec<Point> {
+        line.iter().filter(|(x, y)| x.is_finite() && y.is_finite()).copied().collect()
+    };
+    let (line, other) = (finite(line), finite(other));
+    if !line.is_sorted_by(|a, b| a.0 <= b.0) || !other.is_sorted_by(|a, b| a.0 <= b.0) {
+        return None;
+    }
+    let value_at = |x: f64| {
+        let after = other.partition_point(|point| point.0 < x);
+        let (to, from) = (other.get(after)?, other.get(after.saturating_sub(1))?);
+        if to.0 == x {
+            return Some(to.1);
+        }
+        (after > 0).then(|| from.1 + (x - from.0) / (to.0 - from.0) * (to.1 - from.1))
+    };
+    let difference: Vec<Point> = line.iter().filter_map(|(x, y)| Some((*x, y - value_at(*x)?))).collect();
+    (difference.len() > 1).then_some(difference)
 }
 
 fn lighter(RGBColor(r, g, b): RGBColor, part: f64) -> RGBColor {
@@ -108,7 +207,7 @@ mod tests {
     use super::*;
 
     fn figure(height: f64, end: f64) -> Figure {
-        let line = vec![(0.0, 0.0), (end, height)];
+        let line = (0..=10).map(|i| f64::from(i) / 10.0).map(|part| (part * end, part * height)).collect();
         let zone = vec![(0.0, 0.5), (100.0, 0.5)];
         let layers = vec![
             Layer::new("dead zone", colour::GREY, LayerShape::Dashes, zone),
@@ -131,6 +230,21 @@ mod tests {
         assert_eq!((panel.x.range.clone(), panel.y.range.clone()), (0.0..10.0, 0.0..3.0));
         let reported: Vec<_> = panel.layers.iter().map(|layer| (layer.name.as_str(), layer.colour)).collect();
         assert_eq!(reported, [("dead zone", colour::GREY), ("a", colour::BLUE), ("b", colour::VERMILLION)]);
+    }
+
+    #[test]
+    fn the_difference_is_over_the_time_that_both_have() {
+        let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
+        let both = overlaid("angle", &runs).expect("alike");
+        let below = &both.panels[1];
+        assert_eq!((below.y.name.as_str(), below.x.name.as_str()), ("b − a", "time"));
+        // 3 x/5 - x/10 at 0, 0.5 ... 5.
+        let points = &below.layers[0].points;
+        assert_eq!(points.len(), 11);
+        assert!(points.iter().all(|(x, y)| (y - 0.5 * x).abs() < 1e-12), "{points:?}");
+        // Equal runs have none.
+        let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(1.0, 10.0))];
+        assert_eq!(overlaid("angle", &runs).expect("alike").panels.len(), 1);
     }
 
     #[test]

@@ -50,7 +50,9 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     let limits = requirement_lines::limits(story, |own| *own == SampledQuantity::PointingError, None);
     let inside: Vec<Point> =
         errors.iter().filter(|(time, _)| (shown.start..=shown.end).contains(time)).copied().collect();
-    let goal = story.scenario.reference.band.map(Positive::get).filter(|_| story.scenario.has_goal());
+    // A goal is not shown beside a requirement.
+    let goal = story.scenario.reference.band.map(Positive::get);
+    let goal = goal.filter(|_| story.scenario.has_goal() && limits.is_empty());
     let mut sizes: Vec<f64> = inside.iter().map(|point| point.1).filter(|size| *size > 0.0).collect();
     sizes.sort_by(f64::total_cmp);
     let usual = &sizes[(BELOW * sizes.len() as f64) as usize..];
@@ -74,8 +76,8 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     panel
 }
 
-/// Returns the time at which the acquisition ends (s): the error falls below ten times its median, after the start of the
-/// first mode with a target. 0 if there is none, or if too much of the run would be left out.
+/// Returns the time at which the acquisition ends (s): the error has fallen below ten times its median, after the start of
+/// the first mode with a target. 0 if there is none, or if too much of the run would be left out.
 fn acquisition_end(story: &RunEvents, errors: &[Point]) -> f64 {
     let scenario = &story.scenario;
     let has_target = |index: usize| scenario.mode.get(index).is_some_and(|mode| mode.target.is_some());
@@ -85,8 +87,12 @@ fn acquisition_end(story: &RunEvents, errors: &[Point]) -> f64 {
     let mut sizes: Vec<f64> = pursued().map(|point| point.1).collect();
     sizes.sort_by(f64::total_cmp);
     let Some(median) = sizes.get(sizes.len() / 2) else { return 0.0 };
-    let acquired = pursued().find(|point| point.1 < ACQUIRED * median).map_or(first, |point| point.0);
-    let is_cut = acquired > errors[0].0 && acquired <= MOST_LEFT_OUT * story.end;
+    let below = pursued().skip_while(|point| point.1 >= ACQUIRED * median);
+    // It may still fall.
+    let low = below.clone().zip(below.skip(1)).find(|(now, next)| next.1 >= now.1);
+    let acquired = low.map_or(first, |(now, _)| now.0);
+    let is_large = pursued().next().is_some_and(|point| point.1 >= ACQUIRED * median);
+    let is_cut = (is_large || first > 0.0) && acquired <= MOST_LEFT_OUT * story.end;
     if is_cut { acquired } else { 0.0 }
 }
 

@@ -1,10 +1,11 @@
-//! Strips above figures over time: modes of operation, eclipses, blinded star trackers, actuators at limits, failures.
+//! Strips above figures over time: modes of operation, eclipses, blinded star trackers, filters, actuators at limits, failures.
 
 use flexsc_core::record::{self, Light, Orbit};
 use flexsc_figure::{Figure, RGBColor, Strip, StripSpan, colour, palette};
 
 use super::cycle_data::CycleData;
 use super::figure_spec::RunData;
+use super::motion::DominantModeEstimate;
 use super::run_events::RunEvents;
 use super::{flywheel, time, wheels};
 
@@ -47,6 +48,8 @@ fn all(run: &RunData<'_>) -> Vec<Strip> {
         modes(story),
         uniform("eclipse", ECLIPSE, &eclipses(run.cycles, story.end)),
         uniform("tracker blinded", BLINDED, &story.blinded),
+        uniform("filter gated", colour::GREY, &of_filter(run, |estimate| estimate.gated)),
+        uniform("lock lost", colour::VERMILLION, &of_filter(run, |estimate| estimate.lost)),
         uniform("wheel at limit", colour::RED, &speed),
         uniform("torque at limit", colour::RED, &torque),
         failures(story),
@@ -67,10 +70,21 @@ fn failures(story: &RunEvents) -> Strip {
     let span = |failing: &flexsc_core::scenario::FailureInterval| StripSpan {
         from: failing.interval.start().seconds(),
         to: failing.interval.end().map_or(story.end, |end| end.seconds()),
-        name: if failing.of.is_empty() { failing.part.clone() } else { failing.of.clone() },
+        name: if failing.of.is_empty() { kind_of_part(&failing.part) } else { failing.of.clone() },
         colour: colour::ORANGE,
     };
     Strip { name: "failure".to_owned(), spans: story.scenario.failures().iter().map(span).collect() }
+}
+
+/// Returns the kind of a part in words: `sensor[3].star_tracker` as "star tracker".
+fn kind_of_part(key: &str) -> String {
+    key.rsplit('.').next().unwrap_or(key).replace('_', " ")
+}
+
+/// Returns the intervals in which a filter of one axis says something of itself (s).
+fn of_filter(run: &RunData<'_>, is_so: fn(&DominantModeEstimate) -> bool) -> Vec<Interval> {
+    let estimates = run.motion.estimates.iter();
+    intervals(estimates.map(|estimate| (estimate.time, is_so(estimate))), run.story.end, 0.0)
 }
 
 /// Returns the intervals of the rows in shadow (s).
