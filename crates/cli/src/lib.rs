@@ -44,6 +44,7 @@ mod quantity;
 mod report;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
+mod required_limit;
 mod requirements;
 mod result_files;
 mod results;

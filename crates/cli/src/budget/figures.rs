@@ -1,8 +1,13 @@
 //! Figure of a budget: the fraction of all values of the index that are within a value.
 
-use flexsc_core::analysis::budget::CampaignBudget;
+use flexsc_core::analysis::budget::{CampaignBudget, LEVELS};
 use flexsc_core::scenario::Interpretation;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
+use flexsc_core::statistics::quantile;
+use flexsc_figure::{
+    Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
+};
+
+use crate::required_limit::RequiredLimit;
 
 /// Number of points of a line.
 const POINTS: usize = 200;
@@ -23,13 +28,22 @@ pub fn named(scenario: &str, budget: &CampaignBudget) -> Named {
         let convolved = points().map(|most| (most, 100.0 * distribution.probability(most)));
         layers.push(Layer::new("convolved", colour::ORANGE, LayerShape::Dashes, convolved.collect()));
     }
-    let limit = vec![(requirement.limit, 0.0), (requirement.limit, 100.0)];
-    layers.push(Layer::new("limit", colour::BLACK, LayerShape::Dashes, limit));
-    let x =
-        FigureAxis::exact(&format!("{} ({})", requirement.name, requirement.unit), "", 0.0..1.05 * largest);
+    let required = RequiredLimit::new(requirement);
+    layers.push(required.line(vec![(requirement.limit, 0.0), (requirement.limit, 100.0)]));
+    let (name, unit) = name_and_unit(&requirement.name, requirement.unit);
+    let x = RequiredLimit::shown(Some(&required), FigureAxis::exact(&name, unit, 0.0..1.05 * largest));
+    let levels = LEVELS.map(|level| (quantile(&budget.magnitudes, level), 100.0 * level));
+    let levels: Vec<Point> = levels.into_iter().filter(|(value, _)| value.is_finite()).collect();
+    let note = |(value, percent): &Point| {
+        let text = format!("{percent:.1} %: {}", x.reader_unit().quantity(*value));
+        Note::new(text, (*value, *percent), colour::BLUE).on(NoteSide::Right)
+    };
+    // From the lowest to the highest, so that names of levels close to each other go downwards.
+    let notes: Vec<Note> = levels.iter().map(note).collect();
+    layers.push(Layer::new("", colour::BLUE, LayerShape::Disc, levels));
     let y = FigureAxis::exact("within (%)", "", 0.0..104.0);
     let title = format!("{scenario}: {}", requirement.description());
-    let figure = Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 260 };
+    let figure = Figure { title, panels: vec![Panel::new(x, y, layers).noted(notes)], panel_height: 260 };
     (format!("{scenario}-budget-{}", file_part(&requirement.name)), figure)
 }
 

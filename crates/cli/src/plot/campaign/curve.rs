@@ -5,7 +5,8 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 
 use super::super::readable;
 use super::metric_column::MetricColumn;
-use super::table::{CampaignKey, CampaignRuns, RequiredLimit};
+use super::table::{CampaignKey, CampaignRuns};
+use crate::required_limit::RequiredLimit;
 
 /// Largest number of values that have a marker each.
 const MARKS: usize = 100;
@@ -25,10 +26,7 @@ pub fn figure(runs: &CampaignRuns, metrics: &[&MetricColumn], key: &CampaignKey)
         if line.len() <= MARKS {
             layers.push(Layer::new("", colour::BLUE, LayerShape::Dot, line));
         }
-        layers.extend(required.as_ref().map(|RequiredLimit { limit, text, .. }| {
-            let line = vec![(x.range.start, *limit), (x.range.end, *limit)];
-            Layer::new(text, colour::RED, LayerShape::Line(1.6), line)
-        }));
+        layers.extend(required.as_ref().map(|own| own.across(&x)));
         let x = if index + 1 == metrics.len() { x } else { x.unnamed() };
         let y = FigureAxis::around(&name, unit, metric.values.iter().copied().chain(limit));
         Panel::new(x, RequiredLimit::shown(required.as_ref(), y), layers)

@@ -10,7 +10,8 @@ use flexsc_figure::{
 
 use super::super::readable;
 use super::metric_column::MetricColumn;
-use super::table::{CampaignRuns, RequiredLimit};
+use super::table::CampaignRuns;
+use crate::required_limit::RequiredLimit;
 
 /// Least and largest number of bars of a histogram.
 const BARS: [f64; 2] = [5.0, 60.0];
@@ -61,7 +62,7 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
             let value = quantile(&sorted, part);
             let top = if part > 0.5 { 1.13 } else { 1.06 } * highest;
             layers.push(Layer::new("", colour::BLACK, LayerShape::Dashes, vec![(value, 0.0), (value, top)]));
-            let text = format!("{word} {}", shown.quantity(value));
+            let text = format!("{word}: {}", shown.quantity(value));
             notes.push(Note::new(text, (value, top), colour::BLACK).on(side));
         }
     }
@@ -87,7 +88,7 @@ fn head(sorted: &[f64], limit: Option<f64>, without: usize) -> String {
     let (low, high) = wilson(successes as u64, sorted.len() as u64);
     let [low, high] = [low, high].map(|part| format!("{:.0}", 100.0 * part));
     let share = percent(successes as f64 / sorted.len().max(1) as f64);
-    format!("{successes} of {runs} meet the limit: {share} (95 % interval {low} to {high} %){without}")
+    format!("{successes} of {runs} meet the limit: {share} ({low} to {high} %){without}")
 }
 
 /// Returns the bars of a histogram over sorted values: their ends, and the number of values in each. The width is

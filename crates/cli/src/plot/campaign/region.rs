@@ -9,7 +9,8 @@ use flexsc_figure::{
 
 use super::super::readable;
 use super::metric_column::MetricColumn;
-use super::table::{CampaignKey, CampaignRuns, RequiredLimit};
+use super::table::{CampaignKey, CampaignRuns};
+use crate::required_limit::RequiredLimit;
 
 /// Colours of the levels, the lowest first (after Brewer).
 const COLOURS: [RGBColor; 7] = [
@@ -75,7 +76,8 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
         colours: (0..=levels.len()).map(colour).collect(),
         edges: levels.iter().map(|level| number_without_zeros(*level)).collect(),
     };
-    let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers).noted(notes).plain() };
+    let remark = if runs.has_same_noise { "same noise at all points" } else { "" };
+    let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers).noted(notes).plain().headed(remark) };
     let title = format!("{}: {name} ({})", readable(&runs.name), counted(runs.numbers.len(), "run"));
     Some(Figure { title, panels: vec![panel], panel_height: 420 })
 }

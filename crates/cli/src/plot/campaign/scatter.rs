@@ -5,7 +5,8 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 
 use super::super::readable;
 use super::metric_column::MetricColumn;
-use super::table::{CampaignKey, CampaignRuns, RequiredLimit};
+use super::table::{CampaignKey, CampaignRuns};
+use crate::required_limit::RequiredLimit;
 
 /// Largest number of keys with a panel each.
 const PANELS: usize = 4;
@@ -27,10 +28,7 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
         let reported =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
         let mut layers = vec![Layer::new(&reported, colour::BLUE, LayerShape::Dot, points)];
-        layers.extend(required.as_ref().map(|RequiredLimit { limit, text, .. }| {
-            let line = vec![(x.range.start, *limit), (x.range.end, *limit)];
-            Layer::new(text, colour::RED, LayerShape::Line(1.6), line)
-        }));
+        layers.extend(required.as_ref().map(|own| own.across(&x)));
         Panel::new(x, y, layers)
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();

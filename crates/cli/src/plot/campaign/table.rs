@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
+use flexsc_core::campaign::Design;
 use flexsc_core::metrics::{self, list_element};
 use flexsc_core::record::atomic_file;
 use flexsc_core::scenario::AssessedRequirement;
@@ -17,6 +17,7 @@ use super::text_cells::TextCells;
 use crate::campaign::SCENARIO;
 use crate::error::CliError;
 use crate::key_axis::key_axis;
+use crate::required_limit::RequiredLimit;
 
 /// Runs of a campaign, in the order of their numbers.
 pub struct CampaignRuns {
@@ -32,6 +33,8 @@ pub struct CampaignRuns {
     pub metrics: Vec<MetricColumn>,
     /// Error of each run; empty if the run succeeded.
     pub errors: Vec<String>,
+    /// True if all points of a sweep have the noise of one run.
+    pub has_same_noise: bool,
 }
 
 /// Origin of the scenario of a campaign.
@@ -40,16 +43,6 @@ pub enum ScenarioSource {
     File(PathBuf),
     /// Directory of the campaign's parts.
     Directory(PathBuf),
-}
-
-/// Limit on a metric, by a requirement.
-pub struct RequiredLimit {
-    /// Largest allowed value.
-    pub limit: f64,
-    /// The limit as it was written.
-    pub text: String,
-    /// Unit of the limit.
-    pub unit: ReaderUnit,
 }
 
 /// Key that varies.
@@ -208,7 +201,13 @@ impl TextTable {
             Some(MetricColumn { meaning, name, requirement, texts: TextCells::Numbers, values })
         }));
         let errors = column("error");
+        let description = scenario.as_ref().and_then(|(_, source)| match source {
+            ScenarioSource::File(path) => std::fs::read_to_string(path).ok(),
+            ScenarioSource::Directory(_) => None,
+        });
+        let noise_run = |run| description.as_ref().map(|text| Design::described_noise_run(text, run));
         Ok(CampaignRuns {
+            has_same_noise: noise_run(0).is_some() && noise_run(0) == noise_run(1),
             name,
             scenario,
             numbers: self.rows.into_keys().collect(),
@@ -251,9 +250,7 @@ impl CampaignRuns {
             let limited = required_metric(requirement);
             metric.name == value_of_requirement(*index) || limited.is_some_and(|name| name == metric.name)
         })?;
-        let written = own.written_limit.as_deref();
-        let unit = ReaderUnits::Engineering.as_written(written, own.limit, own.unit);
-        Some(RequiredLimit { limit: own.limit, text: format!("at most {}", unit.limit(own.limit, written)), unit })
+        Some(RequiredLimit::new(own))
     }
 
     /// Returns an axis around the values of a key.
@@ -271,16 +268,6 @@ impl CampaignRuns {
     /// Returns the keys that are drawn.
     pub fn drawn(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| !key.swept).collect()
-    }
-}
-
-impl RequiredLimit {
-    /// Returns an axis with its numbers in the unit of the limit, if there is one.
-    pub fn shown(required: Option<&Self>, axis: FigureAxis) -> FigureAxis {
-        match required {
-            Some(own) if !own.unit.name.is_empty() => axis.in_unit(own.unit.clone()),
-            _ => axis,
-        }
     }
 }
 
