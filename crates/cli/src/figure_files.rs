@@ -92,7 +92,8 @@ impl FigureChoice {
         if all.is_empty() {
             return Err(CliError::Arguments("-o: this analysis has no figures".to_owned()));
         }
-        if let Some(missing) = self.what.iter().find(|what| !all.iter().any(|(name, _)| is_named(name, what))) {
+        if let Some(missing) = self.what.iter().find(|what| !all.iter().any(|(name, _)| is_named(name, what)))
+        {
             let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
             return Err(CliError::Arguments(format!(
                 "--what: there is no figure `{missing}`\n\nhint: there is {}",
@@ -108,7 +109,8 @@ impl FigureChoice {
 /// that it shows.
 fn is_named(file: &str, what: &str) -> bool {
     let ends = file.match_indices('-').map(|(place, _)| &file[place + 1..]);
-    let is_own = |end: &str| end.strip_prefix(what).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
+    let is_own =
+        |end: &str| end.strip_prefix(what).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
     ends.chain([file]).any(is_own)
 }
 
@@ -117,7 +119,8 @@ fn without_common_start<'a>(names: &[&'a str]) -> Vec<&'a str> {
     let words = |name: &&'a str| name.match_indices('-').map(|(place, _)| place + 1).collect::<Vec<_>>();
     let first = names.first().copied().unwrap_or_default();
     let ends = names.first().map(words).unwrap_or_default().into_iter().rev();
-    let is_common = |end: &usize| names.len() > 1 && names.iter().all(|name| name.starts_with(&first[..*end]));
+    let is_common =
+        |end: &usize| names.len() > 1 && names.iter().all(|name| name.starts_with(&first[..*end]));
     let start = ends.into_iter().find(is_common).unwrap_or(0);
     names.iter().map(|name| &name[start..]).collect()
 }
@@ -311,12 +314,14 @@ mod tests {
     #[test]
     fn figures_go_by_the_end_of_their_names() {
         let names = ["a-b-root-locus", "a-b-bode", "a-b-density_roll"];
-        let chosen = |what: &str| -> Vec<&str> {
-            names.iter().copied().filter(|name| is_named(name, what)).collect()
-        };
+        let chosen =
+            |what: &str| -> Vec<&str> { names.iter().copied().filter(|name| is_named(name, what)).collect() };
         assert_eq!(chosen("bode"), ["a-b-bode"]);
         assert_eq!(chosen("root-locus"), ["a-b-root-locus"]);
-        assert_eq!((chosen("density"), chosen("density_roll")), (vec!["a-b-density_roll"], vec!["a-b-density_roll"]));
+        assert_eq!(
+            (chosen("density"), chosen("density_roll")),
+            (vec!["a-b-density_roll"], vec!["a-b-density_roll"])
+        );
         assert_eq!((chosen("dens"), chosen("a-b-bode")), (vec![], vec!["a-b-bode"]));
         assert_eq!(without_common_start(&names), ["root-locus", "bode", "density_roll"]);
         assert_eq!(without_common_start(&names[..1]), ["a-b-root-locus"]);

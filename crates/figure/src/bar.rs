@@ -50,7 +50,11 @@ pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Err
     for (index, edge) in bar.edges.iter().enumerate().filter(|(_, edge)| !edge.is_empty()) {
         let (middle, half) = ((index + 1) as f64 * class, 3.1 * edge.chars().count() as f64);
         if middle - half > free {
-            area.draw_text(edge, &text(10.0, HPos::Center, VPos::Center), place(index + 1, TOP + COLOUR + 9))?;
+            area.draw_text(
+                edge,
+                &text(10.0, HPos::Center, VPos::Center),
+                place(index + 1, TOP + COLOUR + 9),
+            )?;
             free = middle + half + 4.0;
         }
     }

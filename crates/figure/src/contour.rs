@@ -70,7 +70,8 @@ impl ScalarField {
             for ring in self.rings(*level) {
                 let area = ring.area();
                 // If two contours coincide, the steeper class comes last.
-                let (class, order) = if area > 0.0 { (above, above) } else { (below, levels.len() + 1 - above) };
+                let (class, order) =
+                    if area > 0.0 { (above, above) } else { (below, levels.len() + 1 - above) };
                 rings.push((area.abs(), order, class, ring.points));
             }
         }

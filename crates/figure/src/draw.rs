@@ -161,7 +161,12 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &Plot, is_plain: bool) -> Result<(), Error> {
+fn draw_axes(
+    area: &Area<'_>,
+    (across, up): (&FigureAxis, &FigureAxis),
+    plot: &Plot,
+    is_plain: bool,
+) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));

@@ -87,7 +87,7 @@ pub fn draw<'a>(
             PlotBox { left, top, right: left + width, bottom: top + height }
         };
         let (up, across) = (DISTANCE + height / 2.0, BESIDE + width / 2.0);
-        let beside = |across: f64| [0.0, -HEIGHT, HEIGHT, -2.0 * HEIGHT].map(|down| (across, down));
+        let beside = |across: f64| [0.0, -1.0, 1.0, -2.0, 2.0, 3.0].map(|lines| (across, lines * HEIGHT));
         let (above, below) = ([(0.0, -up), (0.0, -up - HEIGHT)], [(0.0, up), (0.0, up + HEIGHT)]);
         let offsets = match note.side {
             NoteSide::Free => {
@@ -100,7 +100,8 @@ pub fn draw<'a>(
         };
         let places: Vec<PlotBox> = offsets.iter().map(|(dx, dy)| boxed((x + dx, y + dy))).collect();
         // Words beside a point are not moved over it.
-        let is_over = |place: &PlotBox| place.left < x && x < place.right && place.top < y && y < place.bottom;
+        let is_over =
+            |place: &PlotBox| place.left < x && x < place.right && place.top < y && y < place.bottom;
         let is_on = matches!(note.side, NoteSide::Centre | NoteSide::Upright);
         let inside = |place: &&PlotBox| {
             place.top >= plot.top && place.bottom <= plot.bottom && (is_on || !is_over(place))

@@ -1,8 +1,7 @@
 //! Figure of a budget: the fraction of all values of the index that are within a value.
 
-use flexsc_core::analysis::budget::{CampaignBudget, LEVELS};
+use flexsc_core::analysis::budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS, LEVELS};
 use flexsc_core::scenario::Interpretation;
-use flexsc_core::statistics::quantile;
 use flexsc_figure::{
     Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
 };
@@ -32,8 +31,10 @@ pub fn named(scenario: &str, budget: &CampaignBudget) -> Named {
     layers.push(required.line(vec![(requirement.limit, 0.0), (requirement.limit, 100.0)]));
     let (name, unit) = name_and_unit(&requirement.name, requirement.unit);
     let x = RequiredLimit::shown(Some(&required), FigureAxis::exact(&name, unit, 0.0..1.05 * largest));
-    let levels = LEVELS.map(|level| (quantile(&budget.magnitudes, level), 100.0 * level));
-    let levels: Vec<Point> = levels.into_iter().filter(|(value, _)| value.is_finite()).collect();
+    let mixed = INTERPRETATIONS.iter().position(|way| *way == Interpretation::Mixed).unwrap_or(0);
+    let level = |(level, of): (f64, &[BudgetLevel; 3])| (of[mixed].campaign, 100.0 * level);
+    let levels = LEVELS.into_iter().zip(&budget.levels).map(level);
+    let levels: Vec<Point> = levels.filter(|(value, _)| value.is_finite()).collect();
     let note = |(value, percent): &Point| {
         let text = format!("{percent:.1} %: {}", x.reader_unit().quantity(*value));
         Note::new(text, (*value, *percent), colour::BLUE).on(NoteSide::Right)

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use flexsc_core::analysis::margins::{LocusCrossing, RootLocus, SignalMargins};
 use flexsc_core::analysis::open_loop::OpenLoop;
 use flexsc_figure::palette::viridis;
-use flexsc_figure::{Bar, Figure, FigureAxis, Note, Layer, LayerShape, NoteSide, Panel, Point, colour};
+use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Note, NoteSide, Panel, Point, colour};
 use rustfft::num_complex::Complex;
 
 /// Gains of the locus (dB): the least, their number, and steps per dB.
@@ -60,8 +60,7 @@ pub fn figure(name: &str, opened: &OpenLoop, loops: &[SignalMargins]) -> Option<
     };
     let edges = (1..classes()).map(edge).collect();
     let what = one.signal.replace('_', " ");
-    panels[0].bar =
-        Some(Bar { name: format!("gain of {what} (dB)"), colours, edges });
+    panels[0].bar = Some(Bar { name: format!("gain of {what} (dB)"), colours, edges });
     Some(Figure { title: format!("{name}: root locus"), panels, panel_height: 330 })
 }
 
@@ -101,8 +100,7 @@ fn panel(locus: &RootLocus, view: &PlaneView) -> Panel {
     let right = RIGHT * left;
     let corners = vec![(0.0, 0.0), (right, 0.0), (right, high), (0.0, high)];
     let mut layers = vec![Layer::new("", colour::RED, LayerShape::Area(0.1), corners)];
-    let mut notes =
-        vec![Note::new("unstable", (0.5 * right, 0.3 * high), colour::RED).on(NoteSide::Upright)];
+    let mut notes = vec![Note::new("unstable", (0.5 * right, 0.3 * high), colour::RED).on(NoteSide::Upright)];
     for (end, text) in rays(view) {
         layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.5), vec![(0.0, 0.0), end]));
         notes.push(Note::new(text, (0.93 * end.0, 0.93 * end.1), colour::GREY).on(NoteSide::Centre));
@@ -138,7 +136,7 @@ fn panel(locus: &RootLocus, view: &PlaneView) -> Panel {
         shown.map(|pole| (pole.re / TAU, (pole.im / TAU).max(0.0))).collect()
     };
     let [open, designed, up] =
-        if view.is_second { ["", "", ""] } else { ["without this loop", "as designed", "imaginary part"] };
+        if view.is_second { ["", "", ""] } else { ["loop open", "as designed", "imaginary part"] };
     layers.push(Layer::new(open, colour::GREY, LayerShape::Cross, marks(&locus.open)));
     layers.push(Layer::new(designed, colour::BLACK, LayerShape::Ring, marks(&locus.designed)));
     let x = FigureAxis::exact("real part", "Hz", -left..right);

@@ -54,7 +54,9 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let mut layers: Vec<Layer> = limits.iter().map(level).collect();
         layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.2), line));
         let unit = y.reader_unit();
-        let note = |limit: f64| Note::new(format!("limit {}", unit.quantity(limit)), (story.end, limit), colour::RED);
+        let note = |limit: f64| {
+            Note::new(format!("limit {}", unit.quantity(limit)), (story.end, limit), colour::RED)
+        };
         Panel { notes: limit.map(note).into_iter().collect(), ..Panel::new(x, y, layers) }
     };
     // For a body without inertia, torques are accelerations of the body, and their integral is a rate.

@@ -72,6 +72,9 @@ pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
             panel.layers.push(Layer::new("", colour::RED, LayerShape::Diamond, marks));
         }
         let longest = windows.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
-        panel.notes.extend(longest.map(|[from, to]| Note::new(own.words.clone(), ((from + to) / 2.0, own.limit), colour::RED)));
+        panel.notes.extend(
+            longest
+                .map(|[from, to]| Note::new(own.words.clone(), ((from + to) / 2.0, own.limit), colour::RED)),
+        );
     }
 }

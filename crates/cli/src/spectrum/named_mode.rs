@@ -36,7 +36,10 @@ impl NamedMode {
             }
             None => "mode".to_owned(),
         };
-        free.into_iter().enumerate().map(|(place, frequency_rad_s)| Self { frequency_rad_s, name: name(place) }).collect()
+        free.into_iter()
+            .enumerate()
+            .map(|(place, frequency_rad_s)| Self { frequency_rad_s, name: name(place) })
+            .collect()
     }
 }
 
@@ -57,9 +60,12 @@ mod tests {
 
     #[test]
     fn equal_appendages_have_a_name_in_common() {
-        for (names, expected) in
-            [(&["wing +y", "wing -y"][..], "wing"), (&["telescope"], "telescope"), (&["a", "b"], "mode"), (&[], "mode")]
-        {
+        for (names, expected) in [
+            (&["wing +y", "wing -y"][..], "wing"),
+            (&["telescope"], "telescope"),
+            (&["a", "b"], "mode"),
+            (&[], "mode"),
+        ] {
             assert_eq!(common(names.iter().copied()), expected);
         }
     }

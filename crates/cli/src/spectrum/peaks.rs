@@ -44,9 +44,8 @@ fn rows(one: &OutputWaterfall<'_>) -> Vec<Json> {
     sorted.sort_by(f64::total_cmp);
     let level = RISE * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
     // The largest within the windows may be far below the largest of all frequencies.
-    let within_largest = within.as_ref().and_then(|within| {
-        (0..within.len()).max_by(|a, b| within[*a].total_cmp(&within[*b]))
-    });
+    let within_largest =
+        within.as_ref().and_then(|within| (0..within.len()).max_by(|a, b| within[*a].total_cmp(&within[*b])));
     let is_peak = |place: &usize| {
         let value = rms[*place];
         let rises = *place == 0 || rms[*place - 1] < value;

@@ -28,7 +28,9 @@ impl RequiredIndex {
     }
 
     fn new(requirement: &AssessedRequirement, output: &str) -> Option<Self> {
-        let RequirementSource::Error(SampledError { quantity, axis, index, period, .. }) = &requirement.source else {
+        let RequirementSource::Error(SampledError { quantity, axis, index, period, .. }) =
+            &requirement.source
+        else {
             return None;
         };
         let is_about = |axes: &[&str; 3], own: &str| {

@@ -7,7 +7,7 @@ use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, SpectralLine, Wheel
 use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, four_digits, number};
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{
-    Bar, Figure, FigureAxis, Note, Layer, LayerShape, Named, NoteSide, Panel, Point, colour, name_and_unit,
+    Bar, Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
 };
 
 use super::named_mode::NamedMode;
@@ -50,10 +50,15 @@ pub fn figures(
 
 impl<'a> OutputWaterfall<'a> {
     /// Returns the lines of each output of a report; none without wheels that are unbalanced.
-    pub fn all(report: &'a NoiseReport, required: &'a [Option<RequiredIndex>], window_s: Option<f64>) -> Vec<Self> {
+    pub fn all(
+        report: &'a NoiseReport,
+        required: &'a [Option<RequiredIndex>],
+        window_s: Option<f64>,
+    ) -> Vec<Self> {
         let Some(wheels) = &report.wheels else { return Vec::new() };
         let each = report.outputs.iter().zip(required).enumerate();
-        each.map(|(index, (output, own))| Self { wheels, output, index, required: own.as_ref(), window_s }).collect()
+        each.map(|(index, (output, own))| Self { wheels, output, index, required: own.as_ref(), window_s })
+            .collect()
     }
 
     /// Returns the length of the windows (s), if there are any.
@@ -75,10 +80,15 @@ impl<'a> OutputWaterfall<'a> {
     }
 
     /// Returns the lines at a speed, those of each harmonic of each wheel with its order.
-    fn lines_at(&self, place: usize) -> impl Iterator<Item = (f64, impl Iterator<Item = &'a SpectralLine> + use<'a>)> {
+    fn lines_at(
+        &self,
+        place: usize,
+    ) -> impl Iterator<Item = (f64, impl Iterator<Item = &'a SpectralLine> + use<'a>)> {
         let (wheels, index) = (self.wheels, self.index);
         let each = wheels.lines.len() / wheels.speed_rad_s.len().max(1);
-        wheels.lines[place * each..(place + 1) * each].iter().map(move |own| (own.order, own.outputs[index].all()))
+        wheels.lines[place * each..(place + 1) * each]
+            .iter()
+            .map(move |own| (own.order, own.outputs[index].all()))
     }
 
     /// Returns the lines at each speed (Hz, amplitude): equal ones of several wheels, whose phases are unrelated, are one.
@@ -122,13 +132,16 @@ impl<'a> OutputWaterfall<'a> {
     /// Returns the panel of the rms over the speed, of all frequencies and within the windows.
     fn effect(&self) -> Panel {
         let (speeds, rms, within) = (&self.wheels.speed_rad_s, self.rms(), self.rms_within_window());
-        let line = |values: &[f64]| -> Vec<Point> { speeds.iter().copied().zip(values.iter().copied()).collect() };
-        let mut layers = vec![Layer::new("all frequencies, rms", colour::GREY, LayerShape::Line(1.2), line(rms))];
+        let line =
+            |values: &[f64]| -> Vec<Point> { speeds.iter().copied().zip(values.iter().copied()).collect() };
+        let mut layers =
+            vec![Layer::new("all frequencies, rms", colour::GREY, LayerShape::Line(1.2), line(rms))];
         let mut values = rms.to_vec();
         let (label, unit) = name_and_unit(&readable(&self.output.output), &self.output.unit);
         let mut notes = Vec::new();
         if let (Some(within), Some(window)) = (&within, self.window()) {
-            let name = format!("within windows of {}, rms", ReaderUnit::of_time_axis(window).quantity(window));
+            let name =
+                format!("within windows of {}, rms", ReaderUnit::of_time_axis(window).quantity(window));
             layers.push(Layer::new(&name, colour::BLUE, LayerShape::Line(1.6), line(within)));
             values.extend(within);
             notes.extend(self.largest(within, colour::BLUE));
@@ -225,7 +238,10 @@ impl<'a> OutputWaterfall<'a> {
             if class % PER_DECADE == 0 { four_digits(10_f64.powf(power)) } else { String::new() }
         };
         let bar = Bar {
-            name: format!("amplitude ({})", if unit.name.is_empty() { &self.output.unit } else { &*unit.name }),
+            name: format!(
+                "amplitude ({})",
+                if unit.name.is_empty() { &self.output.unit } else { &*unit.name }
+            ),
             colours: colours.iter().rev().copied().collect(),
             edges: (1..DECADES * PER_DECADE).map(edge).collect(),
         };
@@ -261,7 +277,9 @@ fn labels(modes: &[&NamedMode]) -> Vec<(String, Vec<f64>)> {
     for mode in modes {
         let hertz = mode.frequency_rad_s / TAU;
         match labels.last_mut() {
-            Some((name, own)) if *name == mode.name && own.last().is_some_and(|last| hertz < TOGETHER * last) => {
+            Some((name, own))
+                if *name == mode.name && own.last().is_some_and(|last| hertz < TOGETHER * last) =>
+            {
                 if own.last().is_some_and(|last| number(*last) != number(hertz)) {
                     own.push(hertz);
                 }

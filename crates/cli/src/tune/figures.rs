@@ -77,7 +77,12 @@ impl TunedFigure<'_> {
         let y = FigureAxis::from_zero("settling time (s)", "", times);
         let level = vec![(x.range.start, self.tuning.limit), (x.range.end, self.tuning.limit)];
         let layers = vec![
-            Layer::new(&format!("at most {} s", self.tuning.limit), colour::RED, LayerShape::Line(1.4), level),
+            Layer::new(
+                &format!("at most {} s", self.tuning.limit),
+                colour::RED,
+                LayerShape::Line(1.4),
+                level,
+            ),
             Layer::new("without the extra loop", colour::BLACK, LayerShape::Line(1.4), without),
             Layer::new("middle of the region", colour::BLUE, LayerShape::Line(1.6), middle),
             Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), nominal),

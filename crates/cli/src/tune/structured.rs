@@ -276,7 +276,8 @@ impl Results for StructuredResults {
             Layer::new(&format!("at least {least}"), colour::RED, LayerShape::Line(1.4), ends)
         });
         let layers = lines.into_iter().map(|(name, colour, shape, points)| {
-            let points = points.into_iter().map(|(x, y)| (x, if y > SHOWN_MARGIN { f64::NAN } else { y })).collect();
+            let points =
+                points.into_iter().map(|(x, y)| (x, if y > SHOWN_MARGIN { f64::NAN } else { y })).collect();
             Layer::new(name, colour, shape, points)
         });
         let layers = layers.chain(least).collect();

@@ -38,7 +38,8 @@ fn places(case: &WorstCase, key: usize) -> impl Iterator<Item = Point> {
 fn influence(case: &WorstCase, key: usize) -> f64 {
     let points: Vec<Point> = places(case, key).collect();
     let count = points.len().max(1) as f64;
-    let middle = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
+    let middle =
+        points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0 / count, sum.1 + point.1 / count));
     let sum = |product: fn(f64, f64) -> f64| -> f64 {
         points.iter().map(|point| product(point.0 - middle.0, point.1 - middle.1)).sum()
     };
@@ -55,9 +56,10 @@ fn panel(case: &WorstCase, key: usize, required: Option<&RequiredLimit>) -> Pane
     let [low, high] = own.limits();
     let x = key_axis(Some(&case.witness), &own.key, [low, high]).over(low..high);
     let largest = all.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    let ends = all.iter().map(|point| point.1).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
-        [low.min(value), high.max(value)]
-    });
+    let ends = all
+        .iter()
+        .map(|point| point.1)
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
     let is_narrow = ends[1] - ends[0] < NARROW * largest;
     let apart = ends.into_iter().zip([-NARROW, NARROW]).map(|(end, part)| end + part * largest);
     let values = all.iter().map(|point| point.1).chain(required.map(|own| own.limit));

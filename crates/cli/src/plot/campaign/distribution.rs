@@ -5,7 +5,7 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{grouped, percent};
 use flexsc_core::statistics::{quantile, wilson};
 use flexsc_figure::{
-    Figure, FigureAxis, Note, Layer, LayerShape, NoteSide, Panel, Point, RGBColor, colour, round_to_nice,
+    Figure, FigureAxis, Layer, LayerShape, Note, NoteSide, Panel, Point, RGBColor, colour, round_to_nice,
 };
 
 use super::super::readable;
@@ -39,7 +39,9 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
     let label = format!("runs (of {})", grouped(&sorted.len().to_string()));
     let y = FigureAxis::exact(&label, "", -TICKS * highest..upper * highest.max(LOWEST));
     let side = |is_met: bool| {
-        let own = bars.iter().filter(|((_, to), _)| limit.is_some_and(|limit| *to <= limit + ROUNDING * limit.abs()) == is_met);
+        let own = bars.iter().filter(|((_, to), _)| {
+            limit.is_some_and(|limit| *to <= limit + ROUNDING * limit.abs()) == is_met
+        });
         let corners = own.flat_map(|((from, to), count)| {
             let height = *count as f64;
             [(*from, 0.0), (*from, height), (*to, height), (*to, 0.0), (f64::NAN, f64::NAN)]

@@ -4,7 +4,8 @@ use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{ReaderUnit, number};
 use flexsc_figure::palette::between;
 use flexsc_figure::{
-    Bar, Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, ScalarField, colour, round_to_nice,
+    Bar, Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, ScalarField, colour,
+    round_to_nice,
 };
 
 use super::super::readable;
@@ -47,9 +48,8 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
         let part = class as f64 / levels.len().max(1) as f64;
         between(&COLOURS, part * (COLOURS.len() - 1) as f64)
     };
-    let fill = |(class, points): (usize, Vec<Point>)| {
-        Layer::new("", colour(class), LayerShape::Area(1.0), points)
-    };
+    let fill =
+        |(class, points): (usize, Vec<Point>)| Layer::new("", colour(class), LayerShape::Area(1.0), points);
     let mut layers: Vec<Layer> = field.areas(&edges).into_iter().map(fill).collect();
     let grid = field.x.iter().flat_map(|x| field.y.iter().map(move |y| (*x, *y))).collect();
     layers.push(Layer::new("", colour::GREY, LayerShape::Dot, grid));
