@@ -16,7 +16,7 @@ const PER_DB: usize = 8;
 /// Gains of one colour (dB), and those between two numbers of the colour bar.
 const COLOUR_DB: usize = 2;
 const NUMBER_DB: i32 = 10;
-/// Damping ratio below which a pole is that of an elastic mode, if its frequency is beyond so many times that of the loop.
+/// Damping ratio below which a pole is that of an elastic mode, and the ratio of its frequency to that of the loop above which it is.
 const LIGHT: f64 = 0.2;
 const BEYOND: f64 = 2.0;
 /// Damping ratios of the rays (%).
