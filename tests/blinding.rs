@@ -4,7 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Detail, Trace};
 
-use crate::drawing::{Drawing, VERMILLION, near};
+use crate::drawing::{Drawing, near};
 use crate::traces::{column, flown, traced, within};
 use crate::util::Dir;
 
@@ -157,10 +157,9 @@ fn figures_show_eclipses_and_blinding() {
     assert_eq!(found.len(), 2, "{found:?}");
     for name in ["pointing", "wheel", "consistency", "orbit"] {
         let drawing = Drawing::read(&dir, &format!("blinded-tracker-{name}"));
-        drawing.shows(&["eclipse", "star tracker blinded"]);
-        // The first polygon is in the legend.
-        let strip = &drawing.shapes("polygon", "fill", VERMILLION)[1];
-        let times: Vec<f64> = strip.iter().map(|(x, _)| 60.0 * drawing.across(*x, ["0", "100"])).collect();
+        drawing.shows(&["eclipse", "tracker blinded"]);
+        let strip = &drawing.shapes("polygon", "fill", "#8E5AA0")[0];
+        let times: Vec<f64> = strip.iter().map(|(x, _)| drawing.across(*x, ["2000", "6000"])).collect();
         let ends = [f64::INFINITY, f64::NEG_INFINITY];
         let [from, to] = times.iter().fold(ends, |[from, to], time| [from.min(*time), to.max(*time)]);
         near(from, found[0], 10.0);

@@ -8,6 +8,8 @@ pub const BLUE: &str = "#0072B2";
 pub const SKY: &str = "#56B4E9";
 pub const VERMILLION: &str = "#D55E00";
 pub const BLACK: &str = "#000000";
+/// Colour of limits.
+pub const RED: &str = "#BE1E2D";
 
 /// A point in the units of a figure's file.
 pub type Point = (f64, f64);
@@ -70,7 +72,12 @@ impl Drawing {
     /// Returns the horizontal value at `x`, by the numbers below the last panel, in the unit of the axis.
     pub fn along(&self, x: f64) -> f64 {
         let number = |node: &Node<'_, '_>| {
-            let text = node.text().filter(|_| node.has_tag_name("text"))?.trim().replace('−', "-");
+            let text = node
+                .text()
+                .filter(|_| node.has_tag_name("text"))?
+                .trim()
+                .replace('−', "-")
+                .replace('\u{202f}', "");
             let place = |name: &str| node.attribute(name)?.parse::<f64>().ok();
             Some((text.parse::<f64>().ok()?, place("x")?, place("y")?))
         };
@@ -95,7 +102,7 @@ impl Drawing {
 }
 
 fn value(text: &str) -> f64 {
-    text.replace('−', "-").parse().expect("a number")
+    text.replace('−', "-").replace('\u{202f}', "").parse().expect("a number")
 }
 
 fn points(text: &str) -> Vec<Point> {

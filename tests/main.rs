@@ -187,6 +187,7 @@ mod repeated_runs;
 mod report;
 mod reproduce;
 mod requirements;
+mod run_figures;
 #[cfg(unix)]
 mod sanitizers;
 #[cfg(all(unix, feature = "parquet"))]

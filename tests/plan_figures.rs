@@ -41,9 +41,9 @@ fn a_series_is_drawn_with_each_number_of_modes() {
         .says(&["rotation-sine-plan-section_4.png", "peak torque"]);
     let axes = [
         ["torque (N m)", "time (s)"],
-        ["hub angle (rad)", "time (s)"],
-        ["section_4 (mrad)", "time (s)"],
-        ["left in section_4 (rad)", "all frequencies off by (%)"],
+        ["hub angle (deg)", "time (s)"],
+        ["section_4 (deg)", "time (s)"],
+        ["left in section_4 (deg)", "all frequencies off by (%)"],
     ];
     for (figure, axes) in SINE.iter().zip(axes) {
         let svg = svg(&dir, "rotation-sine", figure);
@@ -102,7 +102,7 @@ fn other_commands_are_drawn_beside_the_rigid_bang_bang() {
     assert!(
         ["p = 0", "p = 1", "p = 2", "as planned"].iter().all(|name| words.iter().any(|text| text == name))
     );
-    assert!(words.iter().any(|text| text == "left in angle (rad)"));
+    assert!(words.iter().any(|text| text == "left in angle (deg)"));
     // Where the hub's motion is commanded the torque is what moves it.
     dir.run("plan rotation-kinematic.toml --figures figures --format svg").exits(0);
     let words = texts(&svg(&dir, "rotation-kinematic", "torque"));

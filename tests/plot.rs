@@ -36,12 +36,12 @@ fn every_figure_is_drawn_in_both_forms() {
     let dir = simulated("--set duration=2000 --log full");
     dir.run("plot relay-adaptive.mcap -o figures").exits(0).says(&["relay-adaptive-gain.svg"]);
     let axes = [
-        ["angle x (µrad)", "rate dx/dt (µrad/s)"],
-        ["acceleration (µrad/s²)", "time (s)"],
-        ["angle x (µrad)", "time (s)"],
-        ["envelope a (µrad)", "elastic angle (µrad)"],
-        ["gain k_t", "mean envelope (µrad)"],
-        ["displacement (µrad)", "time (s)"],
+        ["angle x (arcsec)", "rate dx/dt (arcsec/s)"],
+        ["acceleration (arcsec/s²)", "time (s)"],
+        ["angle x (arcsec)", "time (s)"],
+        ["envelope a (arcsec)", "elastic angle (arcsec)"],
+        ["gain k_t", "mean envelope (arcsec)"],
+        ["mode 0, 0.0700 Hz", "time (s)"],
     ];
     for (figure, axes) in FIGURES.iter().zip(axes) {
         let svg = svg(&dir, figure);
@@ -49,7 +49,8 @@ fn every_figure_is_drawn_in_both_forms() {
         let document = Document::parse(&svg).expect("well-formed XML");
         let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
         assert!(axes.iter().all(|axis| texts.contains(axis)), "{figure}: {texts:?}");
-        assert!(texts.iter().any(|text| text.starts_with("Relay adaptive: ")), "{figure}");
+        // A caption says the title.
+        assert!(!texts.iter().any(|text| text.starts_with("Relay adaptive")), "{figure}");
 
         let root = document.root_element();
         let pixels = |name: &str| root.attribute(name).expect("a size").parse::<u32>().expect("a number");
@@ -90,7 +91,7 @@ fn runs_without_a_switching_can_be_drawn() {
     for duration in ["0.01", "1", "3"] {
         let dir = simulated(&format!("--set duration={duration}"));
         dir.run("plot relay-adaptive.mcap -o figures").exits(0);
-        assert!(dir.has("figures/relay-adaptive-torque.png"), "{duration}");
+        assert!(dir.has("figures/relay-adaptive-modes.png"), "{duration}");
         assert!(!dir.has("figures/relay-adaptive-gain.svg"), "{duration}");
     }
 }
@@ -112,9 +113,9 @@ fn rotations_have_figures_of_their_own() {
     let dir = Dir::with(&["rotation-robust", "rotation-thrusters"]);
     let axes = [
         ("torque", ["torque (N m)", "time (s)"]),
-        ("angle", ["angle (rad)", "error ("]),
-        ("outputs", ["section_4 (mrad)", "time (s)"]),
-        ("modes", ["displacement (mrad)", "time (s)"]),
+        ("angle", ["angle (deg)", "error ("]),
+        ("outputs", ["section_4 (deg)", "time (s)"]),
+        ("modes", ["displacement (deg)", "time (s)"]),
     ];
     for (name, words) in
         [("rotation-robust", ["disturbance", "feedback"]), ("rotation-thrusters", ["executed", "planned"])]
@@ -205,9 +206,9 @@ fn spatial_figures_have_units_that_people_use() {
     dir.run("simulate iss-ringdown.toml --set duration=60").exits(0);
     dir.run("plot iss-ringdown.mcap --format svg -o figures").exits(0);
     for (figure, words) in [
-        ("energy", ["elastic energy (J)", "propellant (g)"]),
+        ("energy", ["elastic energy (J)", "propellant (kg)"]),
         ("tracking", ["roll (Hz)", "estimated"]),
-        ("jets", ["yaw (ms)", "time (s)"]),
+        ("jets", ["yaw (s)", "time (s)"]),
         ("damping", ["predicted elastic rate", "threshold"]),
     ] {
         let svg = dir.text(&format!("figures/iss-ringdown-{figure}.svg"));

@@ -10,10 +10,11 @@ use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
 use crate::layout::{
-    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, rows, split, wide,
+    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, rows, split, ticks_upward,
+    wide,
 };
 use crate::line::{Point, Window, pieces, straighten, thin};
-use crate::note::{self, PlotBox};
+use crate::note::{self, Note, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
 use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
 
@@ -155,7 +156,9 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
         let (x, y) = plot.place((panel.x.place(x), panel.y.place(y)));
         (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
     };
-    let notes = panel.notes.iter().map(|note| (note, pixels(note.at.0, note.at.1)));
+    let end = panel.x.range.end;
+    let abscissa = |note: &Note| if note.at.0 == f64::INFINITY { end } else { note.at.0 };
+    let notes = panel.notes.iter().map(|note| (note, pixels(abscissa(note), note.at.1)));
     let shown = notes.filter(|(_, (x, _))| (left - 1.0..=right + 1.0).contains(x));
     note::draw(area, shown, PlotBox { left, top, right, bottom })
 }
@@ -180,7 +183,7 @@ fn draw_axes(
         area.draw(&PathElement::new([(place, corner.1), (place, end)], if is_plain { frame } else { grid }))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
-    let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
+    let ticks = up.ticks(ticks_upward(plot.height));
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
@@ -197,7 +200,7 @@ fn draw_axes(
     // A long name has two lines.
     let (name, room) = (up.label(), f64::from(plot.height + NUMBERS));
     let lines = if wide(&name, SMALLEST) > room { halves(&name) } else { vec![name] };
-    let first = if lines.len() > 1 { plot.left - 64 } else { plot.left - 56 };
+    let first = if lines.len() > 1 { 7 } else { plot.left.saturating_sub(60).clamp(10, 14) };
     for (index, line) in lines.iter().enumerate() {
         let size = fitting(line, room, 12.0);
         let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);

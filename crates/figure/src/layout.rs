@@ -19,6 +19,9 @@ pub const ROW: u32 = 16;
 /// Width of a mark in the legend with the space after it, and space between entries (px).
 pub const MARK: u32 = 23;
 const BETWEEN: u32 = 16;
+/// Size of a digit that is wider than a letter, and room for the name of an axis and the spaces around its numbers (px).
+const NUMBER: f64 = 12.2;
+const BEFORE_NUMBERS: u32 = 24;
 /// Size of the letters of a legend, and the least size of letters (px): 5.5 pt where the axes' names have 7 pt.
 pub const LETTERS: f64 = 11.0;
 pub const SMALLEST: f64 = 9.5;
@@ -51,8 +54,15 @@ impl Layout {
         let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
         // Narrow figures are also lower, but less than proportionally.
         let plot = f64::from(figure.panel_height) * part.powf(0.6);
-        let names = figure.panels.iter().map(|panel| strip::names_width(&panel.strips)).max().unwrap_or(0);
-        Self { width, left: LEFT.max(names), plot: plot.round() as u32 + higher }
+        let plot = plot.round() as u32 + higher;
+        let names = figure.panels.iter().map(|panel| strip::names_width(&panel.strips));
+        let numbers = figure.upward().into_iter().map(|axis| {
+            let ticks = axis.ticks(ticks_upward(plot));
+            let longest = ticks.at.iter().map(|tick| wide(&ticks.text(*tick), NUMBER)).fold(0.0, f64::max);
+            BEFORE_NUMBERS + longest.ceil() as u32
+        });
+        let left = names.chain(numbers).fold(LEFT, u32::max).min(width / 2);
+        Self { width, left, plot }
     }
 
     /// Returns the height (px) of all panels of a figure.
@@ -124,6 +134,11 @@ impl Layout {
         }
         entries
     }
+}
+
+/// Returns the largest number of ticks of a vertical axis of a height (px).
+pub fn ticks_upward(height: u32) -> u32 {
+    if height < 120 { height / 20 } else { height / 28 }
 }
 
 /// Returns the panels of each row: those side by side.

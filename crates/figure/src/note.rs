@@ -4,6 +4,7 @@ use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, WHITE};
 
+use crate::colour;
 use crate::layout::wide;
 use crate::line::Point;
 use crate::svg::{Area, Error, UNITS, text};
@@ -13,7 +14,7 @@ use crate::svg::{Area, Error, UNITS, text};
 pub struct Note {
     /// Words.
     pub text: String,
-    /// Point, above or below which they are.
+    /// Point, beside which they are; an infinite abscissa is the right end of the panel.
     pub at: Point,
     /// Colour.
     pub colour: RGBColor,
@@ -90,6 +91,8 @@ pub fn draw<'a>(
         let beside = |across: f64| [0.0, -1.0, 1.0, -2.0, 2.0, 3.0].map(|lines| (across, lines * HEIGHT));
         let (above, below) = ([(0.0, -up), (0.0, -up - HEIGHT)], [(0.0, up), (0.0, up + HEIGHT)]);
         let offsets = match note.side {
+            // The words of a limit are not on its line.
+            NoteSide::Free if note.colour == colour::RED => [above, below].concat(),
             NoteSide::Free => {
                 vec![above[0], (across, 0.0), (-across, 0.0), below[0], above[1], below[1]]
             }

@@ -1,8 +1,9 @@
 //! Figures over time, panel by panel: lines with limits, and axes that follow from them.
 
+use flexsc_formats::reader_units::ReaderUnits;
 use plotters::style::RGBColor;
 
-use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+use crate::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, colour};
 
 /// Colours of lines, in their order; cyclic.
 const COLOURS: [RGBColor; 7] = [
@@ -15,6 +16,10 @@ const COLOURS: [RGBColor; 7] = [
     colour::GREY,
 ];
 
+/// Part of a limit from which on it is a line in its panel, and multiple of it up to which the panel reaches.
+const NEAR: f64 = 0.5;
+const ROOM: f64 = 1.15;
+
 /// Figure over time whose panels are added from top to bottom.
 pub struct OverTime {
     end: f64,
@@ -24,7 +29,7 @@ pub struct OverTime {
 /// Contents of a panel over time: its vertical axis covers all of them.
 pub struct PanelLines {
     layers: Vec<Layer>,
-    limit: Option<(String, f64)>,
+    limit: Option<f64>,
     line_count: usize,
     width: f64,
     is_from_zero: bool,
@@ -44,13 +49,17 @@ impl OverTime {
         if own.is_empty() {
             return self;
         }
-        let level = |name: &str, height: f64| {
-            let points = vec![(0.0, height), (self.end, height)];
-            Layer::new(name, colour::GREY, LayerShape::Dashes, points)
+        let values = || own.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let reaches = |limit: &f64| values().any(|value| value / limit >= NEAR);
+        let near: Vec<f64> =
+            limit.into_iter().flat_map(|limit| [limit, -limit]).filter(|limit| reaches(limit)).collect();
+        // Beyond a limit there is room for its words.
+        let values: Vec<f64> = values().chain(near.iter().map(|limit| ROOM * limit)).collect();
+        let level = |height: &f64| {
+            let points = vec![(0.0, *height), (self.end, *height)];
+            Layer::new("", colour::RED, LayerShape::Line(1.6), points)
         };
-        let limits = limit.iter().flat_map(|(name, limit)| [level(name, *limit), level("", -limit)]);
-        let layers: Vec<Layer> = limits.chain(own).collect();
-        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let layers: Vec<Layer> = near.iter().map(level).chain(own).collect();
         let y = if is_from_zero {
             FigureAxis::from_zero(name, unit, values)
         } else {
@@ -60,7 +69,23 @@ impl OverTime {
         if let Some(above) = self.figure.panels.last_mut() {
             above.x = above.x.unnamed();
         }
-        self.figure.panels.push(Panel::new(FigureAxis::exact("time", "s", 0.0..self.end), y, layers));
+        let mut panel = Panel::new(FigureAxis::exact("time", "s", 0.0..self.end), y, layers);
+        if let Some(limit) = limit {
+            let unit = if is_of_rotors {
+                panel.y.reader_unit()
+            } else {
+                ReaderUnits::Engineering.fitting(limit, unit)
+            };
+            let words = format!("limit {}", unit.limit(limit, None));
+            match near.first() {
+                Some(near) => {
+                    let at = (f64::INFINITY, *near);
+                    panel.notes.push(Note { text: words, at, colour: colour::RED });
+                }
+                None => panel.remark = words,
+            }
+        }
+        self.figure.panels.push(panel);
         self
     }
 
@@ -84,10 +109,17 @@ impl Default for PanelLines {
 }
 
 impl PanelLines {
-    /// Adds dashed lines at a limit and at its negative below the other layers, if there is one.
+    /// Adds lines at a limit and at its negative, if there is one and the other lines come near it; else its value in words.
     #[must_use]
-    pub fn limits(self, name: &str, limit: Option<f64>) -> Self {
-        Self { limit: limit.map(|limit| (name.to_owned(), limit)), ..self }
+    pub fn limits(self, limit: Option<f64>) -> Self {
+        Self { limit, ..self }
+    }
+
+    /// Adds layers of any shape and colour.
+    #[must_use]
+    pub fn layers(mut self, layers: impl IntoIterator<Item = Layer>) -> Self {
+        self.layers.extend(layers);
+        self
     }
 
     /// Lets the vertical axis begin at 0.

@@ -41,7 +41,7 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     Ok(sheet)
 }
 
-/// The width and height of a sheet with at most so many columns of figures of these heights, and how many of them each of its columns has: its
+/// The width and height of a sheet with at most `most` columns of figures of these heights, and how many of them each of its columns has: its
 /// shape is near to that wanted, and its columns are near to one height.
 fn columns(heights: &[u32], across: u32, most: usize) -> (u32, u32, Vec<usize>) {
     let sheets = (1..=heights.len().min(most)).map(|count| {

@@ -10,7 +10,7 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::campaign::ColumnCells;
 use flexsc_core::record::Detail;
 use flexsc_core::spacecraft::body::BodyAxes;
-use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale};
+use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale, Strip};
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -78,6 +78,14 @@ fn panel<'py>(py: Python<'py>, panel: &Panel, y: &FigureAxis) -> PyResult<Bound<
         (bar.name.as_str(), bar.colours.iter().copied().map(hex).collect::<Vec<_>>(), bar.edges.clone())
     });
     reported.set_item("bar", bar)?;
+    let spans = |strip: &Strip| -> Vec<(f64, f64, String, String)> {
+        strip.spans.iter().map(|span| (span.from, span.to, span.name.clone(), hex(span.colour))).collect()
+    };
+    let strips: Vec<_> = panel.strips.iter().map(|strip| (strip.name.as_str(), spans(strip))).collect();
+    reported.set_item("strips", strips)?;
+    let notes = panel.notes.iter().map(|note| (note.text.as_str(), note.at.0, note.at.1, hex(note.colour)));
+    reported.set_item("notes", notes.collect::<Vec<_>>())?;
+    reported.set_item("remark", &panel.remark)?;
     Ok(reported)
 }
 

@@ -15,7 +15,7 @@ use super::{assessed_mean, time, title};
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
-/// Number of samples above which a line is a running mean over so many parts of the run.
+/// Number of samples above which a line is a running mean, and number of the parts of the run that it averages.
 const RUNNING: usize = 400;
 
 /// Returns true if a run has an attitude filter.

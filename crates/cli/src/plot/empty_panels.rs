@@ -5,11 +5,21 @@ use flexsc_figure::{Figure, Layer, LayerShape, Panel};
 /// Largest number of points of a level, such as a limit or a target.
 const LEVEL: usize = 6;
 
+/// Part of the largest value of panels of one unit below which values are rounding errors.
+const ROUNDING: f64 = 1e-9;
+
 /// Returns a figure without its empty panels; `None` if all are.
 pub fn left_out(mut figure: Figure) -> Option<Figure> {
     let (first, last) = (figure.panels.first()?, figure.panels.last()?);
     let (names, axis) = (first.layers.clone(), last.x.clone());
-    figure.panels.retain(|panel| !is_empty(panel));
+    let sizes: Vec<f64> = figure.panels.iter().map(size).collect();
+    let largest = |unit: &str| {
+        let alike = figure.panels.iter().zip(&sizes).filter(|(panel, _)| panel.y.unit == unit);
+        alike.map(|(_, size)| *size).fold(0.0, f64::max)
+    };
+    let least: Vec<f64> = figure.panels.iter().map(|panel| ROUNDING * largest(panel.y.unit)).collect();
+    let mut least = least.into_iter();
+    figure.panels.retain(|panel| !is_empty(panel, least.next().unwrap_or(0.0)));
     if let Some(last) = figure.panels.last_mut().filter(|panel| panel.x.name.is_empty()) {
         last.x.name.clone_from(&axis.name);
     }
@@ -23,10 +33,16 @@ pub fn left_out(mut figure: Figure) -> Option<Figure> {
     Some(figure)
 }
 
-/// Returns true if a panel has layers of which one has no values but zeros, and the others are levels.
-fn is_empty(panel: &Panel) -> bool {
+/// Returns the largest value of a panel's layers.
+fn size(panel: &Panel) -> f64 {
+    let values = panel.layers.iter().filter(|layer| !is_level(layer)).flat_map(|layer| &layer.points);
+    values.map(|point| point.1.abs()).filter(|value| value.is_finite()).fold(0.0, f64::max)
+}
+
+/// Returns true if a panel has layers of which one has no values larger than rounding errors, and the others are levels.
+fn is_empty(panel: &Panel, least: f64) -> bool {
     let is_nothing =
-        |layer: &Layer| layer.points.iter().all(|(_, value)| !value.is_finite() || *value == 0.0);
+        |layer: &Layer| layer.points.iter().all(|(_, value)| !value.is_finite() || value.abs() <= least);
     let data = || panel.layers.iter().filter(|layer| !is_level(layer));
     panel.bar.is_none() && data().next().is_some() && data().all(is_nothing)
         || panel.layers.iter().all(is_nothing)

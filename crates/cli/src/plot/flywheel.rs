@@ -55,7 +55,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.2), line));
         let unit = y.reader_unit();
         let note = |limit: f64| {
-            Note::new(format!("limit {}", unit.quantity(limit)), (story.end, limit), colour::RED)
+            Note::new(format!("limit {}", unit.quantity(limit)), (f64::INFINITY, limit), colour::RED)
         };
         Panel { notes: limit.map(note).into_iter().collect(), ..Panel::new(x, y, layers) }
     };

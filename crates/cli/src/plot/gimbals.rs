@@ -31,8 +31,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         })
     };
     let angles = PanelLines::default().numbered("gimbal", each(|gyro| gyro.angle_rad));
-    let rates =
-        PanelLines::default().limits("limits", limit).numbered("gimbal", each(|gyro| gyro.rate_rad_s));
+    let rates = PanelLines::default().limits(limit).numbered("gimbal", each(|gyro| gyro.rate_rad_s));
     let measure =
         PanelLines::default().from_zero().line("", cycles.line(|row: &ControlMomentGyros| row.singularity));
     OverTime::new(title(story, "control moment gyros"), story.end, 180)

@@ -29,7 +29,7 @@ fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         ("rate", "rad/s", cycles.rates(|rigid, _| norm(rigid)))
     };
     OverTime::new(title(story, "magnetorquers"), story.end, 200)
-        .panel("moment", "A m²", PanelLines::default().limits("largest", largest).vector(moment))
+        .panel("moment", "A m²", PanelLines::default().limits(largest).vector(moment))
         .panel(name, unit, PanelLines::default().from_zero().line("", kept))
         .figure()
 }

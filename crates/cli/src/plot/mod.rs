@@ -191,9 +191,9 @@ pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
-/// Returns the figures that a log has.
+/// Returns the figures that are drawn of a log if none is named.
 pub fn drawable_kinds(log: &Log, path: &Path, known: Option<&Scenario>) -> Result<Vec<FigureKind>, CliError> {
-    Ok(FigureKind::all_in(&RunEvents::read(log, path, known)?))
+    Ok(FigureKind::usual_in(&RunEvents::read(log, path, known)?))
 }
 
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {

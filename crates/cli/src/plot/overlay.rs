@@ -9,6 +9,9 @@ const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
 /// Fraction by which each further line of a run in a panel is lighter.
 const LIGHTER: f64 = 0.3;
+/// Widths of the main line of the first run and of other lines (px): where they coincide, both are seen.
+const FIRST: f64 = 2.2;
+const OTHERS: f64 = 0.9;
 /// Largest number of points of a line that is a limit, a target or a mark.
 const LEVEL: usize = 6;
 
@@ -102,6 +105,9 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
                 LIGHTER + 0.2 * f64::from((lines - 1).min(2))
             };
             layer.colour = lighter(COLOURS[run % COLOURS.len()], shade);
+            if let LayerShape::Line(width) = &mut layer.shape {
+                *width = if Some(place) == main && run == 0 { FIRST } else { OTHERS };
+            }
             layer.name = if named && Some(place) == main { (*name).to_owned() } else { String::new() };
             layers.push(layer);
         }
@@ -139,20 +145,25 @@ fn strips(panels: &[(&str, &Panel)]) -> Vec<Strip> {
 fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<Panel> {
     let curves = |figure: &Figure| -> Vec<(String, Vec<Point>)> {
         let first = &figure.panels[0];
-        let panels = figure.panels.iter().filter(|panel| panel.x.unit == "s" && panel.y.unit == first.y.unit);
+        let is_alike = |panel: &&Panel| {
+            panel.x.unit == "s" && panel.y.unit == first.y.unit && panel.y.scale == first.y.scale
+        };
+        let panels: Vec<&Panel> = figure.panels.iter().filter(is_alike).collect();
+        let is_single = panels.len() == 1;
         let data = |layer: &&Layer| {
             let is_line = matches!(layer.shape, LayerShape::Line(_));
             is_line && is_data(layer) && layer.points.len() > LEVEL
         };
         let named = |panel: &Panel| -> Vec<(String, Vec<Point>)> {
-            let is_one = panel.layers.iter().filter(data).count() == 1;
-            let name = |layer: &Layer| match (is_one, layer.name.is_empty()) {
-                (true, _) | (_, true) => panel.y.name.clone(),
-                _ => layer.name.clone(),
+            // Of several panels, the main line of each.
+            let count = if is_single { usize::MAX } else { 1 };
+            let name = |layer: &Layer| {
+                if is_single && !layer.name.is_empty() { layer.name.clone() } else { panel.y.name.clone() }
             };
-            panel.layers.iter().filter(data).map(|layer| (name(layer), layer.points.clone())).collect()
+            let lines = panel.layers.iter().filter(data).take(count);
+            lines.map(|layer| (name(layer), layer.points.clone())).collect()
         };
-        panels.flat_map(named).collect()
+        panels.into_iter().flat_map(named).collect()
     };
     let (first, last) = (one.panels.first()?, one.panels.last()?);
     let pairs = curves(one).into_iter().zip(curves(other)).filter(|(one, other)| one.0 == other.0);

@@ -33,6 +33,8 @@ const ACQUIRED: f64 = 10.0;
 const MOST_LEFT_OUT: f64 = 1.0 / 3.0;
 /// Part of the errors that may lie below the axis.
 const BELOW: f64 = 0.02;
+/// Part of the largest error below which errors are below the axis.
+const FAR_BELOW: f64 = 1e-4;
 
 fn norms(story: &RunEvents, cycles: &CycleData) -> Figure {
     let errors = cycles.errors(norm);
@@ -53,11 +55,9 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     // A goal is not shown beside a requirement.
     let goal = story.scenario.reference.band.map(Positive::get);
     let goal = goal.filter(|_| story.scenario.has_goal() && limits.is_empty());
-    let mut sizes: Vec<f64> = inside.iter().map(|point| point.1).filter(|size| *size > 0.0).collect();
-    sizes.sort_by(f64::total_cmp);
-    let usual = &sizes[(BELOW * sizes.len() as f64) as usize..];
     let lines = limits.iter().map(|own| own.limit).chain(goal);
-    let y = FigureAxis::decades("pointing error", "rad", usual.iter().copied().chain(lines));
+    let values = usual(inside.iter().map(|point| point.1)).into_iter().chain(lines);
+    let y = FigureAxis::decades("pointing error", "rad", values);
     let y = limits.first().map_or(y.clone(), |own| y.in_unit(own.unit.clone()));
     let unit = y.reader_unit();
     let line = Layer::new("", colour::BLUE, LayerShape::Line(1.0), inside.clone());
@@ -78,6 +78,16 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
         ));
     }
     panel
+}
+
+/// Returns the sizes that a logarithmic axis shows: without the smallest, and those far below the largest.
+fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut sizes: Vec<f64> = values.into_iter().filter(|size| *size > 0.0 && size.is_finite()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let least = FAR_BELOW * sizes.last().copied().unwrap_or(0.0);
+    sizes.drain(..(BELOW * sizes.len() as f64) as usize);
+    sizes.retain(|size| *size >= least);
+    sizes
 }
 
 /// Returns the time at which the acquisition ends (s): the error has fallen below ten times its median, after the start of
@@ -164,8 +174,8 @@ pub fn norm(vector: [f64; 3]) -> f64 {
 
 /// Returns a panel of angles (rad) over time with a logarithmic axis, which shows small errors after a large transient.
 pub fn decades(story: &RunEvents, name: &str, layers: Vec<Layer>) -> Panel {
-    let y =
-        FigureAxis::decades(name, "rad", layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
+    let values = usual(layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
+    let y = FigureAxis::decades(name, "rad", values);
     Panel::new(time(0.0..story.end), y, layers)
 }
 

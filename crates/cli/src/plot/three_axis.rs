@@ -12,28 +12,17 @@ use super::{time, title};
 
 /// Number of marks above which they are small.
 const MANY: usize = 100;
-/// Fraction of the values about other axes below which values are rounding errors, and drawn at the others' scale.
-const ROUNDING: f64 = 1e-9;
 
 /// Returns a panel for each axis, with lines of given names and colours.
 pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
-    let all = [0, 1, 2].map(lines);
-    let values = |layers: &[Layer]| -> Vec<f64> {
-        layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
-    };
-    let size =
-        |layers: &[Layer]| values(layers).into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let largest = all.iter().map(|layers| size(layers)).fold(0.0, f64::max);
-    let panel = |((axis, name), layers): ((usize, &&str), Vec<Layer>)| {
+    let panel = |(axis, name): (usize, &&str)| {
+        let layers = lines(axis);
         let x = time(0.0..story.end);
-        let y = if size(&layers) < ROUNDING * largest {
-            FigureAxis::around(name, unit, [-largest, largest])
-        } else {
-            FigureAxis::around(name, unit, values(&layers))
-        };
+        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
+        let y = FigureAxis::around(name, unit, values);
         Panel::new(if axis == 2 { x } else { x.unnamed() }, y, layers)
     };
-    AXES.iter().enumerate().zip(all).map(panel).collect()
+    AXES.iter().enumerate().map(panel).collect()
 }
 
 pub const RATES: FigureSpec = FigureSpec {

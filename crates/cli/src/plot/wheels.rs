@@ -3,25 +3,20 @@
 
 use flexsc_core::control::actuator::Wheels;
 use flexsc_core::dynamics::three_axis::Bearing;
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, colour};
+use flexsc_figure::{Figure, Layer, LayerShape, OverTime, PanelLines, Point, RGBColor, colour};
 
 use super::figure_spec::RunData;
 use super::run_events::RunEvents;
-use super::{pointing, time, title};
+use super::{pointing, title};
 
 /// Colours of the wheels, cyclic.
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::GREEN, colour::ORANGE, colour::BLACK, colour::SKY, colour::VERMILLION];
 /// Part of its limit from which on a torque is shown.
 const SHOWN: f64 = 0.1;
-/// Part of a limit from which on it is a line in the panel.
-const NEAR: f64 = 0.5;
-/// Multiple of a limit up to which its panel reaches.
-const ROOM: f64 = 1.15;
-/// Part of a panel's height within which two curves are one.
+/// Part of the range of all wheels within which two curves are one.
 const ONE: f64 = 0.01;
 /// Number of marks on a curve that is under two others.
 const MARKS: usize = 12;
@@ -42,83 +37,44 @@ pub fn limits(story: &RunEvents) -> [Option<f64>; 2] {
 
 pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
     let count = cycles.first::<record::Wheels>().map_or(0, |row| row.wheels.len());
+    let [speed, torque] = limits(story);
+    let panel = |lines: Vec<Vec<Point>>, limit: Option<f64>| {
+        PanelLines::default().limits(limit).layers(named(&lines))
+    };
     let lines = |value_of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
         let line = |wheel: usize| cycles.line(|row: &record::Wheels| value_of(&row.wheels[wheel]));
         (0..count).map(line).collect()
     };
-    let [speed, torque] = limits(story);
-    let mut panels = vec![panel(story, ("wheel speed", "rad/s"), lines(|wheel| wheel.speed_rad_s), speed)];
+    let speeds = panel(lines(|wheel| wheel.speed_rad_s), speed).of_rotors();
+    let mut figure =
+        OverTime::new(title(story, "wheels"), story.end, 180).panel("wheel speed", "rad/s", speeds);
     let torques = lines(|wheel| wheel.torque_nm);
     let largest = torques.iter().flatten().fold(0.0, |most: f64, point| most.max(point.1.abs()));
     if torque.is_none_or(|limit| largest > SHOWN * limit) {
-        panels.push(panel(story, ("wheel torque", "N m"), torques, torque));
+        figure = figure.panel("wheel torque", "N m", panel(torques, torque));
     }
     if story.scenario.study.bearings.iter().any(Bearing::can_stick) {
         let friction = |wheel: usize| cycles.line(|row: &record::Bearings| row.wheels[wheel].friction_nm);
-        panels.push(panel(story, ("friction", "N m"), (0..count).map(friction).collect(), None));
+        figure = figure.panel("friction", "N m", panel((0..count).map(friction).collect(), None));
     }
-    panels.push(pointing::error_panel(
-        story,
-        &cycles.errors(pointing::norm),
-        story.shown.clone().unwrap_or(0.0..story.end),
-    ));
-    let last = panels.len() - 1;
-    for panel in &mut panels[..last] {
-        panel.x = panel.x.unnamed();
-    }
-    // The names of the wheels are those of all panels.
-    for panel in &mut panels[1..last] {
+    let mut figure = figure.figure();
+    // The first panel names the wheels of all.
+    for panel in figure.panels.iter_mut().skip(1) {
         panel.layers.iter_mut().for_each(|layer| layer.name.clear());
     }
-    Figure { title: title(story, "wheels"), panels, panel_height: 180 }
-}
-
-/// Returns a panel with a line of each wheel. Limits near the lines are in it, others are words above it.
-fn panel(
-    story: &RunEvents,
-    (name, unit): (&str, &'static str),
-    lines: Vec<Vec<Point>>,
-    limit: Option<f64>,
-) -> Panel {
+    if let Some(last) = figure.panels.last_mut() {
+        last.x = last.x.unnamed();
+    }
     let shown = story.shown.clone().unwrap_or(0.0..story.end);
-    let values = || {
-        let all = lines.iter().flatten().filter(|point| (shown.start..=shown.end).contains(&point.0));
-        all.map(|point| point.1)
-    };
-    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-    let near: Vec<f64> = limit
-        .into_iter()
-        .flat_map(|limit| [limit, -limit])
-        .filter(|limit| limit.signum() * if *limit > 0.0 { high } else { low } >= NEAR * limit.abs())
-        .collect();
-    // Above a limit there is room for its words.
-    let y = FigureAxis::around(name, unit, values().chain(near.iter().map(|limit| ROOM * limit)));
-    let y = if unit == "rad/s" { y.in_rpm() } else { y };
-    let mut panel = Panel::new(time(0.0..story.end), y, named(&lines, ONE * (high - low)));
-    if let Some(limit) = limit {
-        let words = format!("limit {}", limit_unit(unit, limit).quantity(limit));
-        if near.is_empty() {
-            panel.remark.clone_from(&words);
-        }
-        for height in near {
-            let level = vec![(0.0, height), (story.end, height)];
-            panel.layers.push(Layer::new("", colour::RED, LayerShape::Line(1.6), level));
-            panel.notes.push(Note::new(words.clone(), (shown.end, height), colour::RED));
-        }
-    }
-    panel
-}
-
-fn limit_unit(unit: &str, limit: f64) -> ReaderUnit {
-    if unit == "rad/s" {
-        ReaderUnits::Engineering.rotor_speed()
-    } else {
-        ReaderUnits::Engineering.fitting(limit, unit)
-    }
+    figure.panels.push(pointing::error_panel(story, &cycles.errors(pointing::norm), shown));
+    figure
 }
 
 /// Returns the lines of wheels with their names. A line that lies on others is dashed or has marks, so that all are seen.
-fn named(lines: &[Vec<Point>], near: f64) -> Vec<Layer> {
+fn named(lines: &[Vec<Point>]) -> Vec<Layer> {
+    let values = || lines.iter().flatten().map(|point| point.1);
+    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let near = ONE * (high - low);
     let is_one = |a: &[Point], b: &[Point]| a.iter().zip(b).all(|(a, b)| (a.1 - b.1).abs() <= near);
     let layer = |(index, line): (usize, &Vec<Point>)| {
         let below = lines[..index].iter().filter(|other| is_one(line, other)).count();
@@ -145,7 +101,7 @@ mod tests {
     #[test]
     fn lines_on_each_other_are_all_seen() {
         let line = |height: f64| (0..100).map(|i| (f64::from(i), height)).collect::<Vec<Point>>();
-        let layers = named(&[line(1.0), line(1.0), line(5.0), line(1.0)], 0.1);
+        let layers = named(&[line(1.0), line(1.0), line(5.0), line(1.0)]);
         let shapes = [LayerShape::Line(3.0), LayerShape::Dashes, LayerShape::Line(1.2), LayerShape::Ring];
         assert_eq!(layers.iter().map(|layer| layer.shape).collect::<Vec<_>>(), shapes);
         assert_eq!(layers[3].points.len(), 11);

@@ -178,8 +178,9 @@ def at_a_glance(source: Source, name: str | None, on: Figure | SubFigure | None)
 
 
 def _height(panel: dict[str, Any], plot: int) -> int:
-    """The height of a panel with its legend, numbers and name (pixels)."""
-    return plot + 22 + 24 + (18 if panel["x"]["label"] else 0) + (30 if panel["bar"] else 0)
+    """The height of a panel with its strips, legend, numbers and name (pixels)."""
+    below = 18 if panel["x"]["label"] else 0
+    return plot + 22 + 24 + below + (30 if panel["bar"] else 0) + 14 * len(panel["strips"])
 
 
 def _log(source: Source) -> engine.Log | None:
@@ -252,6 +253,63 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
         )
     if panel["bar"]:
         _bar(ax, *panel["bar"])
+    _words(ax, panel)
+    _strips(ax, panel["strips"], panel["x"], bool(named or panel["remark"]))
+
+
+def _words(ax: Axes, panel: dict[str, Any]) -> None:
+    """Draw the notes of a panel, and the remark above its right end."""
+    for text, x, y, colour in panel["notes"]:
+        is_edge = math.isinf(x)
+        ax.annotate(
+            text,
+            (panel["x"]["high"] if is_edge else x, y),
+            xytext=(0.0, 4.0 * POINT),
+            textcoords="offset points",
+            ha="right" if is_edge else "center",
+            va="bottom",
+            color=colour,
+            fontsize=10.5 * POINT,
+        )
+    if panel["remark"]:
+        above = (0.0, 4.0 * POINT)
+        ax.annotate(
+            panel["remark"],
+            (1.0, 1.0),
+            xycoords="axes fraction",
+            xytext=above,
+            textcoords="offset points",
+            ha="right",
+            va="bottom",
+            fontsize=11 * POINT,
+        )
+
+
+def _strips(ax: Axes, strips: list[Any], x: dict[str, Any], has_legend: bool) -> None:
+    """Draw the strips of a panel above its legend."""
+    from matplotlib.collections import LineCollection
+    from matplotlib.transforms import offset_copy
+
+    low, high = x["low"], x["high"]
+    for row, (name, spans) in enumerate(reversed(strips)):
+        up = ((28 if has_legend else 10) + 14 * row) * POINT
+        place = offset_copy(ax.get_xaxis_transform(), fig=ax.figure, y=up, units="points")
+        shown = [span for span in spans if span[0] < high and span[1] > low]
+        bars = LineCollection(
+            [[(max(start, low), 1.0), (min(end, high), 1.0)] for start, end, _, _ in shown],
+            colors=[colour for _, _, _, colour in shown],
+            linewidths=11 * POINT,
+            capstyle="butt",
+            transform=place,
+            clip_on=False,
+        )
+        ax.add_collection(bars, autolim=False)
+        style: dict[str, Any] = {"va": "center", "fontsize": 10 * POINT, "transform": place}
+        ax.text(low, 1.0, f"{name}  ", ha="right", **style)
+        for start, end, words, _ in shown:
+            room = WIDTH * (min(end, high) - max(start, low)) / (high - low)
+            if words and 6 * len(words) < room:
+                ax.text((max(start, low) + min(end, high)) / 2, 1.0, words, ha="center", **style)
 
 
 def _axis(ax: Axes, side: str, axis: Any, description: dict[str, Any], most: int) -> None:
