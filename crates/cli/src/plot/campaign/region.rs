@@ -28,6 +28,10 @@ const LEVELS: f64 = 8.0;
 /// Ratio of positive values above which the levels are 1, 2 and 5 times powers of ten, and the number of such levels.
 const FAR: f64 = 20.0;
 const DECADES: f64 = 4.0;
+/// Largest number of levels at powers of ten.
+const MOST_DECADES: f64 = 12.0;
+/// Range of values, relative to their size, that is a rounding error.
+const NARROW: f64 = 1e-9;
 /// Values of the best region, relative to the least one.
 const BEST: f64 = 1.1;
 
@@ -105,10 +109,12 @@ fn levels(low: f64, high: f64) -> Vec<f64> {
         let decades = (high / low).log10();
         let parts: &[f64] = if decades < DECADES { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
-        let all = (first..=last).flat_map(|power| parts.iter().map(move |part| part * 10_f64.powi(power)));
+        let every = (decades / MOST_DECADES).ceil() as usize;
+        let all = (first..=last).step_by(every.max(1)).flat_map(|power| parts.iter().map(move |part| part * 10_f64.powi(power)));
         return all.filter(is_between).collect();
     }
-    if high <= low {
+    // Values beside each other in double precision have no round numbers between them.
+    if !(FigureAxis::LEAST.max(NARROW * low.abs().max(high.abs()))..f64::INFINITY).contains(&(high - low)) {
         return Vec::new();
     }
     let step = round_to_nice((high - low) / LEVELS);
@@ -146,7 +152,10 @@ mod tests {
         assert_eq!(levels(7.49, 62.0), [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0]);
         assert_eq!(levels(0.9, 60.0), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
         assert_eq!(levels(-1.0, 1.0).len(), 9);
-        assert!(levels(2.0, 2.0).is_empty());
+        for (low, high) in [(2.0, 2.0), (0.0, 5e-324), (-1.5e308, 1.5e308), (1.0, 1.0 + 1e-15)] {
+            assert!(levels(low, high).is_empty(), "{low} {high}");
+        }
+        assert!(levels(5e-324, 1.5e308).len() < 20);
         assert_eq!(number_without_zeros(0.1 + 0.2), "0.3");
     }
 }
