@@ -53,8 +53,11 @@ fn distributions_have_the_quantiles_of_the_table() {
         let range = quantile(&values, 1.0) - quantile(&values, 0.0);
         // Dashes of the median and of the 95 % quantile, which are named with their numbers.
         let lines = drawing.shapes("polyline", "stroke", BLACK);
-        let mut at: Vec<f64> =
-            lines.iter().filter(|line| is_upright(line)).map(|line| drawing.along(line[0].0) * unit).collect();
+        let mut at: Vec<f64> = lines
+            .iter()
+            .filter(|line| is_upright(line))
+            .map(|line| drawing.along(line[0].0) * unit)
+            .collect();
         at.sort_by(f64::total_cmp);
         at.dedup();
         assert_eq!(at.len(), 2, "{at:?}");
@@ -69,8 +72,11 @@ fn distributions_have_the_quantiles_of_the_table() {
         }
         // Each run is a tick.
         let ticks = drawing.shapes("polyline", "stroke", GREY);
-        let mut at: Vec<f64> =
-            ticks.iter().filter(|line| is_upright(line)).map(|line| drawing.along(line[0].0) * unit).collect();
+        let mut at: Vec<f64> = ticks
+            .iter()
+            .filter(|line| is_upright(line))
+            .map(|line| drawing.along(line[0].0) * unit)
+            .collect();
         at.sort_by(f64::total_cmp);
         let mut sorted = values.clone();
         sorted.sort_by(f64::total_cmp);
@@ -89,16 +95,17 @@ fn is_upright(line: &Vec<(f64, f64)>) -> bool {
 #[test]
 fn an_edge_of_a_bar_is_at_the_limit() {
     let dir = Dir::with(&["slew-wheel-lqg"]);
-    let limit = "--set 'requirement[0].limit=\"63 arcsec\"'";
+    let limit = format!("--set requirement[0].limit={}", 63.0 * ARCSEC);
     dir.run(&format!("simulate slew-wheel-lqg.toml --runs 40 {limit} --table csv -o out")).exits(3);
     dir.run("plot out -o figures --format svg --what distribution --metric arrival").exits(0);
     let drawing = Drawing::read(&dir, "slew-wheel-lqg-distribution-arrival");
     let ends = |colour: &str| {
         let bars = drawing.shapes("polygon", "fill", colour);
         assert!(!bars.is_empty(), "{colour}");
-        bars.iter().flatten().map(|point| point.0).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(x), high.max(x))
-        })
+        bars.iter()
+            .flatten()
+            .map(|point| point.0)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
     };
     let line = drawing.shapes("polyline", "stroke", RED);
     let line = line.iter().find(|line| is_upright(line)).expect("the limit")[0].0;

@@ -110,7 +110,9 @@ fn levels(low: f64, high: f64) -> Vec<f64> {
         let parts: &[f64] = if decades < DECADES { &[1.0, 2.0, 5.0] } else { &[1.0] };
         let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
         let every = (decades / MOST_DECADES).ceil() as usize;
-        let all = (first..=last).step_by(every.max(1)).flat_map(|power| parts.iter().map(move |part| part * 10_f64.powi(power)));
+        let all = (first..=last)
+            .step_by(every.max(1))
+            .flat_map(|power| parts.iter().map(move |part| part * 10_f64.powi(power)));
         return all.filter(is_between).collect();
     }
     // Values beside each other in double precision have no round numbers between them.
