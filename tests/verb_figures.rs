@@ -71,13 +71,6 @@ fn figures_are_chosen_by_name_and_have_a_size_and_a_title() {
 }
 
 #[test]
-fn analyses_without_figures_draw_no_empty_one() {
-    let dir = Dir::with(&["rotation-sine"]);
-    dir.run("plan rotation-sine.toml --compare -o empty.svg").exits(2).says(&["has no figures"]);
-    assert!(!dir.path("empty.svg").exists());
-}
-
-#[test]
 fn a_mask_is_drawn_and_kept_or_violated() {
     let dir = Dir::with(&["earth-observer"]);
     let line = "margins earth-observer.toml --what nichols -o figures --format svg --mask";

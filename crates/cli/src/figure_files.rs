@@ -326,4 +326,10 @@ mod tests {
         assert_eq!(without_common_start(&names), ["root-locus", "bode", "density_roll"]);
         assert_eq!(without_common_start(&names[..1]), ["a-b-root-locus"]);
     }
+
+    #[test]
+    fn an_analysis_without_figures_draws_none() {
+        let refused = FigureChoice::default().chosen(Vec::new()).map(|figures| figures.len());
+        assert!(refused.is_err_and(|why| why.to_string().contains("has no figures")));
+    }
 }

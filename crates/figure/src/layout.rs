@@ -62,6 +62,13 @@ impl Layout {
             BEFORE_NUMBERS + longest.ceil() as u32
         });
         let left = names.chain(numbers).fold(LEFT, u32::max).min(width / 2);
+        let plot = match &figure.panels[..] {
+            [panel] if panel.is_equal => {
+                let [x, y] = [&panel.x, &panel.y].map(|axis| axis.range.end - axis.range.start);
+                (f64::from(width.saturating_sub(left + RIGHT)) * y / x).round() as u32 + higher
+            }
+            _ => plot,
+        };
         Self { width, left, plot }
     }
 

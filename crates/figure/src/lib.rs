@@ -90,6 +90,8 @@ pub struct Panel {
     pub is_beside: bool,
     /// True for a panel without grid lines.
     pub is_plain: bool,
+    /// True for the only panel of a figure whose axes have one scale.
+    pub is_equal: bool,
 }
 
 /// Set of points drawn with one shape and colour.
@@ -162,6 +164,7 @@ impl Panel {
             remark: String::new(),
             is_beside: false,
             is_plain: false,
+            is_equal: false,
         }
     }
 
@@ -182,6 +185,12 @@ impl Panel {
     #[must_use]
     pub fn beside(self) -> Self {
         Self { is_beside: true, ..self }
+    }
+
+    /// Returns the panel with one scale for both axes.
+    #[must_use]
+    pub fn equal(self) -> Self {
+        Self { is_equal: true, ..self }
     }
 
     /// Returns the panel without grid lines.

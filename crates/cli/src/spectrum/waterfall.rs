@@ -23,8 +23,9 @@ const NEAR: f64 = 0.015;
 const BESIDE: [f64; 2] = [0.05, 0.3];
 /// Rise of the lines of a mode above those beside it that makes it one of the modes that are met.
 const RISE: f64 = 1.5;
-/// Ratio of frequencies of modes of one name that share a label.
-const TOGETHER: f64 = 1.35;
+/// Ratio of frequencies of modes of one name that share a label, and that of those that are named once.
+const TOGETHER: f64 = 2.5;
+const EQUAL: f64 = 1.02;
 
 /// Lines of one output over the speed of the wheels.
 pub struct OutputWaterfall<'a> {
@@ -200,13 +201,17 @@ impl<'a> OutputWaterfall<'a> {
                 let ends = vec![(0.0, *height), (x.range.end, *height)];
                 layers.push(Layer::new("", colour::GREEN, LayerShape::Dashes, ends));
             }
+            let first = hertz.first().copied().unwrap_or_default();
             let last = hertz.pop().unwrap_or_default();
             let before: Vec<String> = hertz.iter().map(|height| number(*height)).collect();
             let and = if before.is_empty() { String::new() } else { format!("{} and ", before.join(", ")) };
             let text = format!("{name}, {and}{} Hz", number(last));
             // The lines at the frequency of the wheels end at the upper right.
-            let end = if last < 0.4 * fastest { x.range.end } else { 0.0 };
-            notes.push(Note::new(text, (end, last), colour::GREEN));
+            if last < 0.4 * fastest {
+                notes.push(Note::new(text, (x.range.end, first), colour::GREEN).on(NoteSide::Below));
+            } else {
+                notes.push(Note::new(text, (0.0, last), colour::GREEN));
+            }
         }
         let mut named: Vec<f64> = orders(0).collect();
         named.dedup();
@@ -280,7 +285,7 @@ fn labels(modes: &[&NamedMode]) -> Vec<(String, Vec<f64>)> {
             Some((name, own))
                 if *name == mode.name && own.last().is_some_and(|last| hertz < TOGETHER * last) =>
             {
-                if own.last().is_some_and(|last| number(*last) != number(hertz)) {
+                if own.last().is_some_and(|last| hertz > EQUAL * last) {
                     own.push(hertz);
                 }
             }
