@@ -367,7 +367,7 @@ mod tests {
         let turn = FigureAxis::exact("angle", "rad", -0.1..1.67);
         assert_eq!(
             (turn.label().as_str(), texts(&turn, 4)),
-            ("angle (deg)", ["0", "50"].map(str::to_owned).to_vec())
+            ("angle (deg)", ["0", "20", "40", "60", "80"].map(str::to_owned).to_vec())
         );
         let propellant = |most: f64| FigureAxis::exact("propellant", "kg", 0.0..most);
         assert_eq!(propellant(0.09).label(), "propellant (g)");
@@ -415,7 +415,12 @@ mod tests {
             (degrees.label().as_str(), texts(&degrees, 5)),
             ("error (deg)", ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"].map(str::to_owned).to_vec())
         );
-        let hertz = FigureAxis::decades("frequency", "rad/s", [0.2 * 6.2832, 0.9 * 6.2832]).in_hertz();
+        let hertz = FigureAxis::decades(
+            "frequency",
+            "rad/s",
+            [0.2 * std::f64::consts::TAU, 0.9 * std::f64::consts::TAU],
+        )
+        .in_hertz();
         assert_eq!(texts(&hertz, 6), ["1", "0.5", "0.2", "0.1"]);
         // The first sample of a hundred does not decide the axis.
         let run = (0..100).map(|i| if i == 0 { 1e-12 } else { 0.3 });

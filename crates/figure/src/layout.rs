@@ -21,7 +21,7 @@ pub const MARK: u32 = 23;
 const BETWEEN: u32 = 16;
 /// Size of a digit that is wider than a letter, and room for the name of an axis and the spaces around its numbers (px).
 const NUMBER: f64 = 12.2;
-const BEFORE_NUMBERS: u32 = 24;
+const BEFORE_NUMBERS: u32 = 28;
 /// Size of the letters of a legend, and the least size of letters (px): 5.5 pt where the axes' names have 7 pt.
 pub const LETTERS: f64 = 11.0;
 pub const SMALLEST: f64 = 9.5;

@@ -122,7 +122,7 @@ pub fn draw<'a>(
             at(place.left, place.bottom),
         ];
         area.draw(&Polygon::new(corners, WHITE.mix(GROUND).filled()))?;
-        let (x, y) = ((place.left + place.right) / 2.0, (place.top + place.bottom) / 2.0);
+        let (x, y) = (f64::midpoint(place.left, place.right), f64::midpoint(place.top, place.bottom));
         for (index, line) in lines.iter().enumerate() {
             let off = HEIGHT * (index as f64 + 0.5 - lines.len() as f64 / 2.0);
             let style = text(LETTERS, HPos::Center, VPos::Center).color(&note.colour);

@@ -119,7 +119,7 @@ pub fn draw(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error>
             let Some(shown) = pixels(layout, panel, span) else { continue };
             bar(shown.0, shown.1, top, span.colour)?;
             if !span.name.is_empty() && has_room(span, shown) {
-                let centre = f64::from(layout.left) + (shown.0 + shown.1) / 2.0;
+                let centre = f64::from(layout.left) + f64::midpoint(shown.0, shown.1);
                 area.draw_text(&span.name, &letters(HPos::Center), at(centre.round() as u32, middle))?;
             }
         }

@@ -227,7 +227,11 @@ fn nyquist(title: &str, loops: &[SignalMargins]) -> Figure {
     layers.push(Layer::new("-1", colour::BLACK, LayerShape::Ring, vec![(-1.0, 0.0)]));
     let x = FigureAxis::exact("real part", "", -ASPECT * SHOWN..ASPECT * SHOWN);
     let y = FigureAxis::exact("imaginary part", "", -SHOWN..SHOWN);
-    Figure { title: format!("{title}: Nyquist"), panels: vec![Panel::new(x, y, layers).equal()], panel_height: 520 }
+    Figure {
+        title: format!("{title}: Nyquist"),
+        panels: vec![Panel::new(x, y, layers).equal()],
+        panel_height: 520,
+    }
 }
 
 /// Returns the figure of the largest singular values of the sensitivity and of its complement.

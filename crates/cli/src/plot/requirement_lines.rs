@@ -1,6 +1,7 @@
 //! Limits of requirements as lines over the time in which they count, with their values as they were written.
 
 use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, percent};
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::scenario::{
     AssessedRequirement, ErrorAxis, IndexWindow, Interpretation, RequirementSource, SampledQuantity,
 };
@@ -34,7 +35,7 @@ pub fn limits(
         if error.index != IndexWindow::Absolute || error.axis != axis || !is_quantity(&error.quantity) {
             return None;
         }
-        let [from, to] = [error.from, error.to].map(|at| at.seconds());
+        let [from, to] = [error.from, error.to].map(Instant::seconds);
         let written = own.written_limit.as_deref();
         let unit = ReaderUnits::Engineering.as_written(written, own.limit, own.unit);
         let level = match own.interpretation {
@@ -65,16 +66,15 @@ pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
             for [from, to] in &windows {
                 line.extend([(*from, height), (*to, height), (f64::NAN, f64::NAN)]);
                 if to - from < SEEN * (shown.end - shown.start) {
-                    marks.push(((from + to) / 2.0, height));
+                    marks.push((f64::midpoint(*from, *to), height));
                 }
             }
             panel.layers.push(Layer::new("", colour::RED, LayerShape::Line(1.8), line));
             panel.layers.push(Layer::new("", colour::RED, LayerShape::Diamond, marks));
         }
         let longest = windows.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
-        panel.notes.extend(
-            longest
-                .map(|[from, to]| Note::new(own.words.clone(), ((from + to) / 2.0, own.limit), colour::RED)),
-        );
+        panel.notes.extend(longest.map(|[from, to]| {
+            Note::new(own.words.clone(), (f64::midpoint(*from, *to), own.limit), colour::RED)
+        }));
     }
 }

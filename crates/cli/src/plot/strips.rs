@@ -1,5 +1,6 @@
 //! Strips above figures over time: modes of operation, eclipses, blinded star trackers, filters, actuators at limits, failures.
 
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{self, Light, Orbit};
 use flexsc_figure::{Figure, RGBColor, Strip, StripSpan, colour, palette};
 
@@ -69,7 +70,7 @@ fn modes(story: &RunEvents) -> Strip {
 fn failures(story: &RunEvents) -> Strip {
     let span = |failing: &flexsc_core::scenario::FailureInterval| StripSpan {
         from: failing.interval.start().seconds(),
-        to: failing.interval.end().map_or(story.end, |end| end.seconds()),
+        to: failing.interval.end().map_or(story.end, Instant::seconds),
         name: if failing.of.is_empty() { kind_of_part(&failing.part) } else { failing.of.clone() },
         colour: colour::ORANGE,
     };
