@@ -88,7 +88,7 @@ fn distributions_have_the_quantiles_of_the_table() {
 }
 
 /// Returns true for a line along which x is the same.
-fn is_upright(line: &Vec<(f64, f64)>) -> bool {
+fn is_upright(line: &[(f64, f64)]) -> bool {
     line.len() == 2 && line[0].0.to_bits() == line[1].0.to_bits()
 }
 

@@ -47,7 +47,9 @@ impl FigureLook {
     /// Returns the figures with the title that is asked for.
     pub fn titled(&self, mut figures: Vec<Named>) -> Vec<Named> {
         if let Some(title) = &self.title {
-            figures.iter_mut().for_each(|(_, figure)| figure.title.clone_from(title));
+            for (_, figure) in &mut figures {
+                figure.title.clone_from(title);
+            }
         }
         figures
     }

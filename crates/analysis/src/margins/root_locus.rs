@@ -54,14 +54,20 @@ impl RootLocus {
         for poles in &all[own + 1..] {
             follow(&mut branches, poles);
         }
-        branches.iter_mut().for_each(|branch| branch.reverse());
+        for branch in &mut branches {
+            branch.reverse();
+        }
         for poles in all[..own].iter().rev() {
             follow(&mut branches, poles);
         }
-        branches.iter_mut().for_each(|branch| branch.reverse());
+        for branch in &mut branches {
+            branch.reverse();
+        }
         let turns: Vec<f64> = gain.turns(branches.iter().map(|branch| branch[own]));
         for (branch, turn) in branches.iter_mut().zip(turns) {
-            branch.iter_mut().for_each(|pole| *pole = (*pole + Complex::new(0.0, turn)) / opened.period);
+            for pole in branch.iter_mut() {
+                *pole = (*pole + Complex::new(0.0, turn)) / opened.period;
+            }
         }
         let designed = branches.iter().map(|branch| branch[own]).collect();
         let moves = |branch: &Vec<Complex<f64>>| {

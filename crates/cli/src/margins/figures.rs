@@ -134,14 +134,14 @@ fn marks(
             let text =
                 format!("{:+.1} dB at {} Hz", 20.0 * factor.log10(), number(point[0])).replace('-', "−");
             let margin = LeastMargin { size: factor.ln().abs(), point, text, colour: line.colour };
-            least_gain = LeastMargin::lesser(least_gain, margin);
+            least_gain = Some(LeastMargin::lesser(least_gain, margin));
         }
         for (point, phase) in line.gain_crossings().filter(|_| phases) {
             points.push((point[x], point[y]));
             let degrees = number(phase.abs() * 180.0 / PI);
             let text = format!("{degrees} deg at {} Hz", number(point[0]));
             let margin = LeastMargin { size: phase.abs(), point, text, colour: line.colour };
-            least_phase = LeastMargin::lesser(least_phase, margin);
+            least_phase = Some(LeastMargin::lesser(least_phase, margin));
         }
         layers.push(Layer::new("", line.colour, LayerShape::Disc, points));
     }
@@ -159,8 +159,8 @@ struct LeastMargin {
 }
 
 impl LeastMargin {
-    fn lesser(before: Option<Self>, other: Self) -> Option<Self> {
-        Some(before.filter(|before| before.size <= other.size).unwrap_or(other))
+    fn lesser(before: Option<Self>, other: Self) -> Self {
+        before.filter(|before| before.size <= other.size).unwrap_or(other)
     }
 }
 

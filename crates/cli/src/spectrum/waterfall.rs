@@ -240,7 +240,7 @@ impl<'a> OutputWaterfall<'a> {
         }
         let edge = |class: usize| {
             let power = top - DECADES as f64 + (class / PER_DECADE) as f64;
-            if class % PER_DECADE == 0 { four_digits(10_f64.powf(power)) } else { String::new() }
+            if class.is_multiple_of(PER_DECADE) { four_digits(10_f64.powf(power)) } else { String::new() }
         };
         let bar = Bar {
             name: format!(
