@@ -2,9 +2,13 @@
 
 use serde_json::Value as Json;
 
-use crate::drawing::{BLACK, BLUE, Drawing, VERMILLION, near};
+use crate::drawing::{BLACK, BLUE, Drawing, RED, near};
 use crate::study::pairs;
 use crate::util::{Dir, UNCERTAIN, has_extension, table};
+
+const ARCSEC: f64 = std::f64::consts::PI / 648_000.0;
+const GREEN: &str = "#009E73";
+const GREY: &str = "#787878";
 
 /// Returns the quantile of some values as NumPy defines it.
 fn quantile(values: &[f64], q: f64) -> f64 {
@@ -39,36 +43,90 @@ fn distributions_have_the_quantiles_of_the_table() {
         dir.names("figures"),
         ["u-distribution-envelope_late_mean_rad.svg", "u-distribution-gain_initial.svg"]
     );
-    for (metric, label, unit) in
-        [("gain_initial", "gain initial", 1.0), ("envelope_late_mean_rad", "envelope late mean (µrad)", 1e-6)]
-    {
+    for (metric, label, unit) in [
+        ("gain_initial", "gain initial", 1.0),
+        ("envelope_late_mean_rad", "envelope late mean (arcsec)", ARCSEC),
+    ] {
         let drawing = Drawing::read(&dir, &format!("u-distribution-{metric}"));
-        drawing.shows(&["median", "5 and 95 %", "fraction of runs", "runs", label]);
+        drawing.shows(&["60 runs", "runs (of 60)", label]);
         let values = column(&dir, "out/runs.csv", metric);
         let range = quantile(&values, 1.0) - quantile(&values, 0.0);
-        // Upright lines: beside those of the legends, two of the median, and dashes of the others.
-        let upright =
-            |line: &Vec<(f64, f64)>| line.iter().all(|point| point.0.to_bits() == line[0].0.to_bits());
-        let lines = drawing.shapes("polyline", "stroke", VERMILLION);
-        let mut at: Vec<f64> =
-            lines.iter().filter(|line| upright(line)).map(|line| drawing.along(line[0].0) * unit).collect();
+        // Dashes of the median and of the 95 % quantile, which are named with their numbers.
+        let lines = drawing.shapes("polyline", "stroke", BLACK);
+        let mut at: Vec<f64> = lines
+            .iter()
+            .filter(|line| is_upright(line))
+            .map(|line| drawing.along(line[0].0) * unit)
+            .collect();
         at.sort_by(f64::total_cmp);
         at.dedup();
-        assert_eq!(at.len(), 3, "{at:?}");
-        for (found, q) in at.iter().zip([0.05, 0.5, 0.95]) {
-            near(*found, quantile(&values, q), 1e-3 * range);
+        assert_eq!(at.len(), 2, "{at:?}");
+        for (found, q) in at.iter().zip([0.5, 0.95]) {
+            near(*found, quantile(&values, q), 2e-3 * range);
         }
-        // The empirical distribution steps at each value.
-        let curve = drawing.line(BLUE);
-        let steps =
-            curve.windows(2).filter(|pair| pair[0].1 > pair[1].1).map(|pair| drawing.along(pair[1].0) * unit);
+        let texts = drawing.texts();
+        for (word, q) in [("median: ", 0.5), ("95 %: ", 0.95)] {
+            let named = texts.iter().find_map(|text| text.strip_prefix(word)).expect("named");
+            let number: f64 = named.split(' ').next().expect("a number").parse().expect("a number");
+            near(number * unit, quantile(&values, q), 5e-3 * quantile(&values, q).abs());
+        }
+        // Each run is a tick.
+        let ticks = drawing.shapes("polyline", "stroke", GREY);
+        let mut at: Vec<f64> = ticks
+            .iter()
+            .filter(|line| is_upright(line))
+            .map(|line| drawing.along(line[0].0) * unit)
+            .collect();
+        at.sort_by(f64::total_cmp);
         let mut sorted = values.clone();
         sorted.sort_by(f64::total_cmp);
-        for step in steps {
-            let nearest = sorted.iter().map(|value| (value - step).abs()).fold(f64::INFINITY, f64::min);
-            assert!(nearest < 2e-3 * range, "{step}");
+        assert_eq!(at.len(), 60);
+        for (found, value) in at.iter().zip(&sorted) {
+            near(*found, *value, 2e-3 * range);
         }
     }
+}
+
+/// Returns true for a line along which x is the same.
+fn is_upright(line: &[(f64, f64)]) -> bool {
+    line.len() == 2 && line[0].0.to_bits() == line[1].0.to_bits()
+}
+
+#[test]
+fn an_edge_of_a_bar_is_at_the_limit() {
+    let dir = Dir::with(&["slew-wheel-lqg"]);
+    let limit = format!("--set requirement[0].limit={}", 63.0 * ARCSEC);
+    dir.run(&format!("simulate slew-wheel-lqg.toml --runs 40 {limit} --table csv -o out")).exits(3);
+    dir.run("plot out -o figures --format svg --what distribution --metric arrival").exits(0);
+    let drawing = Drawing::read(&dir, "slew-wheel-lqg-distribution-arrival");
+    let ends = |colour: &str| {
+        let bars = drawing.shapes("polygon", "fill", colour);
+        assert!(!bars.is_empty(), "{colour}");
+        bars.iter()
+            .flatten()
+            .map(|point| point.0)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let line = drawing.shapes("polyline", "stroke", RED);
+    let line = line.iter().find(|line| is_upright(line)).expect("the limit")[0].0;
+    near(ends(GREEN).1, line, 2.0);
+    near(ends(RED).0, line, 2.0);
+    near(drawing.along(line), 63.0, 0.05);
+    let values: Vec<Vec<f64>> = table(&dir, "out/runs.csv")
+        .iter()
+        .map(|row| serde_json::from_str(&row["requirement_values"]).expect("numbers"))
+        .collect();
+    let met = values.iter().filter(|values| values[0] <= 63.0 * ARCSEC).count();
+    assert!((1..40).contains(&met), "{met}");
+    // The interval of Wilson.
+    let (n, p, z) = (40.0, met as f64 / 40.0, 1.959_963_984_540_054_f64);
+    let middle = (p + z * z / (2.0 * n)) / (1.0 + z * z / n);
+    let half = z / (1.0 + z * z / n) * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
+    let words = format!("({:.0} to {:.0} %)", 100.0 * (middle - half), 100.0 * (middle + half));
+    let head = format!("{met} of 40 runs meet the limit: ");
+    let texts = drawing.texts();
+    assert!(texts.iter().any(|text| text.starts_with(&head) && text.ends_with(&words)), "{words} {texts:?}");
+    drawing.shows(&["arrival (arcsec)", "at most 63 arcsec"]);
 }
 
 #[test]
@@ -79,14 +137,14 @@ fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     assert!(reported.contains("flexsc simulate out/scenario.toml --runs "), "{reported}");
     assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
     let scatter = Drawing::read(&dir, "u-scatter-envelope_late_mean_rad");
-    scatter.shows(&["law.relay.k_t", "body.planar.rate (rad/s)", "envelope late mean (µrad)"]);
+    scatter.shows(&["law.relay.k_t", "body.planar.rate (arcsec/s)", "envelope late mean (arcsec)"]);
     let dots = scatter
         .each(|node| (node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE)).then_some(()));
     // Two panels with a legend each.
     assert_eq!(dots.len(), 2 * (9 + 1));
 
     let fan = Drawing::read(&dir, "u-fan");
-    fan.shows(&["5 to 95 %", "25 to 75 %", "median", "mean envelope (µrad)", "time (s)"]);
+    fan.shows(&["5 to 95 %", "25 to 75 %", "median", "mean envelope (arcsec)", "time (s)"]);
     let last = |run: usize| -> f64 {
         let json = table(&dir, "out/runs.csv")[run]["envelope_window_means_rad"].clone();
         let means: Vec<f64> = serde_json::from_str(&json).expect("numbers");
@@ -95,8 +153,7 @@ fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     let median = quantile(&(0..9).map(last).collect::<Vec<_>>(), 0.5);
     let lines = fan.shapes("polyline", "stroke", BLACK);
     let line = lines.iter().find(|line| line.len() > 10).expect("a line");
-    let (low, high) = ("10", "20");
-    near(fan.up(line[line.len() - 1].1, [low, high]) * 1e-6, median, 1e-7);
+    near(fan.up(line[line.len() - 1].1, ["2", "4"]) * ARCSEC, median, 1e-7);
     dir.run("plot out --what fan,curve").exits(2).says(&["no figure `curve`", "distribution, scatter, fan"]);
     // Logs alone have their fan.
     for file in ["runs.csv", "statistics.csv", "scenario.toml"] {
@@ -114,7 +171,7 @@ fn sweeps_have_curves_and_maps() {
     dir.run("plot one -o figures/one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
     dir.run("plot one -o one.svg --metric torque_impulse_per_hour_nm_s").exits(0);
     let curve = Drawing::at(&dir, "one.svg");
-    curve.shows(&["law.relay.k_t", "acceleration impulse per hour (mrad/s)"]);
+    curve.shows(&["law.relay.k_t", "acceleration impulse per hour (deg/s)"]);
     let dots = curve.each(|node| {
         let is = node.has_tag_name("circle") && node.attribute("fill") == Some(BLUE);
         is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?
@@ -127,16 +184,21 @@ fn sweeps_have_curves_and_maps() {
     dir.run(&format!("{sweep} --vary law.relay.weak=8e-7:1.6e-6:5 --table csv -o two")).exits(0);
     dir.run("plot two -o two.svg --metric envelope_late_mean_rad").exits(0);
     let map = Drawing::at(&dir, "two.svg");
-    map.shows(&["law.relay.k_t", "law.relay.weak (rad/s²)", "least", "envelope late mean (µrad)"]);
-    let rows = table(&dir, "two/runs.csv");
-    let number = |row: usize, name: &str| rows[row][name].parse::<f64>().expect("a number");
-    let least = (0..rows.len()).min_by(|a, b| {
-        let value = |row: &usize| number(*row, "envelope_late_mean_rad");
-        value(a).total_cmp(&value(b))
+    map.shows(&["law.relay.k_t", "law.relay.weak (arcsec/s²)", "envelope late mean (arcsec)", "as designed"]);
+    map.shows(&["same noise at all points"]);
+    // A dot at each point of the grid.
+    let dots = map.each(|node| {
+        let is = node.has_tag_name("circle") && node.attribute("fill") == Some(GREY);
+        is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?
     });
-    let diamond = &map.shapes("polygon", "fill", VERMILLION)[1];
-    let middle = diamond.iter().map(|point| point.0).sum::<f64>() / 4.0;
-    near(map.along(middle), number(least.expect("a row"), "law.relay.k_t"), 1e-4);
+    let keys = column(&dir, "two/runs.csv", "law.relay.k_t");
+    let mut found: Vec<f64> = dots.iter().map(|x| map.along(*x)).collect();
+    found.sort_by(f64::total_cmp);
+    let mut expected = keys;
+    expected.sort_by(f64::total_cmp);
+    for (dot, key) in pairs(&found, expected) {
+        near(*dot, key, 1e-4);
+    }
 }
 
 #[test]
@@ -264,9 +326,8 @@ fn requirements_are_drawn_first_under_their_names() {
         let name = format!("slew-wheel-lqg-distribution-{requirement}");
         assert!(names.contains(&format!("{name}.svg")), "{names:?}");
         let drawing = Drawing::read(&dir, &name);
-        drawing.shows(&["fraction of runs", &format!("{requirement} (µrad)")]);
-        assert!(drawing.0.contains(&format!(": {requirement} (8 runs)")), "{requirement}");
-        assert!(drawing.0.contains("requirement, met by "), "{requirement}");
+        drawing.shows(&["runs (of 8)", &format!("{requirement} (arcsec)")]);
+        assert!(drawing.0.contains(" of 8 runs meet the limit: "), "{requirement}");
     }
     // They are the values of the table, and their worst runs are listed.
     let values: Vec<Vec<f64>> = table(&dir, "csv/runs.csv")

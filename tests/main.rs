@@ -203,6 +203,7 @@ mod stops;
 #[cfg(unix)]
 mod stops_soon;
 mod summaries;
+mod verb_figures;
 mod wheel_figures;
 
 // Rules of the house: sources, words, habits, and bytes that do not change.

@@ -7,7 +7,9 @@ use std::f64::consts::PI;
 use flexsc_core::Scenario;
 use flexsc_core::analysis::eigenvalues::eigenvalues;
 use flexsc_core::analysis::linear_model::{LinearModel, Signal};
-use flexsc_core::analysis::margins::{GainCrossing, SignalMargins, StabilityMargins};
+use flexsc_core::analysis::margins::{
+    GainCrossing, PhaseCrossing, RootLocus, SignalMargins, StabilityMargins,
+};
 use flexsc_core::analysis::open_loop::sampling::SampledSystem;
 use flexsc_core::analysis::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 use flexsc_core::control::linear_block::LinearBlock;
@@ -300,6 +302,33 @@ fn gain_margins_are_where_poles_leave_the_unit_circle() {
         }
     }
     assert!(limits >= 12, "{limits}");
+}
+
+/// The poles of a root locus cross the imaginary axis where the frequency response has its gain margin, at that frequency.
+#[test]
+fn poles_of_a_root_locus_cross_at_the_gain_margin() {
+    let factors: Vec<f64> = (-136..=240).map(|step| 10_f64.powf(f64::from(step) / 160.0)).collect();
+    let [least, largest] = [factors[0], factors[factors.len() - 1]];
+    let mut crossings = 0;
+    for name in ["earth-observer", "station-keeping", "attitude-hold", "slew-wheel-lqg", "observer-slow-gyro"]
+    {
+        let opened = OpenLoop::from_scenario(&scenario(name), LoopBreak::Command).expect("linear");
+        for (signal, found) in margins(&opened).loops.iter().enumerate() {
+            let locus = RootLocus::new(&opened, signal, &factors).expect("poles");
+            let limits = [found.gain_below, found.gain_above.unwrap_or(f64::INFINITY)];
+            let within = limits.into_iter().filter(|factor| (least..largest).contains(factor));
+            let within: Vec<f64> = within.collect();
+            assert_eq!(locus.crossings.len(), within.len(), "{name} {}: {within:?}", found.signal);
+            for (crossing, factor) in locus.crossings.iter().zip(within) {
+                agree("factor", crossing.factor, factor, 1e-6);
+                let near = |at: &&PhaseCrossing| (at.factor / factor - 1.0).abs() < 1e-9;
+                let at = found.crossings.phase.iter().find(near).expect("a crossing");
+                agree("frequency", crossing.frequency_rad_s, at.frequency_rad_s, 1e-4);
+                crossings += 1;
+            }
+        }
+    }
+    assert!(crossings >= 8, "{crossings}");
 }
 
 /// Modulus and disk margins by the norms of SLICOT: `tests/golden/disk_margin_reference.py`.

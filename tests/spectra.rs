@@ -365,7 +365,46 @@ fn lines_of_wheels_have_indices_over_speed() {
     assert_eq!(table.lines().count(), 4);
     dir.run(&format!("{line} -o figures")).exits(0);
     let figure = String::from_utf8(dir.read("figures/wheel-run-up-waterfall_yaw.svg")).expect("text");
-    assert!(figure.contains("RPE uniform, 0.02 s"));
+    for words in
+        ["within windows of 20 ms, rms", "all frequencies, rms", "wheel speed (rpm)", "frequency (Hz)"]
+    {
+        assert!(figure.contains(words), "{words}");
+    }
+}
+
+/// The lines of wheels that turn near a multiple of a sampling rate have slow aliases, which the loop follows: narrow peaks. A grid
+/// that is dense there has none that the default speeds pass by, and the text lists them.
+#[test]
+fn peaks_at_aliases_are_among_the_default_speeds() {
+    let dir = Dir::with(&["wheel-run-up"]);
+    let spectrum = |speeds: &str| -> Vec<(f64, f64)> {
+        let line = format!("spectrum wheel-run-up.toml --signal yaw {speeds} --json");
+        let wheels = dir.run(&line).exits(0).json()["wheels"].clone();
+        let list = |of: &serde_json::Value| -> Vec<f64> {
+            of.as_array().expect("a list").iter().map(|value| value.as_f64().expect("finite")).collect()
+        };
+        list(&wheels["speed_rad_s"]).into_iter().zip(list(&wheels["rms"][0])).collect()
+    };
+    let own = spectrum("");
+    let rate = dir.run("margins wheel-run-up.toml --json").exits(0).json();
+    let rate = rate["samples"].as_f64().expect("a number") / rate["period_s"].as_f64().expect("a number");
+    let largest = own.iter().map(|(speed, _)| *speed).fold(0.0, f64::max);
+    let mut aliases = 0;
+    for turn in 1..=3 {
+        let centre = std::f64::consts::TAU * rate * f64::from(turn);
+        if 1.02 * centre > largest || 0.98 * centre < own[0].0 {
+            continue;
+        }
+        let around = |all: &[(f64, f64)]| {
+            let near = all.iter().filter(|(speed, _)| (speed / centre - 1.0).abs() < 0.02);
+            near.map(|(_, rms)| *rms).fold(0.0, f64::max)
+        };
+        let dense = spectrum(&format!("--speeds {}:{}:1999", 0.98 * centre, 1.02 * centre));
+        let (found, exact) = (around(&own), around(&dense));
+        assert!(found > 0.97 * exact, "{centre} rad/s: {found}, {exact}");
+        aliases += 1;
+    }
+    assert!(aliases > 0, "{rate} Hz, up to {largest} rad/s");
 }
 
 /// The pointing errors of a log are those of the mean axes of this body, and not the angles at its sensor, which modes turn.

@@ -151,7 +151,7 @@ fn tuned_gains_are_drawn() {
     ))
     .exits(0);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
-    region.shows(&["gain k_d of the extra loop", "frequency of the dominant mode (rad/s)", "middle"]);
+    region.shows(&["gain k_d of the extra loop", "frequency of the dominant mode (Hz)", "middle"]);
     region.shows(&["stable, settles within 200 s", "of the scenario", "robust against 10 %"]);
     // From -0.8 to 1 at 0.2 rad/s, from -0.9 to 3.7 at 0.3 rad/s.
     let corners = &region.shapes("polygon", "fill", SKY)[1];
@@ -164,7 +164,7 @@ fn tuned_gains_are_drawn() {
     // The first is the legend's.
     near(region.up(middle[1][0].1, ["−1.0", "3.0"]), 0.1, 0.02);
     let settling = Drawing::read(&dir, "wheel-scheduled-gain-tune-settling");
-    settling.shows(&["settling time (s)", "limit", "without the extra loop", "the same, perturbed"]);
+    settling.shows(&["settling time (s)", "at most 200 s", "without the extra loop", "the same, perturbed"]);
     let without = settling.shapes("polyline", "stroke", BLACK);
     near(settling.up(without[1][0].1, ["20", "160"]), 180.3, 0.5);
 

@@ -13,12 +13,119 @@ use serde_json::json;
 
 use crate::error::CliError;
 use crate::out::Out;
+use crate::quantity::in_unit;
 #[cfg(not(feature = "png"))]
 use crate::unavailable::Renderer;
 use crate::{files, print, say};
 
 /// File extensions of figures.
 const FIGURES: [&str; 3] = ["svg", "png", "pdf"];
+
+/// Size and title of figures.
+#[derive(clap::Args, Clone, Default)]
+#[group(skip)]
+pub struct FigureLook {
+    /// Width of each figure on paper, such as 85 for one column [default: 800 px]
+    #[arg(long, value_name = "MM", value_parser = in_unit("mm"))]
+    width: Option<f64>,
+    /// Font size of the axis labels on paper [default: 8 with --width]
+    #[arg(long, value_name = "PT", value_parser = in_unit(""))]
+    font: Option<f64>,
+    /// Title above each figure
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+}
+
+impl FigureLook {
+    /// Returns the style of the figures with their size.
+    pub fn style(&self) -> Result<Style, CliError> {
+        let style = Style::new(self.width, self.font)
+            .map_err(|why| CliError::Arguments(format!("--width, --font: {why}")))?;
+        Ok(if self.title.is_some() { style.titled() } else { style })
+    }
+
+    /// Returns the figures with the title that is asked for.
+    pub fn titled(&self, mut figures: Vec<Named>) -> Vec<Named> {
+        if let Some(title) = &self.title {
+            for (_, figure) in &mut figures {
+                figure.title.clone_from(title);
+            }
+        }
+        figures
+    }
+}
+
+/// Figures of an analysis that are drawn, with their look.
+#[derive(clap::Args, Clone, Default)]
+#[group(skip)]
+pub struct FigureChoice {
+    /// Figures to draw, such as `bode` for SCENARIO-bode [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    what: Vec<String>,
+    #[command(flatten)]
+    pub look: FigureLook,
+}
+
+impl FigureChoice {
+    /// Checks the options before there are figures; `is_drawn` is true if a place for them is given.
+    ///
+    /// # Errors
+    /// An option of figures that are not drawn, and a size that no figure has.
+    pub fn check(&self, is_drawn: bool) -> Result<(), CliError> {
+        let FigureLook { width, font, title } = &self.look;
+        let options = [
+            ("--what", !self.what.is_empty()),
+            ("--width", width.is_some()),
+            ("--font", font.is_some()),
+            ("--title", title.is_some()),
+        ];
+        if let Some((option, _)) = options.into_iter().find(|(_, is_given)| *is_given && !is_drawn) {
+            let why = format!("{option}: no figure is drawn\n\nhint: give a directory or a file with -o");
+            return Err(CliError::Arguments(why));
+        }
+        self.look.style().map(|_| ())
+    }
+
+    /// Returns the figures that are asked for, of all that there are.
+    ///
+    /// # Errors
+    /// An analysis without figures, and a name that none of them has.
+    pub fn chosen(&self, all: Vec<Named>) -> Result<Vec<Named>, CliError> {
+        if all.is_empty() {
+            return Err(CliError::Arguments("-o: this analysis has no figures".to_owned()));
+        }
+        if let Some(missing) = self.what.iter().find(|what| !all.iter().any(|(name, _)| is_named(name, what)))
+        {
+            let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+            return Err(CliError::Arguments(format!(
+                "--what: there is no figure `{missing}`\n\nhint: there is {}",
+                without_common_start(&names).join(", ")
+            )));
+        }
+        let is_asked = |name: &str| self.what.is_empty() || self.what.iter().any(|what| is_named(name, what));
+        Ok(self.look.titled(all.into_iter().filter(|(name, _)| is_asked(name)).collect()))
+    }
+}
+
+/// Returns true if a figure goes by a name: the name of its file, the part of it behind the scenario, or that without the output
+/// that it shows.
+fn is_named(file: &str, what: &str) -> bool {
+    let ends = file.match_indices('-').map(|(place, _)| &file[place + 1..]);
+    let is_own =
+        |end: &str| end.strip_prefix(what).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'));
+    ends.chain([file]).any(is_own)
+}
+
+/// Returns names of files without the words that all begin with.
+fn without_common_start<'a>(names: &[&'a str]) -> Vec<&'a str> {
+    let words = |name: &&'a str| name.match_indices('-').map(|(place, _)| place + 1).collect::<Vec<_>>();
+    let first = names.first().copied().unwrap_or_default();
+    let ends = names.first().map(words).unwrap_or_default().into_iter().rev();
+    let is_common =
+        |end: &usize| names.len() > 1 && names.iter().all(|name| name.starts_with(&first[..*end]));
+    let start = ends.into_iter().find(is_common).unwrap_or(0);
+    names.iter().map(|name| &name[start..]).collect()
+}
 
 /// Whether a command that prints numbers also draws them.
 #[derive(clap::Args)]
@@ -33,6 +140,8 @@ pub struct FigureOutput {
     /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "figures")]
     pub force: bool,
+    #[command(flatten)]
+    pub choice: FigureChoice,
 }
 
 impl FigureOutput {
@@ -42,11 +151,13 @@ impl FigureOutput {
     /// See [`Target::save`].
     pub fn save(&self, figures: impl FnOnce() -> Vec<Named>) -> Result<(), CliError> {
         let Some(out) = &self.figures else { return Ok(()) };
-        self.target(out, &[])?.save(&figures(), Style::default(), false)
+        let choice = &self.choice;
+        self.target(out, &[])?.save(&choice.chosen(figures())?, choice.look.style()?, false)
     }
 
     /// Checks the target of the figures before they exist; `input` is the file that they are made from.
     pub fn check(&self, input: &Path) -> Result<(), CliError> {
+        self.choice.check(self.figures.is_some())?;
         self.figures.as_ref().map_or(Ok(()), |out| self.target(out, &[input]).map(|_| ()))
     }
 
@@ -196,4 +307,31 @@ fn print_written((path, bytes): &(PathBuf, Vec<u8>), figures: &[&str], json: boo
     }
     say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_go_by_the_end_of_their_names() {
+        let names = ["a-b-root-locus", "a-b-bode", "a-b-density_roll"];
+        let chosen =
+            |what: &str| -> Vec<&str> { names.iter().copied().filter(|name| is_named(name, what)).collect() };
+        assert_eq!(chosen("bode"), ["a-b-bode"]);
+        assert_eq!(chosen("root-locus"), ["a-b-root-locus"]);
+        assert_eq!(
+            (chosen("density"), chosen("density_roll")),
+            (vec!["a-b-density_roll"], vec!["a-b-density_roll"])
+        );
+        assert_eq!((chosen("dens"), chosen("a-b-bode")), (vec![], vec!["a-b-bode"]));
+        assert_eq!(without_common_start(&names), ["root-locus", "bode", "density_roll"]);
+        assert_eq!(without_common_start(&names[..1]), ["a-b-root-locus"]);
+    }
+
+    #[test]
+    fn an_analysis_without_figures_draws_none() {
+        let refused = FigureChoice::default().chosen(Vec::new()).map(|figures| figures.len());
+        assert!(refused.is_err_and(|why| why.to_string().contains("has no figures")));
+    }
 }

@@ -25,6 +25,7 @@ mod grid;
 mod help;
 mod human;
 mod identify;
+mod key_axis;
 mod layout;
 #[cfg_attr(not(feature = "live"), path = "live/unavailable.rs")]
 mod live;
@@ -45,6 +46,7 @@ mod quantity;
 mod report;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
+mod required_limit;
 mod requirements;
 mod result_files;
 mod results;

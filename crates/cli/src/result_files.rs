@@ -4,10 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::formats::count::counted;
-use flexsc_figure::Style;
 
 use crate::error::CliError;
-use crate::figure_files::{FigureFormat, FigureTarget};
+use crate::figure_files::{FigureChoice, FigureFormat, FigureTarget};
 use crate::out::{self, Out};
 use crate::results::Results;
 use crate::{files, say};
@@ -28,6 +27,8 @@ pub struct ResultOutput {
     /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "out")]
     pub force: bool,
+    #[command(flatten)]
+    pub choice: FigureChoice,
 }
 
 impl ResultOutput {
@@ -51,6 +52,7 @@ impl ResultOutput {
     /// # Errors
     /// A file with another extension, one that is an input, and a format that contradicts the extension.
     pub fn target(&self, inputs: &[&Path]) -> Result<Option<ResultTarget>, CliError> {
+        self.choice.check(self.out.is_some())?;
         let Some(out) = &self.out else { return Ok(None) };
         if let Out::File(path, "csv") = Out::new(out, &FILES, inputs)? {
             if self.format.is_some() {
@@ -62,14 +64,14 @@ impl ResultOutput {
             return Ok(Some(ResultTarget::Table { path, force: self.force }));
         }
         let figures = FigureTarget::new(out, self.format, inputs, self.force)?;
-        Ok(Some(ResultTarget::Figures(figures)))
+        Ok(Some(ResultTarget::Figures(figures, self.choice.clone())))
     }
 }
 
 /// Target of results.
 pub enum ResultTarget {
-    /// Figures.
-    Figures(FigureTarget),
+    /// Figures, and which of them.
+    Figures(FigureTarget, FigureChoice),
     /// Table as CSV; `force` is true if another file may be replaced.
     Table { path: PathBuf, force: bool },
 }
@@ -81,7 +83,9 @@ impl ResultTarget {
     /// See [`FigureTarget::save`]; results without a table, and a file that cannot be written.
     pub fn save(&self, results: &dyn Results) -> Result<(), CliError> {
         let (path, force) = match self {
-            Self::Figures(target) => return target.save(&results.figures(), Style::default(), false),
+            Self::Figures(target, choice) => {
+                return target.save(&choice.chosen(results.figures())?, choice.look.style()?, false);
+            }
             Self::Table { path, force } => (path, *force),
         };
         let Some(table) = results.table() else {

@@ -17,7 +17,9 @@ pub struct Bar {
 }
 
 /// Height of the bar with its numbers (px).
-pub const HEIGHT: u32 = 30;
+pub const HEIGHT: u32 = 36;
+/// Space above the colours (px).
+const TOP: u32 = 6;
 /// Maximum width of a class, maximum width of the bar, and height of the colours (px).
 const CLASS: f64 = 40.0;
 const BAR: f64 = 400.0;
@@ -25,7 +27,7 @@ const COLOUR: u32 = 10;
 
 /// Draws a bar at `left` (px) with its name before it, within `width` (px).
 pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Error> {
-    let middle = 2 + COLOUR / 2;
+    let middle = TOP + COLOUR / 2;
     // A letter is about 0.53 of the font's size wide; a long name leaves half of the width.
     let letters = bar.name.chars().count() as f64;
     let size = (0.5 * f64::from(width) / (0.53 * letters)).min(11.0);
@@ -38,7 +40,7 @@ pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Err
         (across.round() as i32, (down * UNITS) as i32)
     };
     for (index, colour) in bar.colours.iter().enumerate() {
-        let [top, bottom] = [2, 2 + COLOUR];
+        let [top, bottom] = [TOP, TOP + COLOUR];
         let corners =
             [place(index, top), place(index + 1, top), place(index + 1, bottom), place(index, bottom)];
         area.draw(&Polygon::new(corners, colour.filled()))?;
@@ -48,7 +50,11 @@ pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Err
     for (index, edge) in bar.edges.iter().enumerate().filter(|(_, edge)| !edge.is_empty()) {
         let (middle, half) = ((index + 1) as f64 * class, 3.1 * edge.chars().count() as f64);
         if middle - half > free {
-            area.draw_text(edge, &text(10.0, HPos::Center, VPos::Center), place(index + 1, COLOUR + 11))?;
+            area.draw_text(
+                edge,
+                &text(10.0, HPos::Center, VPos::Center),
+                place(index + 1, TOP + COLOUR + 9),
+            )?;
             free = middle + half + 4.0;
         }
     }

@@ -59,6 +59,26 @@ impl ScalarField {
         rings
     }
 
+    /// Returns the areas between levels, in increasing order, each with the number of levels that its values reach. Contours of
+    /// constant value do not cross: drawn in this order, from the largest to the smallest, each is filled with the class just within it.
+    pub fn areas(&self, levels: &[f64]) -> Vec<(usize, Vec<Point>)> {
+        let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
+        let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| (end(&self.x, i), end(&self.y, j)));
+        let mut rings = vec![(f64::INFINITY, 0, 0, corners.to_vec())];
+        for (below, level) in levels.iter().enumerate() {
+            let above = below + 1;
+            for ring in self.rings(*level) {
+                let area = ring.area();
+                // If two contours coincide, the steeper class comes last.
+                let (class, order) =
+                    if area > 0.0 { (above, above) } else { (below, levels.len() + 1 - above) };
+                rings.push((area.abs(), order, class, ring.points));
+            }
+        }
+        rings.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        rings.into_iter().map(|(_, _, class, points)| (class, points)).collect()
+    }
+
     /// Returns the contours without their parts on the border of the grid, separated by gaps.
     pub fn lines(&self, level: f64) -> Vec<Point> {
         self.rings(level).iter().flat_map(Ring::open).collect()

@@ -10,7 +10,8 @@ use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
 use crate::layout::{
-    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, split, ticks_upward, wide,
+    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, rows, split, ticks_upward,
+    wide,
 };
 use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::note::{self, Note, PlotBox};
@@ -60,15 +61,10 @@ pub fn svg(figure: &Figure, width: u32, higher: u32, is_titled: bool) -> Result<
         }
         let mut rest = body;
         let upward = figure.upward();
-        for (panel, y) in figure.panels.iter().zip(&upward) {
-            let (area, below) = rest.split_vertically(layout.panel(panel) * UNITS);
-            let (key, area) = area.split_vertically(bar_height(panel) * UNITS);
-            if let Some(bar) = &panel.bar {
-                bar::draw(&key, bar, layout.left, layout.across())?;
-            }
-            strip::draw(&area, panel, layout)?;
-            draw_legend(&area, panel, layout)?;
-            draw_panel(&area, (panel, y), layout)?;
+        let mut upward = upward.iter();
+        for row in rows(figure) {
+            let (area, below) = rest.split_vertically(layout.row_height(row) * UNITS);
+            draw_row(&area, (row, upward.by_ref()), layout)?;
             rest = below;
         }
         root.present()?;
@@ -77,6 +73,28 @@ pub fn svg(figure: &Figure, width: u32, higher: u32, is_titled: bool) -> Result<
     let fine = format!("width=\"{}\" height=\"{}\"", width * UNITS, height * UNITS);
     let size = format!("width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\"");
     Ok(svg.replacen(&fine, &size, 1))
+}
+
+/// Draws panels side by side, whose plots begin at one height, below the colour bar that they share.
+fn draw_row<'a>(
+    area: &Area<'_>,
+    (panels, upward): (&[Panel], impl Iterator<Item = &'a FigureAxis>),
+    layout: Layout,
+) -> Result<(), Error> {
+    let (key, mut rest) = area.split_vertically(bar_height(panels) * UNITS);
+    if let Some(bar) = panels.iter().find_map(|panel| panel.bar.as_ref()) {
+        bar::draw(&key, bar, layout.left, layout.across())?;
+    }
+    let top = layout.row_top(panels);
+    for ((layout, panel), y) in layout.row(panels).into_iter().zip(panels).zip(upward) {
+        let (own, after) = rest.split_horizontally(layout.width * UNITS);
+        let (_, own) = own.split_vertically((top - layout.top(panel)) * UNITS);
+        strip::draw(&own, panel, layout)?;
+        draw_legend(&own, panel, layout)?;
+        draw_panel(&own, (panel, y), layout)?;
+        rest = after;
+    }
+    Ok(())
 }
 
 /// Plot of a panel: the mapping from axis places to a rectangle of the backend.
@@ -108,7 +126,7 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
         across: layout.across(),
         height: layout.plot,
     };
-    draw_axes(area, (&panel.x, y), &plot)?;
+    draw_axes(area, (&panel.x, y), &plot, panel.is_plain)?;
     for layer in &panel.layers {
         let points: Vec<Point> =
             layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
@@ -146,7 +164,12 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
 }
 
 /// Draws the grid, the numbers and the names of the axes.
-fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &Plot) -> Result<(), Error> {
+fn draw_axes(
+    area: &Area<'_>,
+    (across, up): (&FigureAxis, &FigureAxis),
+    plot: &Plot,
+    is_plain: bool,
+) -> Result<(), Error> {
     let Window { x, y } = &plot.window;
     let corner = plot.place((x.start, y.start));
     let opposite = plot.place((x.end, y.end));
@@ -156,14 +179,16 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((across.place(*tick), y.start)).0, ticks.text(*tick)))
     {
-        area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
+        let end = if is_plain { corner.1 + gap / 2 } else { opposite.1 };
+        area.draw(&PathElement::new([(place, corner.1), (place, end)], if is_plain { frame } else { grid }))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
     let ticks = up.ticks(ticks_upward(plot.height));
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
-        area.draw(&PathElement::new([(corner.0, place), (opposite.0, place)], grid))?;
+        let end = if is_plain { corner.0 - gap / 2 } else { opposite.0 };
+        area.draw(&PathElement::new([(corner.0, place), (end, place)], if is_plain { frame } else { grid }))?;
         area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, place))?;
     }
     let other = [(corner.0, opposite.1), (opposite.0, corner.1)];
@@ -232,7 +257,20 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
         LayerShape::Square => &[(-29, -29), (29, -29), (29, 29), (-29, 29)],
         LayerShape::Diamond => &[(0, -44), (44, 0), (0, 44), (-44, 0)],
         LayerShape::Dot => return area.draw(&Circle::new((x, y), 16, layer.style())),
-        LayerShape::Ring => return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2))),
+        LayerShape::Cross => {
+            for (dx, dy) in [(32, 32), (32, -32)] {
+                let ends = [(x - dx, y - dy), (x + dx, y + dy)];
+                area.draw(&PathElement::new(ends, stroke(layer.colour, 1.2)))?;
+            }
+            return Ok(());
+        }
+        LayerShape::Stroke => {
+            return area.draw(&PathElement::new([(x, y - 30), (x, y + 30)], stroke(layer.colour, 0.5)));
+        }
+        LayerShape::Ring => {
+            area.draw(&Circle::new((x, y), 38, WHITE.filled()))?;
+            return area.draw(&Circle::new((x, y), 38, stroke(layer.colour, 1.2)));
+        }
         _ => return area.draw(&Circle::new((x, y), 32, layer.style())),
     };
     let corners: Vec<_> = corners.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();

@@ -7,6 +7,8 @@ const WIDTH: u32 = 800;
 /// Least margin left of a panel's plot, and margin right of it (px).
 const LEFT: u32 = 70;
 pub const RIGHT: u32 = 20;
+/// Part of the left margin that the name of the upward axis takes (px).
+const UNNAMED: u32 = 24;
 /// Margins below the plot, for numbers and for the name of the axis (px).
 pub const NUMBERS: u32 = 24;
 pub const NAME: u32 = 18;
@@ -24,10 +26,10 @@ const BEFORE_NUMBERS: u32 = 28;
 pub const LETTERS: f64 = 11.0;
 pub const SMALLEST: f64 = 9.5;
 
-/// Layout of a figure.
+/// Layout of a figure, or of a panel in a row of panels side by side.
 #[derive(Copy, Clone)]
 pub struct Layout {
-    /// Width of the figure (px).
+    /// Width (px).
     pub width: u32,
     /// Margin left of each plot (px).
     pub left: u32,
@@ -60,12 +62,42 @@ impl Layout {
             BEFORE_NUMBERS + longest.ceil() as u32
         });
         let left = names.chain(numbers).fold(LEFT, u32::max).min(width / 2);
+        let plot = match &figure.panels[..] {
+            [panel] if panel.is_equal => {
+                let [x, y] = [&panel.x, &panel.y].map(|axis| axis.range.end - axis.range.start);
+                (f64::from(width.saturating_sub(left + RIGHT)) * y / x).round() as u32 + higher
+            }
+            _ => plot,
+        };
         Self { width, left, plot }
     }
 
     /// Returns the height (px) of all panels of a figure.
     pub fn height(self, figure: &Figure) -> u32 {
-        figure.panels.iter().map(|panel| self.panel(panel)).sum()
+        rows(figure).map(|row| self.row_height(row)).sum()
+    }
+
+    /// Returns the layouts of the panels of a row, whose plots have one width: a panel without a name at its upward axis has a
+    /// narrower margin.
+    pub fn row(self, panels: &[Panel]) -> Vec<Self> {
+        let left = |panel: &Panel| {
+            if panel.is_beside && panel.y.name.is_empty() { self.left - UNNAMED } else { self.left }
+        };
+        let margins: u32 = panels.iter().map(|panel| left(panel) + RIGHT).sum();
+        let plot = self.width.saturating_sub(margins) / panels.len().max(1) as u32;
+        let own = |panel: &Panel| Self { width: left(panel) + plot + RIGHT, left: left(panel), ..self };
+        panels.iter().map(own).collect()
+    }
+
+    /// Returns the height of a row of panels (px), with a colour bar over its width.
+    pub fn row_height(self, panels: &[Panel]) -> u32 {
+        let name = if panels.iter().all(|panel| panel.x.name.is_empty()) { 0 } else { NAME };
+        bar_height(panels) + self.row_top(panels) + self.plot + NUMBERS + name
+    }
+
+    /// Returns the distance from the top of a row, below its colour bar, to its plots (px).
+    pub fn row_top(self, panels: &[Panel]) -> u32 {
+        self.row(panels).into_iter().zip(panels).map(|(layout, panel)| layout.top(panel)).max().unwrap_or(0)
     }
 
     /// Returns the width of a plot (px).
@@ -76,12 +108,6 @@ impl Layout {
     /// Returns the distance from the top of a panel, below its colour bar, to its plot (px).
     pub fn top(self, panel: &Panel) -> u32 {
         strip::height(self, panel) + self.legend(panel)
-    }
-
-    /// Returns the height of a panel including all around its plot (px).
-    pub fn panel(self, panel: &Panel) -> u32 {
-        let name = if panel.x.name.is_empty() { 0 } else { NAME };
-        bar_height(panel) + self.top(panel) + self.plot + NUMBERS + name
     }
 
     /// Returns the height of a panel's legend (px).
@@ -122,9 +148,14 @@ pub fn ticks_upward(height: u32) -> u32 {
     if height < 120 { height / 20 } else { height / 28 }
 }
 
-/// Returns the height of a panel's colour bar (px).
-pub fn bar_height(panel: &Panel) -> u32 {
-    if panel.bar.is_some() { bar::HEIGHT } else { 0 }
+/// Returns the panels of each row: those side by side.
+pub fn rows(figure: &Figure) -> impl Iterator<Item = &[Panel]> {
+    figure.panels.chunk_by(|_, next| next.is_beside)
+}
+
+/// Returns the height of the colour bar of panels side by side (px).
+pub fn bar_height(panels: &[Panel]) -> u32 {
+    if panels.iter().any(|panel| panel.bar.is_some()) { bar::HEIGHT } else { 0 }
 }
 
 /// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's

@@ -27,7 +27,7 @@ pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
 pub use image::Renderer;
 pub use line::{Point, Window, steps};
-pub use note::Note;
+pub use note::{Note, NoteSide};
 pub use origin::is_figure;
 pub use over_time::{OverTime, PanelLines};
 pub use plotters::style::RGBColor;
@@ -86,6 +86,12 @@ pub struct Panel {
     pub notes: Vec<Note>,
     /// Words above the axes that belong to no layer; empty for none.
     pub remark: String,
+    /// True for a panel to the right of the one before it, which is otherwise below that.
+    pub is_beside: bool,
+    /// True for a panel without grid lines.
+    pub is_plain: bool,
+    /// True for the only panel of a figure whose axes have one scale.
+    pub is_equal: bool,
 }
 
 /// Set of points drawn with one shape and colour.
@@ -122,6 +128,10 @@ pub enum LayerShape {
     Square,
     /// Diamonds at the points.
     Diamond,
+    /// Crosses at the points.
+    Cross,
+    /// Upright strokes at the points.
+    Stroke,
 }
 
 impl Figure {
@@ -144,7 +154,49 @@ impl Figure {
 impl Panel {
     /// Creates a panel from its axes and layers.
     pub fn new(x: FigureAxis, y: FigureAxis, layers: Vec<Layer>) -> Self {
-        Self { x, y, layers, bar: None, strips: Vec::new(), notes: Vec::new(), remark: String::new() }
+        Self {
+            x,
+            y,
+            layers,
+            bar: None,
+            strips: Vec::new(),
+            notes: Vec::new(),
+            remark: String::new(),
+            is_beside: false,
+            is_plain: false,
+            is_equal: false,
+        }
+    }
+
+    /// Returns the panel with words above its axes.
+    #[must_use]
+    pub fn headed(self, remark: impl Into<String>) -> Self {
+        Self { remark: remark.into(), ..self }
+    }
+
+    /// Returns the panel with words in it.
+    #[must_use]
+    pub fn noted(mut self, notes: impl IntoIterator<Item = Note>) -> Self {
+        self.notes.extend(notes);
+        self
+    }
+
+    /// Returns the panel to the right of the one before it.
+    #[must_use]
+    pub fn beside(self) -> Self {
+        Self { is_beside: true, ..self }
+    }
+
+    /// Returns the panel with one scale for both axes.
+    #[must_use]
+    pub fn equal(self) -> Self {
+        Self { is_equal: true, ..self }
+    }
+
+    /// Returns the panel without grid lines.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        Self { is_plain: true, ..self }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
-use plotters::style::{Color, RGBColor, WHITE};
+use plotters::style::{Color, FontTransform, RGBColor, WHITE};
 
 use crate::colour;
 use crate::layout::wide;
@@ -18,6 +18,38 @@ pub struct Note {
     pub at: Point,
     /// Colour.
     pub colour: RGBColor,
+    /// Side of the point on which the words are.
+    pub side: NoteSide,
+}
+
+/// Side of a point.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum NoteSide {
+    /// Above the point, or below it where there is no room.
+    Free,
+    /// Below the point.
+    Below,
+    /// To the left of the point.
+    Left,
+    /// To the right of the point.
+    Right,
+    /// On the point.
+    Centre,
+    /// On the point, read upwards.
+    Upright,
+}
+
+impl Note {
+    /// Creates a note above a point; its lines are one below the other.
+    pub fn new(text: impl Into<String>, at: Point, colour: RGBColor) -> Self {
+        Self { text: text.into(), at, colour, side: NoteSide::Free }
+    }
+
+    /// Returns the note on a side of its point.
+    #[must_use]
+    pub fn on(self, side: NoteSide) -> Self {
+        Self { side, ..self }
+    }
 }
 
 /// Rectangle of a plot (px).
@@ -35,7 +67,7 @@ const DISTANCE: f64 = 5.0;
 const BESIDE: f64 = 8.0;
 const HEIGHT: f64 = 13.0;
 /// Opacity of the ground under the words.
-const GROUND: f64 = 0.8;
+const GROUND: f64 = 0.7;
 
 /// Draws notes, each with its point (px), within a plot: above their points where there is room, and beside each other.
 pub fn draw<'a>(
@@ -45,34 +77,42 @@ pub fn draw<'a>(
 ) -> Result<(), Error> {
     let mut taken: Vec<PlotBox> = Vec::new();
     for (note, (x, y)) in notes {
-        let width = wide(&note.text, LETTERS) + 4.0;
-        let left = (x - width / 2.0).min(plot.right - width - 1.0).max(plot.left + 1.0);
-        let boxed =
-            |(left, top): (f64, f64)| PlotBox { left, top, right: left + width, bottom: top + HEIGHT };
-        let (above, below, beside) = (y - DISTANCE - HEIGHT, y + DISTANCE, y - HEIGHT / 2.0);
-        let (right, before) = (x + BESIDE, x - BESIDE - width);
-        let places = [
-            (left, above),
-            (right, beside),
-            (before, beside),
-            (left, below),
-            (left, above - HEIGHT),
-            (left, below + HEIGHT),
-        ];
-        let places = places.map(boxed);
-        // The words of a limit are not on its line.
-        let is_limit = note.colour == colour::RED;
+        let lines: Vec<&str> = note.text.lines().collect();
+        let width = lines.iter().map(|line| wide(line, LETTERS)).fold(0.0, f64::max) + 4.0;
+        let height = HEIGHT * lines.len() as f64;
+        let is_upright = note.side == NoteSide::Upright;
+        let (width, height) = if is_upright { (height, width) } else { (width, height) };
+        let boxed = |(x, y): (f64, f64)| {
+            let left = (x - width / 2.0).min(plot.right - width - 1.0).max(plot.left + 1.0);
+            let top = y - height / 2.0;
+            PlotBox { left, top, right: left + width, bottom: top + height }
+        };
+        let (up, across) = (DISTANCE + height / 2.0, BESIDE + width / 2.0);
+        let beside = |across: f64| [0.0, -1.0, 1.0, -2.0, 2.0, 3.0].map(|lines| (across, lines * HEIGHT));
+        let (above, below) = ([(0.0, -up), (0.0, -up - HEIGHT)], [(0.0, up), (0.0, up + HEIGHT)]);
+        let offsets = match note.side {
+            // The words of a limit are not on its line.
+            NoteSide::Free if note.colour == colour::RED => [above, below].concat(),
+            NoteSide::Free => {
+                vec![above[0], (across, 0.0), (-across, 0.0), below[0], above[1], below[1]]
+            }
+            NoteSide::Below => below.to_vec(),
+            NoteSide::Left => beside(-across).to_vec(),
+            NoteSide::Right => beside(across).to_vec(),
+            NoteSide::Centre | NoteSide::Upright => vec![(0.0, 0.0)],
+        };
+        let places: Vec<PlotBox> = offsets.iter().map(|(dx, dy)| boxed((x + dx, y + dy))).collect();
+        // Words beside a point are not moved over it.
+        let is_over =
+            |place: &PlotBox| place.left < x && x < place.right && place.top < y && y < place.bottom;
+        let is_on = matches!(note.side, NoteSide::Centre | NoteSide::Upright);
         let inside = |place: &&PlotBox| {
-            !(is_limit && place.top == beside)
-                && place.top >= plot.top
-                && place.bottom <= plot.bottom
-                && place.left >= plot.left
-                && place.right <= plot.right
+            place.top >= plot.top && place.bottom <= plot.bottom && (is_on || !is_over(place))
         };
         let free = |place: &&PlotBox| !taken.iter().any(|other| place.covers(other));
         let place = places.iter().filter(inside).find(free).or(places.iter().find(inside)).copied();
-        let place =
-            place.unwrap_or(boxed((left, above.clamp(plot.top, (plot.bottom - HEIGHT).max(plot.top)))));
+        let held = |top: f64| top.clamp(plot.top, (plot.bottom - height).max(plot.top));
+        let place = place.unwrap_or_else(|| boxed((x + offsets[0].0, held(places[0].top) + height / 2.0)));
         let at =
             |x: f64, y: f64| ((x * f64::from(UNITS)).round() as i32, (y * f64::from(UNITS)).round() as i32);
         let corners = [
@@ -82,9 +122,17 @@ pub fn draw<'a>(
             at(place.left, place.bottom),
         ];
         area.draw(&Polygon::new(corners, WHITE.mix(GROUND).filled()))?;
-        let middle = at(f64::midpoint(place.left, place.right), f64::midpoint(place.top, place.bottom));
-        let style = text(LETTERS, HPos::Center, VPos::Center).color(&note.colour);
-        area.draw_text(&note.text, &style, middle)?;
+        let (x, y) = (f64::midpoint(place.left, place.right), f64::midpoint(place.top, place.bottom));
+        for (index, line) in lines.iter().enumerate() {
+            let off = HEIGHT * (index as f64 + 0.5 - lines.len() as f64 / 2.0);
+            let style = text(LETTERS, HPos::Center, VPos::Center).color(&note.colour);
+            let (style, middle) = if is_upright {
+                (style.transform(FontTransform::Rotate270), at(x + off, y))
+            } else {
+                (style, at(x, y + off))
+            };
+            area.draw_text(line, &style, middle)?;
+        }
         taken.push(place);
     }
     Ok(())

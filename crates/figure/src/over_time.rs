@@ -80,7 +80,7 @@ impl OverTime {
             match near.first() {
                 Some(near) => {
                     let at = (f64::INFINITY, *near);
-                    panel.notes.push(Note { text: words, at, colour: colour::RED });
+                    panel.notes.push(Note::new(words, at, colour::RED));
                 }
                 None => panel.remark = words,
             }

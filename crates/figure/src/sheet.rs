@@ -1,5 +1,6 @@
 //! Several figures on one sheet: in columns of one height, in their order from top to bottom and from left to right.
 
+use crate::layout::rows;
 use crate::{Figure, Style, draw};
 
 /// Approximate ratio of width to height of the sheet.
@@ -27,13 +28,13 @@ pub fn sheet<'a>(figures: impl IntoIterator<Item = &'a Figure>, style: &Style) -
     for (column, count) in columns.into_iter().enumerate() {
         let own: Vec<(&Figure, u32)> = rest.by_ref().take(count).collect();
         let missing = height - own.iter().map(|(_, height)| height).sum::<u32>();
-        let plots = own.iter().map(|(figure, _)| figure.panels.len() as u32).sum::<u32>().max(1);
+        let plots = own.iter().map(|(figure, _)| rows(figure).count() as u32).sum::<u32>().max(1);
         let (x, higher, mut y) = (column as u32 * across, missing / plots, 0);
         for (figure, height) in own {
             let svg =
                 draw::svg(figure, across, higher, style.is_titled()).map_err(|error| error.to_string())?;
             sheet.push_str(&svg.replacen("<svg ", &format!("<svg x=\"{x}\" y=\"{y}\" "), 1));
-            y += height + higher * figure.panels.len() as u32;
+            y += height + higher * rows(figure).count() as u32;
         }
     }
     sheet.push_str("</svg>\n");

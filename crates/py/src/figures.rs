@@ -86,6 +86,7 @@ fn panel<'py>(py: Python<'py>, panel: &Panel, y: &FigureAxis) -> PyResult<Bound<
     let notes = panel.notes.iter().map(|note| (note.text.as_str(), note.at.0, note.at.1, hex(note.colour)));
     reported.set_item("notes", notes.collect::<Vec<_>>())?;
     reported.set_item("remark", &panel.remark)?;
+    reported.set_item("plain", panel.is_plain)?;
     Ok(reported)
 }
 
@@ -114,6 +115,8 @@ fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
         LayerShape::Triangle => ("triangle", 1.0),
         LayerShape::Square => ("square", 1.0),
         LayerShape::Diamond => ("diamond", 1.0),
+        LayerShape::Cross => ("cross", 1.0),
+        LayerShape::Stroke => ("stroke", 1.0),
     };
     let reported = PyDict::new(py);
     reported.set_item("name", &layer.name)?;

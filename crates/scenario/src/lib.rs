@@ -331,6 +331,13 @@ impl Scenario {
         value.ok_or_else(|| document.at_key(&ConfigError::new(key, why())))
     }
 
+    /// Returns the number that a key has, in its SI unit; `None` for a key that is not written or is no number.
+    pub fn number_at(&self, key: &str) -> Option<f64> {
+        let table = self.table_without_custom_parts();
+        let value = flexsc_formats::document::key::get(&table, key)?;
+        value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+    }
+
     /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.
     pub fn unit_of(&self, key: &str) -> Option<&'static str> {
         let unit = flexsc_formats::document::unit_at(units(), key)?;

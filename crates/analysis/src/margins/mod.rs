@@ -29,7 +29,7 @@ pub use frequency_grid::frequency_grid;
 pub use frequency_response::FrequencyResponse;
 pub use loci::LociValues;
 pub use poles::{UnstableLoop, steady_change};
-pub use root_locus::{GainPoles, root_locus};
+pub use root_locus::{LocusCrossing, RootLocus};
 
 use super::open_loop::{LoopBreak, OpenLoop, TransferMatrices};
 pub(super) use common_delay::common_delay;

@@ -51,8 +51,11 @@ const LOWEST: f64 = 0.05;
 
 /// Rise of an rms above the level between two steps that makes a peak.
 const RISE: f64 = 1.2;
-/// Speeds beside a peak, in half widths.
+/// Speeds beside a peak, in half widths, and those farther beside a high one.
 const FLANKS: [f64; 2] = [-1.5, 1.5];
+const FAR_FLANKS: [f64; 4] = [-24.0, -6.0, 6.0, 24.0];
+/// Rise of an rms above the level between two steps that makes a high peak.
+const HIGH: f64 = 10.0;
 
 /// Harmonic of a wheel: loads per square of the speed.
 struct WheelHarmonic {
@@ -179,20 +182,22 @@ impl WheelImbalance {
         let own = self.spectrum(lines, &steps, outputs)?;
         let examined: Vec<f64> = resonant.iter().map(|peak| peak.speed).collect();
         let tops = self.spectrum(lines, &examined, outputs)?;
-        let rises = |place: usize| {
+        let rise = |place: usize| {
             let speed = examined[place];
             let after = steps.partition_point(|step| *step < speed).clamp(1, steps.len() - 1);
             let share = (speed - steps[after - 1]) / (steps[after] - steps[after - 1]);
-            own.rms.iter().zip(&tops.rms).any(|(rms, tops)| {
+            let rises = own.rms.iter().zip(&tops.rms).map(|(rms, tops)| {
                 let level = libm::pow(rms[after - 1], 1.0 - share) * libm::pow(rms[after], share);
-                tops[place] > RISE * level
-            })
+                if tops[place] > RISE * level { tops[place] / level } else { 0.0 }
+            });
+            rises.fold(0.0, f64::max)
         };
         let beside = |place: usize| {
             let ResonantSpeed { speed, width } = resonant[place];
-            FLANKS.map(|part| speed + part * width)
+            let far = FAR_FLANKS.into_iter().filter(move |_| rise(place) > HIGH);
+            FLANKS.into_iter().chain(far).map(move |part| speed + part * width)
         };
-        let risen: Vec<usize> = (0..examined.len()).filter(|place| rises(*place)).collect();
+        let risen: Vec<usize> = (0..examined.len()).filter(|place| rise(*place) > 0.0).collect();
         let mut flanks: Vec<f64> = risen.iter().flat_map(|place| beside(*place)).collect();
         flanks.retain(|speed| (range[0]..range[1]).contains(speed));
         let flanks = self.spectrum(lines, &flanks, outputs)?;

@@ -1,8 +1,12 @@
 //! Figure of a budget: the fraction of all values of the index that are within a value.
 
-use flexsc_core::analysis::budget::CampaignBudget;
+use flexsc_core::analysis::budget::{BudgetLevel, CampaignBudget, INTERPRETATIONS, LEVELS};
 use flexsc_core::scenario::Interpretation;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
+use flexsc_figure::{
+    Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
+};
+
+use crate::required_limit::RequiredLimit;
 
 /// Number of points of a line.
 const POINTS: usize = 200;
@@ -23,13 +27,24 @@ pub fn named(scenario: &str, budget: &CampaignBudget) -> Named {
         let convolved = points().map(|most| (most, 100.0 * distribution.probability(most)));
         layers.push(Layer::new("convolved", colour::ORANGE, LayerShape::Dashes, convolved.collect()));
     }
-    let limit = vec![(requirement.limit, 0.0), (requirement.limit, 100.0)];
-    layers.push(Layer::new("limit", colour::BLACK, LayerShape::Dashes, limit));
-    let x =
-        FigureAxis::exact(&format!("{} ({})", requirement.name, requirement.unit), "", 0.0..1.05 * largest);
+    let required = RequiredLimit::new(requirement);
+    layers.push(required.line(vec![(requirement.limit, 0.0), (requirement.limit, 100.0)]));
+    let (name, unit) = name_and_unit(&requirement.name, requirement.unit);
+    let x = RequiredLimit::shown(Some(&required), FigureAxis::exact(&name, unit, 0.0..1.05 * largest));
+    let mixed = INTERPRETATIONS.iter().position(|way| *way == Interpretation::Mixed).unwrap_or(0);
+    let level = |(level, of): (f64, &[BudgetLevel; 3])| (of[mixed].campaign, 100.0 * level);
+    let levels = LEVELS.into_iter().zip(&budget.levels).map(level);
+    let levels: Vec<Point> = levels.filter(|(value, _)| value.is_finite()).collect();
+    let note = |(value, percent): &Point| {
+        let text = format!("{percent:.1} %: {}", x.reader_unit().quantity(*value));
+        Note::new(text, (*value, *percent), colour::BLUE).on(NoteSide::Right)
+    };
+    // From the lowest to the highest, so that names of levels close to each other go downwards.
+    let notes: Vec<Note> = levels.iter().map(note).collect();
+    layers.push(Layer::new("", colour::BLUE, LayerShape::Disc, levels));
     let y = FigureAxis::exact("within (%)", "", 0.0..104.0);
     let title = format!("{scenario}: {}", requirement.description());
-    let figure = Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 260 };
+    let figure = Figure { title, panels: vec![Panel::new(x, y, layers).noted(notes)], panel_height: 260 };
     (format!("{scenario}-budget-{}", file_part(&requirement.name)), figure)
 }
 

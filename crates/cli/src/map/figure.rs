@@ -110,7 +110,11 @@ pub fn figure(map: &MapResults) -> Figure {
     let class = |place: &f64| limits.iter().filter(|(limit, _)| place >= limit).count();
     let classes = || field.values.iter().map(class);
     let (lowest, highest) = (classes().min().unwrap_or(0), classes().max().unwrap_or(0));
-    let mut layers = regions(&field, &limits, lowest, highest);
+    let levels: Vec<f64> = limits[lowest..highest].iter().map(|(place, _)| *place).collect();
+    let filled = |(class, points): (usize, Vec<Point>)| {
+        Layer::new("", shade(lowest + class), LayerShape::Area(1.0), points)
+    };
+    let mut layers: Vec<Layer> = field.areas(&levels).into_iter().map(filled).collect();
     layers.push(Layer::new("limit of stability", colour::BLACK, LayerShape::Line(1.8), field.lines(0.0)));
     layers.push(Layer::new("scenario", colour::BLACK, LayerShape::Diamond, vec![*own]));
     let bar = Bar {
@@ -121,29 +125,6 @@ pub fn figure(map: &MapResults) -> Figure {
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
     let title = format!("{}: stability of the sampled loop", readable(name));
     Figure { title, panels: vec![panel], panel_height: 420 }
-}
-
-/// Returns the filled areas of the map. Contours of constant radius do not cross: drawn from the largest to the
-/// smallest, each is filled with the class just within it.
-fn regions(field: &ScalarField, limits: &[(f64, String)], lowest: usize, highest: usize) -> Vec<Layer> {
-    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| {
-        let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
-        (end(&field.x, i), end(&field.y, j))
-    });
-    let mut rings: Vec<(f64, usize, usize, Vec<Point>)> = vec![(f64::INFINITY, 0, lowest, corners.to_vec())];
-    for above in lowest + 1..=highest {
-        for ring in field.rings(limits[above - 1].0) {
-            let area = ring.area();
-            // If two contours coincide, the steeper class comes last.
-            let (class, order) = if area > 0.0 { (above, above) } else { (above - 1, limits.len() - above) };
-            rings.push((area.abs(), order, class, ring.points));
-        }
-    }
-    rings.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let layer = |(_, _, class, points): (f64, usize, usize, Vec<Point>)| {
-        Layer::new("", shade(class), LayerShape::Area(1.0), points)
-    };
-    rings.into_iter().map(layer).collect()
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::figure_files::{FigureFormat, FigureOutput};
+use crate::figure_files::{FigureChoice, FigureFormat, FigureOutput};
 use crate::grid::{PositiveGrid, grid_in};
 use crate::human::{Units, UnitsArgs, digits};
 use crate::out::Out;
@@ -49,6 +49,8 @@ pub struct MapArgs {
     /// Replace a FILE of other content
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    choice: FigureChoice,
     #[command(flatten)]
     units: UnitsArgs,
 }
@@ -162,10 +164,13 @@ pub fn run(args: &MapArgs) -> Result<(), CliError> {
         figures: figures.cloned(),
         format,
         force: args.force,
+        choice: args.choice.clone(),
     };
     let also = drawing(args.figures.as_ref(), args.format);
     let input = args.scenario.scenario.as_path();
-    also.check(input)?;
+    if args.out.is_none() || args.figures.is_some() {
+        also.check(input)?;
+    }
     let Some(out) = &args.out else {
         return show(&args.results(&args.scenario.load()?)?, Some(&also), args.scenario.json);
     };

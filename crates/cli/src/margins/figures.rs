@@ -1,12 +1,12 @@
-//! Figures of a loop that is cut open: Bode, Nichols, Nyquist, singular values, and the root locus.
+//! Figures of a loop that is cut open: Bode, Nichols, Nyquist and singular values.
 
 use std::f64::consts::{PI, TAU};
 
-use flexsc_core::analysis::margins::{
-    GainPoles, SignalMargins, SingularValues, StabilityMargins, root_locus as poles_over_gain,
-};
-use flexsc_core::analysis::open_loop::OpenLoop;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, RGBColor, colour};
+use flexsc_core::analysis::margins::{Crossings, SignalMargins, SingularValues, StabilityMargins};
+use flexsc_core::formats::reader_units::number;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Note, Panel, Point, RGBColor, colour};
+
+use super::mask::NicholsMask;
 
 /// Colours of the loops.
 const COLOURS: [RGBColor; 6] =
@@ -18,36 +18,34 @@ const SHOWN: f64 = 3.0;
 /// Width of a Nyquist figure relative to its height.
 const ASPECT: f64 = 1.37;
 
-/// Exponents of the least and the largest factor of a root locus.
-const FACTORS: [f64; 2] = [-2.0, 1.0];
-/// Number of factors of a root locus.
-const FACTOR_COUNT: u32 = 181;
-/// Damping ratio up to which light damping is shown.
-const LIGHT: f64 = 0.05;
-
 /// Locus of a loop over frequency: a line of a figure.
-struct LocusLine {
+pub struct LocusLine {
     name: String,
     colour: RGBColor,
-    /// Frequency (rad/s), magnitude (dB) and phase (deg, without jumps) at each point.
-    points: Vec<[f64; 3]>,
+    /// Frequency (Hz), magnitude (dB) and phase (deg, without jumps) at each point.
+    pub points: Vec<[f64; 3]>,
+    /// Crossings with their least margins of gain (factor) and phase.
+    crossings: Crossings,
+}
+
+/// Returns the lines of loops whose period is `period` (s).
+pub fn locus_lines(loops: &[SignalMargins], period: f64) -> Vec<LocusLine> {
+    let coloured = loops.iter().zip(COLOURS.iter().cycle());
+    let lines = coloured.flat_map(|(one, colour)| {
+        let count = one.loci.first().map_or(0, |first| first.values.len());
+        (0..count).map(move |locus| LocusLine::new(one, locus, period, *colour))
+    });
+    lines.collect()
 }
 
 /// Returns the figures of loops whose period is `period` (s).
-pub fn figures(name: &str, loops: &[SignalMargins], period: f64) -> Vec<Named> {
+pub fn figures(name: &str, loops: &[SignalMargins], period: f64, mask: Option<&NicholsMask>) -> Vec<Named> {
     let several = loops.iter().any(|one| one.loci.first().is_some_and(|first| first.values.len() > 1));
     let title = &if several { format!("{name}, loci of all samples") } else { name.to_owned() };
-    let lines: Vec<LocusLine> = loops
-        .iter()
-        .zip(COLOURS.iter().cycle())
-        .flat_map(|(one, colour)| {
-            let count = one.loci.first().map_or(0, |first| first.values.len());
-            (0..count).map(move |locus| LocusLine::new(one, locus, period, *colour))
-        })
-        .collect();
+    let lines = locus_lines(loops, period);
     vec![
         (format!("{name}-bode"), bode(title, &lines)),
-        (format!("{name}-nichols"), nichols(title, &lines)),
+        (format!("{name}-nichols"), nichols(title, &lines, mask)),
         (format!("{name}-nyquist"), nyquist(title, loops)),
     ]
 }
@@ -65,11 +63,39 @@ impl LocusLine {
                 Some(before) => phase + TAU * ((before - phase) / TAU).round(),
             };
             last = Some(phase);
-            [point.angle / period, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
+            [point.angle / period / TAU, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
         });
         let points = points.collect();
         // Several loci of one loop have one name.
-        Self { name: if locus == 0 { one.signal.clone() } else { String::new() }, colour, points }
+        let name = if locus == 0 { one.signal.replace('_', " ") } else { String::new() };
+        // With several loci, a crossing is not that of a known one.
+        let is_single = one.loci.first().is_some_and(|first| first.values.len() == 1);
+        let crossings = if is_single { one.crossings.clone() } else { Crossings::default() };
+        Self { name, colour, points, crossings }
+    }
+
+    /// Returns the point at a frequency (Hz), between those of the line.
+    fn at(&self, frequency: f64) -> Option<[f64; 3]> {
+        let next = self.points.partition_point(|point| point[0] < frequency);
+        let (before, after) = (self.points.get(next.checked_sub(1)?)?, self.points.get(next)?);
+        let part = (frequency - before[0]) / (after[0] - before[0]);
+        Some([0, 1, 2].map(|k| before[k] + part * (after[k] - before[k])))
+    }
+
+    /// Returns the points at which the phase is that of -1, each with the factor on the gain that the loop tolerates.
+    fn phase_crossings(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
+        self.crossings.phase.iter().filter_map(|crossing| {
+            let point = self.at(crossing.frequency_rad_s / TAU)?;
+            Some(([point[0], -20.0 * crossing.factor.log10(), point[2]], crossing.factor))
+        })
+    }
+
+    /// Returns the points at which the gain is 1, each with the phase (rad) that the loop tolerates.
+    fn gain_crossings(&self) -> impl Iterator<Item = ([f64; 3], f64)> {
+        self.crossings.gain.iter().filter_map(|crossing| {
+            let point = self.at(crossing.frequency_rad_s / TAU)?;
+            Some(([point[0], 0.0, point[2]], crossing.phase_rad))
+        })
     }
 
     /// Returns the line over two of its quantities, with gaps where it is out of the shown magnitudes.
@@ -93,29 +119,80 @@ fn level(range: &std::ops::Range<f64>, height: f64) -> Layer {
     Layer::new("", colour::GREY, LayerShape::Dashes, points)
 }
 
+/// Returns a mark at each crossing over two quantities, in the colour of its loop, and the least margins of all loops as words.
+fn marks(
+    lines: &[LocusLine],
+    (x, y): (usize, usize),
+    (gains, phases): (bool, bool),
+) -> (Vec<Layer>, Vec<Note>) {
+    let mut layers = Vec::new();
+    let (mut least_gain, mut least_phase): (Option<LeastMargin>, Option<LeastMargin>) = (None, None);
+    for line in lines {
+        let mut points = Vec::new();
+        for (point, factor) in line.phase_crossings().filter(|_| gains) {
+            points.push((point[x], point[y]));
+            let text =
+                format!("{:+.1} dB at {} Hz", 20.0 * factor.log10(), number(point[0])).replace('-', "−");
+            let margin = LeastMargin { size: factor.ln().abs(), point, text, colour: line.colour };
+            least_gain = Some(LeastMargin::lesser(least_gain, margin));
+        }
+        for (point, phase) in line.gain_crossings().filter(|_| phases) {
+            points.push((point[x], point[y]));
+            let degrees = number(phase.abs() * 180.0 / PI);
+            let text = format!("{degrees} deg at {} Hz", number(point[0]));
+            let margin = LeastMargin { size: phase.abs(), point, text, colour: line.colour };
+            least_phase = Some(LeastMargin::lesser(least_phase, margin));
+        }
+        layers.push(Layer::new("", line.colour, LayerShape::Disc, points));
+    }
+    let named = [least_gain, least_phase].into_iter().flatten();
+    let notes = named.map(|margin| Note::new(margin.text, (margin.point[x], margin.point[y]), margin.colour));
+    (layers, notes.collect())
+}
+
+/// Least margin of some loops, at a point of one of them.
+struct LeastMargin {
+    size: f64,
+    point: [f64; 3],
+    text: String,
+    colour: RGBColor,
+}
+
+impl LeastMargin {
+    fn lesser(before: Option<Self>, other: Self) -> Self {
+        before.filter(|before| before.size <= other.size).unwrap_or(other)
+    }
+}
+
 fn bode(title: &str, lines: &[LocusLine]) -> Figure {
-    let x = FigureAxis::decades("frequency", "rad/s", values(lines, 0));
+    let x = FigureAxis::decades("frequency", "Hz", values(lines, 0));
     let panel = |quantity: usize, name: &str, unit: &'static str, marked: f64| {
+        let (crossings, notes) = marks(lines, (0, quantity), (quantity == 1, quantity == 2));
         let y = FigureAxis::around(name, unit, values(lines, quantity).chain([marked]));
         let mut layers = vec![level(&x.range, marked)];
         layers.extend(lines.iter().map(|line| line.layer(0, quantity)));
-        Panel::new(x.clone(), y, layers)
+        layers.extend(crossings);
+        Panel::new(x.clone(), y, layers).noted(notes)
     };
     let panels = vec![panel(1, "magnitude", "dB", 0.0), panel(2, "phase", "deg", -180.0)];
     Figure { title: format!("{title}: loop transfer"), panels, panel_height: 220 }
 }
 
-fn nichols(title: &str, lines: &[LocusLine]) -> Figure {
+fn nichols(title: &str, lines: &[LocusLine], mask: Option<&NicholsMask>) -> Figure {
     let x = FigureAxis::around("phase", "deg", values(lines, 2).chain([-180.0]));
     let y = FigureAxis::around("magnitude", "dB", values(lines, 1).chain([0.0]));
-    let mut layers: Vec<Layer> = lines.iter().map(|line| line.layer(2, 1)).collect();
     // The points that the loop must not pass: -1 and its repetitions.
     let turns = (-40..40).map(|turn| f64::from(turn) * 360.0 - 180.0);
-    let critical = turns.filter(|phase| x.range.contains(phase)).map(|phase| (phase, 0.0)).collect();
+    let critical: Vec<Point> =
+        turns.filter(|phase| x.range.contains(phase)).map(|phase| (phase, 0.0)).collect();
+    let mut layers: Vec<Layer> = mask.map_or_else(Vec::new, |mask| mask.layers(&critical));
+    layers.extend(lines.iter().map(|line| line.layer(2, 1)));
+    let (crossings, notes) = marks(lines, (2, 1), (true, true));
+    layers.extend(crossings);
     layers.push(Layer::new("-1", colour::BLACK, LayerShape::Ring, critical));
     Figure {
         title: format!("{title}: Nichols chart"),
-        panels: vec![Panel::new(x, y, layers)],
+        panels: vec![Panel::new(x, y, layers).noted(notes)],
         panel_height: 420,
     }
 }
@@ -143,14 +220,18 @@ fn nyquist(title: &str, loops: &[SignalMargins]) -> Figure {
             let mut points: Vec<Point> = one.loci.iter().map(point(1.0)).collect();
             points.push((f64::NAN, f64::NAN));
             points.extend(one.loci.iter().map(point(-1.0)));
-            let name = if locus == 0 { one.signal.as_str() } else { "" };
-            layers.push(Layer::new(name, *colour, LayerShape::Line(1.5), points));
+            let name = if locus == 0 { one.signal.replace('_', " ") } else { String::new() };
+            layers.push(Layer::new(&name, *colour, LayerShape::Line(1.5), points));
         }
     }
     layers.push(Layer::new("-1", colour::BLACK, LayerShape::Ring, vec![(-1.0, 0.0)]));
     let x = FigureAxis::exact("real part", "", -ASPECT * SHOWN..ASPECT * SHOWN);
     let y = FigureAxis::exact("imaginary part", "", -SHOWN..SHOWN);
-    Figure { title: format!("{title}: Nyquist"), panels: vec![Panel::new(x, y, layers)], panel_height: 520 }
+    Figure {
+        title: format!("{title}: Nyquist"),
+        panels: vec![Panel::new(x, y, layers).equal()],
+        panel_height: 520,
+    }
 }
 
 /// Returns the figure of the largest singular values of the sensitivity and of its complement.
@@ -158,11 +239,13 @@ pub fn singular_values(name: &str, margins: &StabilityMargins) -> Figure {
     let all = &margins.singular_values;
     let line = |of: fn(&SingularValues) -> f64| -> Vec<Point> {
         let decibels = |value: f64| if value > 0.0 { 20.0 * value.log10() } else { f64::NAN };
-        let shown = all.iter().map(|at| (at.frequency_rad_s, decibels(of(at))));
+        let shown = all.iter().map(|at| (at.frequency_rad_s / TAU, decibels(of(at))));
         shown.map(|(x, y)| if y.abs() <= SHOWN_DB { (x, y) } else { (x, f64::NAN) }).collect()
     };
     let lines = [line(|at| at.sensitivity), line(|at| at.complementary)];
-    let x = FigureAxis::decades("frequency", "rad/s", all.iter().map(|at| at.frequency_rad_s));
+    // Where no sensitivity is shown, the loop gain is as large as its complement is flat.
+    let shown = lines[0].iter().filter(|point| point.1.is_finite()).map(|point| point.0);
+    let x = FigureAxis::decades("frequency", "Hz", shown);
     let y = FigureAxis::around(
         "largest singular value",
         "dB",
@@ -178,40 +261,5 @@ pub fn singular_values(name: &str, margins: &StabilityMargins) -> Figure {
         title: format!("{name}: singular values of all loops"),
         panels: vec![Panel::new(x, y, layers)],
         panel_height: 320,
-    }
-}
-
-/// Returns the figure of the poles of the closed loop over the gain of all loops: their damping ratios over their natural
-/// frequencies, all and the light ones.
-pub fn root_locus(name: &str, opened: &OpenLoop) -> Figure {
-    let factor = |k: u32| {
-        let part = f64::from(k) / f64::from(FACTOR_COUNT - 1);
-        10.0_f64.powf(FACTORS[0] * (1.0 - part) + FACTORS[1] * part)
-    };
-    let factors: Vec<f64> = (0..FACTOR_COUNT).map(factor).collect();
-    let points = |all: &[GainPoles]| -> Vec<Point> {
-        let poles = all.iter().flat_map(|at| &at.poles).filter(|pole| pole.im > 0.0);
-        poles.map(|pole| (pole.norm(), -pole.re / pole.norm())).collect()
-    };
-    let locus = points(&poles_over_gain(opened, &factors));
-    let [open, closed] = [0.0, 1.0].map(|factor| points(&poles_over_gain(opened, &[factor])));
-    let x =
-        FigureAxis::decades("natural frequency", "rad/s", locus.iter().chain(&closed).map(|point| point.0));
-    let panel = |low: f64, high: f64| {
-        let within = |points: &[Point]| -> Vec<Point> {
-            points.iter().copied().filter(|point| (low..=high).contains(&point.1)).collect()
-        };
-        let layers = vec![
-            level(&x.range, 0.0),
-            Layer::new("gain from 0.01 to 10 times its own", colour::GREY, LayerShape::Dot, within(&locus)),
-            Layer::new("without the loop", colour::BLACK, LayerShape::Triangle, within(&open)),
-            Layer::new("own gain", colour::BLUE, LayerShape::Disc, within(&closed)),
-        ];
-        Panel::new(x.clone(), FigureAxis::exact("damping ratio", "", low..high), layers)
-    };
-    Figure {
-        title: format!("{name}: root locus over the gain of all loops"),
-        panels: vec![panel(-0.2, 1.0), panel(-LIGHT, LIGHT)],
-        panel_height: 240,
     }
 }

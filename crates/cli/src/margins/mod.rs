@@ -1,8 +1,10 @@
 //! `flexsc margins`: stability margins of the loop of a scenario.
 
 mod figures;
+mod mask;
+mod root_locus;
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 use std::io::Write;
 
 use flexsc_core::analysis::margins::{SignalMargins, StabilityMargins};
@@ -26,6 +28,7 @@ use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
 use crate::stop::stop_requested;
 use crate::{say, scenario};
+use mask::NicholsMask;
 
 /// Number of loops of each search for the least margin.
 const WORST_POINTS: usize = 100;
@@ -40,6 +43,10 @@ pub struct MarginsArgs {
     /// Search for the least of each margin over the uncertain keys too, as `flexsc worst --margin` does
     #[arg(long)]
     worst: bool,
+    /// Gain and phase by which each loop may be off at once, such as "6 dB, 30 deg": a mask around -1 in the Nichols chart. The
+    /// exit code is 3 if a loop is within it
+    #[arg(long, value_name = "GAIN,PHASE")]
+    mask: Option<NicholsMask>,
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
@@ -53,6 +60,8 @@ pub struct LoopMargins {
     margins: ScenarioMargins,
     /// Least margins over the uncertain keys.
     worst: Vec<(MarginKind, WorstCase)>,
+    /// Mask, and the frequency (Hz) at which each loop is first within it.
+    masked: Option<(NicholsMask, Vec<Option<f64>>)>,
     units: Units,
 }
 
@@ -76,12 +85,25 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         found.map(|case| (kind, case))
     };
     let worst = kinds.map(least).collect::<Result<_, CliError>>()?;
-    Ok(LoopMargins { name, margins, worst, units: args.units.units })
+    let masked = args.mask.map(|mask| {
+        let StabilityMargins { loops, period_s, .. } = &margins.stability;
+        let first = |one: &SignalMargins| {
+            let lines = figures::locus_lines(std::slice::from_ref(one), *period_s);
+            lines.iter().find_map(|line| mask.first_violation(&line.points))
+        };
+        (mask, loops.iter().map(first).collect())
+    });
+    Ok(LoopMargins { name, margins, worst, masked, units: args.units.units })
 }
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
-    show(&results(&args.scenario.load()?, args)?, Some(&args.drawing), args.scenario.json)
+    let margins = results(&args.scenario.load()?, args)?;
+    show(&margins, Some(&args.drawing), args.scenario.json)?;
+    match margins.violations() {
+        0 => Ok(()),
+        count => Err(CliError::Requirements(format!("{} within the mask", counted(count as u64, "loop")))),
+    }
 }
 
 /// Smallest margins of each loop.
@@ -98,6 +120,9 @@ const MARGINS: [Column<'_>; 11] = [
     column("disk.gains", "gain\nin the disk").gain(),
     column("disk.phase_rad", "phase\nin the disk"),
 ];
+
+/// Number of these columns before that of a mask.
+const BEFORE_MASK: usize = 5;
 
 /// Least margins over the uncertain keys.
 const WORST: [Column<'_>; 4] = [
@@ -133,8 +158,11 @@ impl LoopMargins {
     fn print_margins(&self) {
         let StabilityMargins { loops, modulus, disk, independent_disk, samples, .. } =
             &self.margins.stability;
-        let own = loops.iter().map(|one| {
+        let own = loops.iter().enumerate().map(|(index, one)| {
             let mut row = self.row(one);
+            if let Some((_, violations)) = &self.masked {
+                row["mask"] = json!(self.mask_verdict(violations[index]));
+            }
             // Half a turn is no limit.
             if one.phase_rad.abs() >= PI {
                 row["phase_rad"] = Json::Null;
@@ -146,7 +174,10 @@ impl LoopMargins {
             rows.push(json!({"signal": "all together", "modulus": modulus, "disk": disk}));
         }
         rows.extend(independent_disk.map(|disk| json!({"signal": "all, independent", "disk": disk})));
-        print_rows(&rows, &MARGINS, self.units);
+        let (first, rest) = MARGINS.split_at(BEFORE_MASK);
+        let mask = [column("mask", "mask")];
+        let mask = if self.masked.is_some() { &mask[..] } else { &[] };
+        print_rows(&rows, &[first, mask, rest].concat(), self.units);
         if rows.len() > 1 || *samples > 1 {
             let delay = number_or_none(self.margins.common_delay_s, |delay| format!("{} s", digits(delay)));
             say!("  delay that all actuators together may add: {delay}");
@@ -158,6 +189,18 @@ impl LoopMargins {
                 self.settling()
             );
         }
+    }
+
+    /// Returns the verdict on a loop that is first within the mask at a frequency (Hz).
+    fn mask_verdict(&self, violation: Option<f64>) -> String {
+        let (factor, unit) = self.units.frequency();
+        let at = |hertz: f64| format!("violated at {} {unit}", digits(hertz * TAU * factor));
+        violation.map_or_else(|| "kept".to_owned(), at)
+    }
+
+    /// Returns the number of loops within the mask.
+    fn violations(&self) -> usize {
+        self.masked.as_ref().map_or(0, |(_, all)| all.iter().filter(|one| one.is_some()).count())
     }
 
     /// Returns the settling time after a step about each axis: the longest of all angles.
@@ -229,16 +272,29 @@ impl Results for LoopMargins {
             let least = self.worst.iter().map(|(kind, case)| (kind.word().to_owned(), json!(case.report())));
             margins["worst"] = Json::Object(least.collect());
         }
+        if let Some((mask, violations)) = &self.masked {
+            let NicholsMask { gain_db, phase_deg } = mask;
+            let loops = violations.iter().zip(&self.margins.stability.loops);
+            let each = loops.map(|(at, one)| json!({"signal": one.signal, "violated_at_hz": at}));
+            margins["mask"] = json!({
+                "gain_db": gain_db,
+                "phase_deg": phase_deg,
+                "met": self.violations() == 0,
+                "loops": each.collect::<Vec<_>>(),
+            });
+        }
         vec![with_scenario_name(&self.name, margins)]
     }
 
     fn figures(&self) -> Vec<Named> {
         let name = &self.name;
-        let mut figures =
-            figures::figures(name, &self.margins.stability.loops, self.margins.stability.period_s);
+        let StabilityMargins { loops, period_s, .. } = &self.margins.stability;
+        let mask = self.masked.as_ref().map(|(mask, _)| mask);
+        let mut figures = figures::figures(name, loops, *period_s, mask);
         let values = figures::singular_values(name, &self.margins.stability);
         figures.push((format!("{name}-singular-values"), values));
-        figures.push((format!("{name}-root-locus"), figures::root_locus(name, &self.margins.cut)));
+        let locus = root_locus::figure(name, &self.margins.cut, loops);
+        figures.extend(locus.map(|figure| (format!("{name}-root-locus"), figure)));
         figures
     }
 

@@ -15,7 +15,7 @@ use flexsc_core::spacecraft::manoeuvre::{ComparisonBasis, Manoeuvre, PlanReport,
 use flexsc_core::{Scenario, ScenarioError};
 
 use crate::error::CliError;
-use crate::figure_files::FigureFormat;
+use crate::figure_files::{FigureChoice, FigureFormat};
 use crate::human::UnitsArgs;
 use crate::quantity::in_unit;
 use crate::result_files::{ResultOutput, ResultTarget};
@@ -47,6 +47,8 @@ pub struct PlanArgs {
     /// Replace a FILE of other content
     #[arg(long, requires = "out")]
     force: bool,
+    #[command(flatten)]
+    choice: FigureChoice,
     /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
     coordinate: Option<String>,
@@ -101,7 +103,12 @@ impl PlanArgs {
 }
 
 pub fn run(args: &PlanArgs) -> Result<(), CliError> {
-    let output = ResultOutput { out: args.out.clone(), format: args.format, force: args.force };
+    let output = ResultOutput {
+        out: args.out.clone(),
+        format: args.format,
+        force: args.force,
+        choice: args.choice.clone(),
+    };
     let target = output.target(&[args.scenario.scenario.as_path()])?;
     if args.coordinate.is_some() && matches!(target, Some(ResultTarget::Table { .. })) {
         let why = "--coordinate: the table has every coordinate\n\nhint: leave out --coordinate";

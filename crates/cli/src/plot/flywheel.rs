@@ -54,10 +54,8 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let mut layers: Vec<Layer> = limits.iter().map(level).collect();
         layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.2), line));
         let unit = y.reader_unit();
-        let note = |limit: f64| Note {
-            text: format!("limit {}", unit.quantity(limit)),
-            at: (f64::INFINITY, limit),
-            colour: colour::RED,
+        let note = |limit: f64| {
+            Note::new(format!("limit {}", unit.quantity(limit)), (f64::INFINITY, limit), colour::RED)
         };
         Panel { notes: limit.map(note).into_iter().collect(), ..Panel::new(x, y, layers) }
     };

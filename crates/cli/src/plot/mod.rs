@@ -53,10 +53,10 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::record::{Log, Orbit, Wheels};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Style, colour, round_to_nice};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, colour, round_to_nice};
 
 use crate::error::CliError;
-use crate::figure_files::{FigureFormat, FigureTarget};
+use crate::figure_files::{FigureFormat, FigureLook, FigureTarget};
 use crate::quantity::in_unit;
 pub use campaign::{column_figures, directory_figures};
 use cycle_data::{CycleData, RowSource};
@@ -90,12 +90,8 @@ pub struct PlotArgs {
     /// Replace a FILE of other content, and files in DIR that are no figures of flexsc
     #[arg(long, requires = "out")]
     force: bool,
-    /// Width of each figure on paper, such as 85 for one column [default: 800 px]
-    #[arg(long, value_name = "MM", value_parser = in_unit("mm"))]
-    width: Option<f64>,
-    /// Font size of the axis labels on paper [default: 8 with --width]
-    #[arg(long, value_name = "PT", value_parser = in_unit(""))]
-    font: Option<f64>,
+    #[command(flatten)]
+    look: FigureLook,
     /// Start of the time range to show (s) [default: chosen by the figure]
     #[arg(long, value_name = "TIME", value_parser = in_unit("s"))]
     from: Option<f64>,
@@ -114,14 +110,6 @@ pub struct PlotArgs {
     /// Print one JSON object per file and per worst run to stdout
     #[arg(long)]
     json: bool,
-}
-
-impl PlotArgs {
-    /// Returns the style of the figures with their size.
-    fn style(&self) -> Result<Style, CliError> {
-        Style::new(self.width, self.font)
-            .map_err(|why| CliError::Arguments(format!("--width, --font: {why}")))
-    }
 }
 
 impl PlotArgs {
@@ -248,7 +236,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let figures =
         if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{kind}"), figure));
-    target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
+    target.save(&args.look.titled(named.collect()), args.look.style()?, args.json)
 }
 
 /// Returns figures of a log over an interval of time, if given: the named ones, or all that it has.

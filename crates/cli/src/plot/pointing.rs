@@ -71,11 +71,11 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     let largest = inside.iter().filter(|point| point.1 > 0.0).max_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((at, size)) = largest {
         panel.layers.push(Layer::new("", colour::BLACK, LayerShape::Disc, vec![(*at, *size)]));
-        panel.notes.push(Note {
-            text: format!("{} at {} s", unit.quantity(*size), number(*at)),
-            at: (*at, *size),
-            colour: colour::BLACK,
-        });
+        panel.notes.push(Note::new(
+            format!("{} at {} s", unit.quantity(*size), number(*at)),
+            (*at, *size),
+            colour::BLACK,
+        ));
     }
     panel
 }

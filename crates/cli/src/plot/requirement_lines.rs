@@ -73,10 +73,8 @@ pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
             panel.layers.push(Layer::new("", colour::RED, LayerShape::Diamond, marks));
         }
         let longest = windows.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
-        panel.notes.extend(longest.map(|[from, to]| Note {
-            text: own.words.clone(),
-            at: (f64::midpoint(*from, *to), own.limit),
-            colour: colour::RED,
+        panel.notes.extend(longest.map(|[from, to]| {
+            Note::new(own.words.clone(), (f64::midpoint(*from, *to), own.limit), colour::RED)
         }));
     }
 }

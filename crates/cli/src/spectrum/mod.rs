@@ -1,6 +1,10 @@
 //! `flexsc spectrum`: noise of the outputs of a loop, exact from its linear model, and lines of its wheels.
 
 mod figures;
+mod named_mode;
+mod peaks;
+mod required_index;
+mod waterfall;
 mod welch;
 mod wheels;
 
@@ -24,6 +28,9 @@ use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows, print_table};
 use crate::{say, scenario};
+use named_mode::NamedMode;
+use required_index::RequiredIndex;
+use waterfall::OutputWaterfall;
 use welch::{LogPart, WelchEstimate, estimates};
 
 #[derive(clap::Args)]
@@ -67,6 +74,11 @@ pub struct SpectrumResults {
     units: Units,
     /// Whether speeds of the wheels are asked for, over which a table then is.
     over_speed: bool,
+    /// Requirement on each output.
+    required: Vec<Option<RequiredIndex>>,
+    /// Window of the indices (s), if one is given.
+    window_s: Option<f64>,
+    modes: Vec<NamedMode>,
 }
 
 /// Computes the noise of a scenario's loop.
@@ -102,7 +114,17 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
             estimates(&part, &noisy, &outputs)?
         }
     };
-    Ok(SpectrumResults { name, report, welch, units: args.units.units, over_speed: args.speeds.is_some() })
+    let required = report.outputs.iter().map(|output| RequiredIndex::on_output(scenario, &output.output));
+    Ok(SpectrumResults {
+        required: required.collect(),
+        modes: NamedMode::all(scenario),
+        window_s: args.window,
+        over_speed: args.speeds.is_some(),
+        units: args.units.units,
+        name,
+        report,
+        welch,
+    })
 }
 
 pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
@@ -221,7 +243,8 @@ impl Results for SpectrumResults {
 
     fn figures(&self) -> Vec<Named> {
         let mut all = figures::densities(&self.name, &self.report, &self.welch);
-        all.extend(figures::waterfalls(&self.name, &self.report));
+        let windows = (&self.required[..], self.window_s);
+        all.extend(waterfall::figures(&self.name, &self.report, windows, &self.modes));
         all
     }
 
@@ -267,6 +290,8 @@ impl Results for SpectrumResults {
         self.print_welch();
         if let Some(wheels) = &self.report.wheels {
             wheels::print(&self.report, wheels, self.units);
+            let all = OutputWaterfall::all(&self.report, &self.required, self.window_s);
+            peaks::print(&all, self.units);
         }
         Ok(())
     }

@@ -77,7 +77,12 @@ impl TunedFigure<'_> {
         let y = FigureAxis::from_zero("settling time (s)", "", times);
         let level = vec![(x.range.start, self.tuning.limit), (x.range.end, self.tuning.limit)];
         let layers = vec![
-            Layer::new("limit", colour::GREY, LayerShape::Dashes, level),
+            Layer::new(
+                &format!("at most {} s", self.tuning.limit),
+                colour::RED,
+                LayerShape::Line(1.4),
+                level,
+            ),
             Layer::new("without the extra loop", colour::BLACK, LayerShape::Line(1.4), without),
             Layer::new("middle of the region", colour::BLUE, LayerShape::Line(1.6), middle),
             Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), nominal),
@@ -94,7 +99,7 @@ impl TunedFigure<'_> {
     fn frequency(&self) -> FigureAxis {
         let all = || self.regions.iter().map(|region| region.frequency_rad_s);
         let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
-        FigureAxis::exact("frequency of the dominant mode (rad/s)", "", low..high)
+        FigureAxis::exact("frequency of the dominant mode", "rad/s", low..high).in_hertz()
     }
 
     /// Returns the gain of the scenario's own extra loop at the frequencies.

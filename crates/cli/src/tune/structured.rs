@@ -23,6 +23,8 @@ use crate::results::{Results, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
 use crate::{files, out, say};
 
+/// Largest modulus margin that the figure shows.
+const SHOWN_MARGIN: f64 = 2.0;
 /// Shortfall of the loop gain at the bandwidth that is rounding of the search.
 const LEAST_SHORTFALL: f64 = 1e-6;
 
@@ -262,28 +264,24 @@ impl Results for StructuredResults {
             ("nominal, tuned", colour::BLUE, LayerShape::Line(1.6), self.curve(after, 0)),
         ];
         if self.found.loops.plants() > 1 {
-            lines.push((
-                "worst plant, before",
-                colour::GREY,
-                LayerShape::Dashes,
-                self.curve(before, worst(before)),
-            ));
-            lines.push((
-                "worst plant, tuned",
-                colour::BLUE,
-                LayerShape::Dashes,
-                self.curve(after, worst(after)),
-            ));
+            let dashes = LayerShape::Dashes;
+            lines.push(("worst plant, before", colour::ORANGE, dashes, self.curve(before, worst(before))));
+            lines.push(("worst plant, tuned", colour::VERMILLION, dashes, self.curve(after, worst(after))));
         }
-        let shown = |value: f64| value.min(2.0);
-        let all = || lines.iter().flat_map(|line| &line.3);
-        let x = FigureAxis::decades("frequency", "rad/s", all().map(|point| point.0));
-        let y = FigureAxis::from_zero("modulus margin, 1/s1(S)", "", all().map(|point| shown(point.1)));
+        // The loop matters where a margin is within the shown ones.
+        let all = || lines.iter().flat_map(|line| &line.3).filter(|point| point.1 <= SHOWN_MARGIN);
+        let x = FigureAxis::decades("frequency", "rad/s", all().map(|point| point.0)).in_hertz();
+        let y = FigureAxis::from_zero("modulus margin, 1/s1(S)", "", all().map(|point| point.1));
+        let least = self.found.report().margin_limit.map(|least| {
+            let ends = vec![(x.range.start, least), (x.range.end, least)];
+            Layer::new(&format!("at least {least}"), colour::RED, LayerShape::Line(1.4), ends)
+        });
         let layers = lines.into_iter().map(|(name, colour, shape, points)| {
-            let points = points.into_iter().map(|(x, y)| (x, if y > 2.0 { f64::NAN } else { y })).collect();
+            let points =
+                points.into_iter().map(|(x, y)| (x, if y > SHOWN_MARGIN { f64::NAN } else { y })).collect();
             Layer::new(name, colour, shape, points)
         });
-        let layers = layers.collect();
+        let layers = layers.chain(least).collect();
         let title = format!("{}: modulus margin before and after tuning", self.name);
         vec![(
             format!("{}-tune-margin", self.name),

@@ -278,8 +278,7 @@ impl Results for WorstCases {
         each.map(|(index, (case, requirement))| {
             let number = if index == 0 { String::new() } else { format!("-{}", index + 1) };
             let name = format!("{}-worst{number}", self.name);
-            let limit = requirement.as_ref().map(|requirement| requirement.limit);
-            (name, figures::figure(&self.name, case, limit))
+            (name, figures::figure(&self.name, case, requirement.as_ref()))
         })
         .collect()
     }

@@ -59,6 +59,8 @@ _MARKS = {
     "triangle": ("^", 7.2),
     "square": ("s", 5.8),
     "diamond": ("D", 6.2),
+    "cross": ("x", 6.4),
+    "stroke": ("|", 6.0),
 }
 
 
@@ -237,6 +239,8 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
     ax.set_xlabel(below, fontsize=12 * POINT)
     ax.set_ylabel(panel["y"]["label"], fontsize=12 * POINT)
     frame(ax)
+    if panel["plain"]:
+        ax.grid(visible=False)
     handles = [(_layer(ax, layer, order), layer["name"]) for order, layer in enumerate(panel["layers"], 2)]
     named = [(handle, name) for handle, name in handles if name and handle is not None]
     if named:
@@ -369,6 +373,8 @@ def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:
     if not ((left <= x) & (x <= right) & (low <= y) & (y <= high)).any():
         return None
     style: dict[str, Any] = {"markersize": across * POINT, "markeredgewidth": 0.0, "color": colour}
+    if shape in ("cross", "stroke"):
+        style |= {"markeredgewidth": (1.2 if shape == "cross" else 0.5) * POINT}
     if shape == "ring":
         style |= {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.2 * POINT}
     return ax.plot(x, y, linestyle="none", marker=marker, zorder=order, **style)[0]

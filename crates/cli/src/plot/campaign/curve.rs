@@ -6,6 +6,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 use super::super::readable;
 use super::metric_column::MetricColumn;
 use super::table::{CampaignKey, CampaignRuns};
+use crate::required_limit::RequiredLimit;
 
 /// Largest number of values that have a marker each.
 const MARKS: usize = 100;
@@ -18,13 +19,17 @@ pub fn figure(runs: &CampaignRuns, metrics: &[&MetricColumn], key: &CampaignKey)
         let line: Vec<Point> = order.iter().map(|run| (key.values[*run], metric.values[*run])).collect();
         let ends = order.first().map_or(0.0, |run| key.values[*run])
             ..order.last().map_or(1.0, |run| key.values[*run]);
-        let x = FigureAxis::exact(&runs.label_of(key), "", ends);
+        let x = runs.key_axis(key).over(ends);
+        let required = runs.required(metric);
+        let limit = required.as_ref().map(|own| own.limit);
         let mut layers = vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), line.clone())];
         if line.len() <= MARKS {
             layers.push(Layer::new("", colour::BLUE, LayerShape::Dot, line));
         }
+        layers.extend(required.as_ref().map(|own| own.across(&x)));
         let x = if index + 1 == metrics.len() { x } else { x.unnamed() };
-        Panel::new(x, FigureAxis::around(&name, unit, metric.values.iter().copied()), layers)
+        let y = FigureAxis::around(&name, unit, metric.values.iter().copied().chain(limit));
+        Panel::new(x, RequiredLimit::shown(required.as_ref(), y), layers)
     };
     let panels = metrics.iter().enumerate().map(panel).collect();
     let title = format!(

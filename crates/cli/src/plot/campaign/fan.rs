@@ -78,7 +78,14 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
     let runs = paths.par_iter().map(sampled).collect::<Result<Vec<_>, _>>()?;
     bar.finish_and_clear();
     let count = runs.iter().map(Vec::len).min().unwrap_or(0);
+    // A signal that is the same number all the time in all runs shows nothing.
+    let varies = |signal: &usize| {
+        let mut values = runs.iter().flat_map(|run| &run[*signal].2).filter(|value| value.is_finite());
+        values.next().is_some_and(|first| values.any(|value| value != first))
+    };
+    let shown: Vec<usize> = (0..count).filter(varies).collect();
     let panel = |signal: usize| {
+        let (is_first, is_last) = (shown.first() == Some(&signal), shown.last() == Some(&signal));
         let (name, unit, _) = &runs[0][signal];
         let quantiles: Vec<[f64; 5]> = (0..INSTANTS)
             .map(|instant| {
@@ -91,23 +98,23 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
         let line = |q: usize| -> Vec<Point> {
             instants.iter().copied().zip(quantiles.iter().map(|quantiles| quantiles[q])).collect()
         };
-        let named = |name: &'static str| if signal == 0 { name } else { "" };
+        let named = |name: &'static str| if is_first { name } else { "" };
         let layers = vec![
             Layer::new(named("5 to 95 %"), colour::SKY, LayerShape::Area(0.3), band(&line(0), &line(4))),
             Layer::new(named("25 to 75 %"), colour::BLUE, LayerShape::Area(0.4), band(&line(1), &line(3))),
             Layer::new(named("median"), colour::BLACK, LayerShape::Line(1.4), line(2)),
         ];
-        let shown = quantiles.iter().flatten().copied();
-        let positive = shown.clone().all(|value| value.is_nan() || value >= 0.0);
+        let values = quantiles.iter().flatten().copied();
+        let positive = values.clone().all(|value| value.is_nan() || value >= 0.0);
         let y = if positive {
-            FigureAxis::from_zero(name, unit, shown)
+            FigureAxis::from_zero(name, unit, values)
         } else {
-            FigureAxis::around(name, unit, shown)
+            FigureAxis::around(name, unit, values)
         };
         let x = time(0.0..end);
-        Panel::new(if signal + 1 == count { x } else { x.unnamed() }, y, layers)
+        Panel::new(if is_last { x } else { x.unnamed() }, y, layers)
     };
-    let panels = (0..count).map(panel).collect();
+    let panels = shown.iter().copied().map(panel).collect();
     Ok(Figure {
         title: format!("{}: {} over time", readable(name), counted(paths.len(), "run")),
         panels,

@@ -92,7 +92,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
             directory.display()
         )));
     }
-    target.save(&figures, args.style()?, args.json)
+    target.save(&args.look.titled(figures), args.look.style()?, args.json)
 }
 
 /// Returns figures of a campaign from its columns: of one kind, or the default ones.

@@ -102,6 +102,7 @@ pub fn campaign_runs(
     };
     let metrics = fields.into_iter().zip(columns).map(metric).collect();
     Ok(CampaignRuns {
+        has_same_noise: campaign.design().noise_run.is_some(),
         name: scenario.name.clone(),
         scenario: Some((scenario.clone(), ScenarioSource::Directory(path.to_owned()))),
         numbers: numbers.into_iter().map(|number| number.unwrap_or_default().cast_unsigned()).collect(),

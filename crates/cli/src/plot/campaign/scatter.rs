@@ -6,6 +6,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 use super::super::readable;
 use super::metric_column::MetricColumn;
 use super::table::{CampaignKey, CampaignRuns};
+use crate::required_limit::RequiredLimit;
 
 /// Largest number of keys with a panel each.
 const PANELS: usize = 4;
@@ -20,16 +21,14 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
     let more = keys.len().saturating_sub(PANELS);
     let panel = |(r, key): (f64, &CampaignKey)| {
         let points: Vec<Point> = key.values.iter().copied().zip(metric.values.iter().copied()).collect();
-        let x = FigureAxis::around(&runs.label_of(key), "", key.values.iter().copied());
-        let limit = required.as_ref().map(|(most, _)| *most);
+        let x = runs.key_axis(key);
+        let limit = required.as_ref().map(|own| own.limit);
         let y = FigureAxis::around(&name, unit, metric.values.iter().copied().chain(limit));
+        let y = RequiredLimit::shown(required.as_ref(), y);
         let reported =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
         let mut layers = vec![Layer::new(&reported, colour::BLUE, LayerShape::Dot, points)];
-        layers.extend(required.as_ref().map(|(most, requirement)| {
-            let line = vec![(x.range.start, *most), (x.range.end, *most)];
-            Layer::new(requirement, colour::BLACK, LayerShape::Line(1.6), line)
-        }));
+        layers.extend(required.as_ref().map(|own| own.across(&x)));
         Panel::new(x, y, layers)
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();

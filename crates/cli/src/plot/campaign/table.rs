@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
+use flexsc_core::campaign::Design;
 use flexsc_core::metrics::{self, list_element};
 use flexsc_core::record::atomic_file;
 use flexsc_core::scenario::AssessedRequirement;
+use flexsc_figure::FigureAxis;
 
 use super::metric_column::{
     MetricColumn, elements, required_metric, requirement_label, value_of_requirement,
@@ -14,6 +16,8 @@ use super::metric_column::{
 use super::text_cells::TextCells;
 use crate::campaign::SCENARIO;
 use crate::error::CliError;
+use crate::key_axis::key_axis;
+use crate::required_limit::RequiredLimit;
 
 /// Runs of a campaign, in the order of their numbers.
 pub struct CampaignRuns {
@@ -29,6 +33,8 @@ pub struct CampaignRuns {
     pub metrics: Vec<MetricColumn>,
     /// Error of each run; empty if the run succeeded.
     pub errors: Vec<String>,
+    /// True if all points of a sweep have the noise of one run.
+    pub has_same_noise: bool,
 }
 
 /// Origin of the scenario of a campaign.
@@ -195,7 +201,13 @@ impl TextTable {
             Some(MetricColumn { meaning, name, requirement, texts: TextCells::Numbers, values })
         }));
         let errors = column("error");
+        let description = scenario.as_ref().and_then(|(_, source)| match source {
+            ScenarioSource::File(path) => std::fs::read_to_string(path).ok(),
+            ScenarioSource::Directory(_) => None,
+        });
+        let noise_run = |run| description.as_ref().map(|text| Design::described_noise_run(text, run));
         Ok(CampaignRuns {
+            has_same_noise: noise_run(0).is_some() && noise_run(0) == noise_run(1),
             name,
             scenario,
             numbers: self.rows.into_keys().collect(),
@@ -230,28 +242,27 @@ impl CampaignRuns {
         (all.iter().enumerate().map(column).collect(), all.iter().filter_map(required_metric).collect())
     }
 
-    /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
-    /// it.
-    pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
+    /// Returns the limit on a metric, if there is one.
+    pub fn required(&self, metric: &MetricColumn) -> Option<RequiredLimit> {
         let (scenario, _) = self.scenario.as_ref()?;
-        let requirements = &scenario.study.requirements;
-        let of_metric = |(index, requirement): (usize, &AssessedRequirement)| {
-            let name = value_of_requirement(index);
-            let is_it =
-                metric.name == name || required_metric(requirement).is_some_and(|name| name == metric.name);
-            is_it.then_some(requirement.limit)
-        };
-        let most = requirements.iter().enumerate().find_map(of_metric)?;
-        let sorted = metric.sorted();
-        let successes = sorted.iter().filter(|value| **value <= most).count();
-        let part = 100.0 * successes as f64 / sorted.len().max(1) as f64;
-        Some((most, format!("requirement, met by {successes} of {} runs ({part:.0} %)", sorted.len())))
+        let mut requirements = scenario.study.requirements.iter().enumerate();
+        let (_, own) = requirements.find(|(index, requirement)| {
+            let limited = required_metric(requirement);
+            metric.name == value_of_requirement(*index) || limited.is_some_and(|name| name == metric.name)
+        })?;
+        Some(RequiredLimit::new(own))
     }
 
-    /// Returns the label of an axis along a key: its name and its unit.
-    pub fn label_of(&self, key: &CampaignKey) -> String {
-        let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));
-        unit.map_or_else(|| key.name.clone(), |unit| format!("{} ({unit})", key.name))
+    /// Returns an axis around the values of a key.
+    pub fn key_axis(&self, key: &CampaignKey) -> FigureAxis {
+        let scenario = self.scenario.as_ref().map(|(scenario, _)| scenario);
+        key_axis(scenario, &key.name, key.values.iter().copied())
+    }
+
+    /// Returns the point of the scenario itself over two keys, if it has both.
+    pub fn own_point(&self, first: &CampaignKey, second: &CampaignKey) -> Vec<(f64, f64)> {
+        let own = |key: &CampaignKey| self.scenario.as_ref()?.0.number_at(&key.name);
+        own(first).zip(own(second)).into_iter().collect()
     }
 
     /// Returns the keys that are drawn.
