@@ -41,10 +41,14 @@ impl AnswerArgs {
         Answer::new(scenario, metrics, observed, self.units.units.into())
     }
 
+    /// Returns the options of the screen.
+    pub fn screen(self) -> ScreenOptions {
+        ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() }
+    }
+
     /// Prints an answer, with its log and its size, if there is one.
     pub fn print(self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
-        let options =
-            ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() };
+        let options = self.screen();
         let screen = answer.screen(Some(took), options);
         // Only terminals that support colours get them, and not if NO_COLOR is set.
         let _ = writeln!(anstream::stderr(), "{}", coloured(&screen, answer));

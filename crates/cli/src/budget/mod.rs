@@ -230,7 +230,7 @@ impl Results for Budgets {
         for budget in &self.indices {
             self.print_budget(budget);
         }
-        let verdicts = requirements::lines(&self.verdicts, &[], self.units.into()).join("\n  ");
+        let verdicts = requirements::lines(&self.verdicts, self.units.into()).join("\n  ");
         say!("\n  {}", style().styled(&verdicts));
         Ok(())
     }

@@ -2,6 +2,10 @@
 //! an observer saw in every control cycle. Numbers are in SI units; beside them stand their texts in the reader's units, so
 //! that text, JSON, Python and reports say the same.
 
+mod campaign_answer;
+mod campaign_runs;
+mod campaign_screen;
+mod driving_key;
 mod error_statistics;
 mod event;
 mod lines;
@@ -21,6 +25,11 @@ use serde::Serialize;
 use crate::metrics::Metrics;
 use crate::requirement_verdict::{self, RequirementVerdict};
 
+pub use campaign_answer::{
+    CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
+};
+pub use campaign_runs::CampaignRuns;
+pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};
 pub use lines::Line;

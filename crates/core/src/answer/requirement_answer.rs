@@ -125,7 +125,7 @@ impl RequirementAnswer {
 }
 
 /// Returns a margin in whole per cent, or how many limits the value is; empty without a number.
-fn margin_text(margin: f64, multiple: f64) -> String {
+pub(super) fn margin_text(margin: f64, multiple: f64) -> String {
     if !margin.is_finite() {
         return String::new();
     }

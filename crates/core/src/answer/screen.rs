@@ -261,13 +261,13 @@ fn aligned(rows: &[Vec<String>], most: usize) -> Vec<String> {
 }
 
 /// Returns lines with the indent of a block.
-fn indented(lines: Vec<String>) -> Vec<String> {
+pub(super) fn indented(lines: Vec<String>) -> Vec<String> {
     lines.into_iter().map(|line| format!("  {line}")).collect()
 }
 
 /// Returns a text in lines of at most `width` characters, broken at spaces but not between a number and its unit, all but
 /// the first indented.
-fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
     let start = text.len() - text.trim_start().len();
     let mut lines = vec![text[..start].to_owned()];
     for (index, word) in words(&text[start..]).into_iter().enumerate() {
