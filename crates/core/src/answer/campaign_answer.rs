@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::campaign_runs::CampaignRuns;
 use super::driving_key::{DrivingKey, driving_keys};
-use super::requirement_answer::margin_text;
-use super::{RunVerdict, SCHEMA};
+use super::requirement_answer::{margin_text, requirement_id};
+use super::{Answer, RunVerdict, SCHEMA};
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 use crate::statistics::{quantile, wilson};
 
@@ -171,19 +171,21 @@ impl MetShare {
 }
 
 impl CampaignAnswer {
-    /// Returns the answer of runs of a scenario: with the values of its requirements without drawn keys, if they are known,
-    /// and the directory of the runs, if there is one.
+    /// Returns the answer of runs of a scenario: with the values of the run without drawn keys, if they are known, and the
+    /// directory of the runs, if there is one.
     pub fn new(
         scenario: &Scenario,
         runs: &CampaignRuns,
-        nominal: Option<&[f64]>,
+        nominal: Option<&Answer>,
         directory: Option<&str>,
         units: ReaderUnits,
     ) -> Self {
         let verdicts = runs.verdicts();
         let own = |(index, verdict): (usize, &RequirementVerdict)| {
-            let nominal = nominal.and_then(|values| values.get(index).copied());
-            requirement(scenario, runs, (index, verdict), nominal.filter(|value| value.is_finite()), units)
+            let id = requirement_id(index);
+            let nominal = nominal.and_then(|answer| answer.requirements.iter().find(|own| own.id == id));
+            let nominal = nominal.map(|own| own.value).filter(|value| value.is_finite());
+            requirement(scenario, runs, (index, verdict), nominal, units)
         };
         let mut requirements: Vec<CampaignRequirement> = verdicts.iter().enumerate().map(own).collect();
         let worst_margin = |own: &CampaignRequirement| own.margin.map_or(f64::NEG_INFINITY, |own| own.worst);
@@ -227,11 +229,7 @@ impl CampaignRuns {
     }
 }
 
-fn verdict(
-    requirements: &[CampaignRequirement],
-    met: Option<&MetShare>,
-    runs: u64,
-) -> (RunVerdict, String) {
+fn verdict(requirements: &[CampaignRequirement], met: Option<&MetShare>, runs: u64) -> (RunVerdict, String) {
     let Some(share) = met else { return (RunVerdict::NotAsked, "no requirement".to_owned()) };
     let shown = |what: &str| {
         let verb = if runs == 1 { "meets" } else { "meet" };
@@ -277,18 +275,15 @@ fn requirement(
     let margin_of = |value: f64| (limit - value) / limit;
     // A run without a value is the worst, and has no margin.
     let worst_value = Some(*worst).filter(|value| value.is_finite());
-    let margin = quantile(0.5).zip(quantile(0.95)).zip(worst_value.or(quantile(1.0))).map(
-        |((median, p95), worst)| MarginSpread {
-            median: margin_of(median),
-            p05: margin_of(p95),
-            worst: margin_of(worst),
-        },
-    );
+    let margin =
+        quantile(0.5).zip(quantile(0.95)).zip(worst_value.or(quantile(1.0))).map(|((median, p95), worst)| {
+            MarginSpread { median: margin_of(median), p05: margin_of(p95), worst: margin_of(worst) }
+        });
     let met_share = MetShare::new(*runs_met, verdict.runs);
     let row = runs.requirements.numbers().iter().position(|number| number == run);
     let driven_by = driving_keys(&runs.keys, values, limit, row.zip(Some(*run)), |key| scenario.unit_of(key));
     CampaignRequirement {
-        id: format!("R{}", index + 1),
+        id: requirement_id(index),
         name: requirement.name.clone(),
         description: requirement.description(),
         unit: requirement.unit,
@@ -302,8 +297,15 @@ fn requirement(
         interpretation: requirement.interpretation.word(),
         decision: *decision,
         met: *decision == Decision::Met,
-        text: texts(&unit, limit, written, [nominal, quantile(0.5), quantile(0.95)], (worst_value, *run), margin)
-            .with_share(&met_share, verdict),
+        text: texts(
+            &unit,
+            limit,
+            written,
+            [nominal, quantile(0.5), quantile(0.95)],
+            (worst_value, *run),
+            margin,
+        )
+        .with_share(&met_share, verdict),
         met_share,
         driven_by,
     }

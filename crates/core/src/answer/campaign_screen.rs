@@ -16,12 +16,7 @@ impl CampaignAnswer {
     /// Returns the answer as text; `took` is the real time that the runs took (s).
     pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
         let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
-        let head = format!(
-            "{}   {}   {}{took}",
-            self.scenario,
-            self.verdict_text,
-            counted(self.runs, "run")
-        );
+        let head = format!("{}   {}   {}{took}", self.scenario, self.verdict_text, counted(self.runs, "run"));
         let mut blocks = vec![wrapped(&head, options.width, 4)];
         if !self.requirements.is_empty() && self.runs > 0 {
             blocks.push(self.requirement_table(options));
@@ -37,7 +32,9 @@ impl CampaignAnswer {
         let mut rows = vec![heads.map(str::to_owned).to_vec()];
         rows.extend(self.requirements.iter().take(shown).map(CampaignRequirement::cells));
         if self.requirements.iter().all(|own| own.nominal.is_none()) {
-            rows.iter_mut().for_each(|row| drop(row.remove(NOMINAL)));
+            for row in &mut rows {
+                row.remove(NOMINAL);
+            }
         }
         let mut lines = indented(columns(&rows, |_| true));
         let notes = self.requirements.iter().filter_map(|own| own.text.note.as_ref());

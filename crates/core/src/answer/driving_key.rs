@@ -135,10 +135,9 @@ fn rank_correlation(one: &[f64], other: &[f64]) -> f64 {
         .collect();
     let ranks = |which: usize| ranks(&pairs.iter().map(|pair| pair[which]).collect::<Vec<_>>());
     let (a, b) = (ranks(0), ranks(1));
-    let mean = (pairs.len() as f64 + 1.0) / 2.0;
-    let product = |a: &[f64], b: &[f64]| -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - mean) * (b - mean)).sum()
-    };
+    let mean = f64::midpoint(pairs.len() as f64, 1.0);
+    let product =
+        |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| (a - mean) * (b - mean)).sum() };
     let size = (product(&a, &a) * product(&b, &b)).sqrt();
     if size > 0.0 { product(&a, &b) / size } else { 0.0 }
 }
@@ -150,7 +149,9 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     let mut ranks = vec![0.0; values.len()];
     for group in order.chunk_by(|a, b| values[*a] == values[*b]) {
         let before = order.partition_point(|index| values[*index] < values[group[0]]);
-        group.iter().for_each(|index| ranks[*index] = before as f64 + (group.len() as f64 + 1.0) / 2.0);
+        for index in group {
+            ranks[*index] = before as f64 + f64::midpoint(group.len() as f64, 1.0);
+        }
     }
     ranks
 }
@@ -162,7 +163,8 @@ mod tests {
     #[test]
     fn correlations_are_those_of_scipy() {
         // scipy.stats.spearmanr([1, 2, 3, 4, 5, 5], [2, 1, 4, 3, 7, 6]) and of the same without the pair of NaN.
-        let found = rank_correlation(&[1.0, 2.0, 3.0, 4.0, 5.0, 5.0, f64::NAN], &[2.0, 1.0, 4.0, 3.0, 7.0, 6.0, 0.0]);
+        let found =
+            rank_correlation(&[1.0, 2.0, 3.0, 4.0, 5.0, 5.0, f64::NAN], &[2.0, 1.0, 4.0, 3.0, 7.0, 6.0, 0.0]);
         assert!((found - 0.869_656_553_478_672_7).abs() < 1e-12, "{found}");
         assert_eq!(rank_correlation(&[1.0, 1.0], &[1.0, 2.0]), 0.0);
     }
@@ -171,11 +173,8 @@ mod tests {
     fn a_key_that_matters_by_its_size_has_a_range() {
         let values: Vec<f64> = (-10..=10).map(f64::from).collect();
         let errors: Vec<f64> = values.iter().map(|value| value * value).collect();
-        let key = |key: &str, values: Vec<f64>| UncertainValues {
-            key: key.to_owned(),
-            design: 100.0,
-            values,
-        };
+        let key =
+            |key: &str, values: Vec<f64>| UncertainValues { key: key.to_owned(), design: 100.0, values };
         let keys = [
             key("idle", values.iter().map(|value| 100.0 + (7.0 * value).rem_euclid(5.0)).collect()),
             key("mass", values.iter().map(|value| 100.0 + value).collect()),
@@ -187,7 +186,13 @@ mod tests {
         // 4² is met and 5² is not.
         assert!((first.met_within.unwrap_or(0.0) - 0.04).abs() < 1e-12, "{first:?}");
         assert!((first.none_beyond.unwrap_or(0.0) - 0.04).abs() < 1e-12, "{first:?}");
-        assert!(first.text.starts_with("mass: met in every run within ±4.00 % of its value, in none beyond ±4.00 %"), "{}", first.text);
+        assert!(
+            first
+                .text
+                .starts_with("mass: met in every run within ±4.00 % of its value, in none beyond ±4.00 %"),
+            "{}",
+            first.text
+        );
         assert!(first.text.ends_with("; run 40 has -10 %"), "{}", first.text);
     }
 }

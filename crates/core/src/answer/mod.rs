@@ -8,6 +8,7 @@ mod campaign_screen;
 mod driving_key;
 mod error_statistics;
 mod event;
+mod limit_watch;
 mod lines;
 mod mode_answer;
 mod one_axis_lines;
@@ -102,6 +103,9 @@ impl Answer {
         let (by_mode, lines) = if diverges { Default::default() } else { (run.by_mode(), run.lines()) };
         let mut events = observed.map_or_else(Vec::new, |observed| observed.events.clone());
         events.extend(run.losses());
+        if observed.is_some() {
+            events.extend(scenario.orbit_environment().eclipses_seen().into_iter().map(RunEvent::eclipse));
+        }
         events.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
         Self {
             schema: SCHEMA,

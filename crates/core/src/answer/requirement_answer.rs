@@ -110,7 +110,7 @@ impl RequirementAnswer {
             ),
         };
         Self {
-            id: format!("R{}", index + 1),
+            id: requirement_id(index),
             name: requirement.name.clone(),
             description: requirement.description(),
             unit: requirement.unit,
@@ -122,6 +122,11 @@ impl RequirementAnswer {
             text,
         }
     }
+}
+
+/// Returns the identifier of the requirement at a place in the scenario.
+pub(super) fn requirement_id(index: usize) -> String {
+    format!("R{}", index + 1)
 }
 
 /// Returns a margin in whole per cent, or how many limits the value is; empty without a number.
