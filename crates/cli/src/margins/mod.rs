@@ -123,11 +123,6 @@ impl LoopMargins {
         &self.margins
     }
 
-    /// Returns the least margins over the uncertain keys.
-    pub fn worst(&self) -> &[(MarginKind, WorstCase)] {
-        &self.worst
-    }
-
     /// Returns an object without its delay for several samples in a period, where a delay is more than a phase.
     fn row(&self, of: impl Serialize) -> Json {
         let mut row = json!(of);

@@ -2,16 +2,14 @@
 
 use flexsc_core::analysis::budget::{IndexBudget, LevelsAtProbability};
 use flexsc_core::answer::CampaignRequirement;
-use flexsc_core::formats::reader_units::{ReaderUnits, percent};
+use flexsc_core::formats::reader_units::{ReaderUnits, number};
 
-use super::html::{
-    FigureCounter, HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head, paragraph,
-};
+use super::html::{HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head, paragraph, picture};
 use super::study::{Study, StudyCampaign};
 use crate::results::Results;
 
 /// Returns the block of the campaign.
-pub fn block(study: &Study, campaign: &StudyCampaign, figures: &mut FigureCounter) -> String {
+pub fn block(study: &Study, campaign: &StudyCampaign) -> String {
     let keys: Vec<&str> = study.scenario.uncertain.keys().map(String::as_str).collect();
     let drawn = if keys.is_empty() {
         "The runs differ by their noise alone.".to_owned()
@@ -19,9 +17,9 @@ pub fn block(study: &Study, campaign: &StudyCampaign, figures: &mut FigureCounte
         format!("Drawn for each run: {}, and all noise.", keys.join(", "))
     };
     let mut html = paragraph(&drawn);
-    for (_, figure) in &campaign.figures {
-        if let Ok(svg) = figure.svg() {
-            html += &figures.figure(&svg, &format!("Distribution over {} runs.", campaign.runs));
+    for (_, drawn) in &campaign.figures {
+        if let Ok(svg) = drawn.svg() {
+            html += &picture(&svg, &format!("Distribution over {} runs.", campaign.runs));
         }
     }
     let answer = &campaign.answer;
@@ -63,7 +61,7 @@ fn table(requirements: &[CampaignRequirement]) -> String {
 }
 
 /// Returns the block of the budgets of pointing indices; `None` without a requirement on one.
-pub fn budget(study: &Study, campaign: &StudyCampaign, figures: &mut FigureCounter) -> Option<String> {
+pub fn budget(study: &Study, campaign: &StudyCampaign) -> Option<String> {
     let budgets = campaign.budgets.as_ref()?;
     let report = budgets.report();
     let mut html = String::new();
@@ -73,7 +71,7 @@ pub fn budget(study: &Study, campaign: &StudyCampaign, figures: &mut FigureCount
         html += "</h3>\n";
         html += &levels(own);
         if let Some(svg) = budgets.figures().get(place).and_then(|(_, own)| own.svg().ok()) {
-            html += &figures.figure(&svg, &format!("Levels of {} over {} runs.", own.name, report.runs));
+            html += &picture(&svg, &format!("Levels of {} over {} runs.", own.name, report.runs));
         }
     }
     Some(html + &command(&study.command("budget", &format!("--runs {}", report.runs))))
@@ -87,7 +85,7 @@ fn levels(own: &IndexBudget) -> String {
     heads[0] = head("Level");
     let row = |level: &LevelsAtProbability| {
         let value = |own: Option<f64>| cell(&own.map_or_else(|| "-".to_owned(), |value| unit.number(value)));
-        let mut cells = vec![cell(&percent(level.level))];
+        let mut cells = vec![cell(&format!("{} %", number(100.0 * level.level)))];
         cells.extend(
             [level.temporal.campaign, level.ensemble.campaign, level.mixed.campaign]
                 .map(|own| value(Some(own))),

@@ -22,12 +22,16 @@ pub fn block(answer: &Answer, campaign: Option<&CampaignAnswer>, loops: &LoopSum
     };
     let mut sentences: Vec<String> =
         answer.warnings.iter().take(MOST[1]).map(|own| sentence(&own.text)).collect();
-    sentences.extend(campaign.and_then(campaign_sentence));
+    sentences.extend(
+        campaign.and_then(|own| campaign_sentence(own, is_missed && answer.verdict != RunVerdict::Missed)),
+    );
     sentences.extend(met_sentence(answer));
     sentences.extend(loops.margins.clone());
     sentences.extend(loops.accuracy.clone());
     sentences.truncate(MOST[0]);
-    let head = sentence(&answer.verdict_text.replace("MISSED: ", "Missed: ").replace("FAILED: ", "Failed: "));
+    let missed = campaign.filter(|_| is_missed && answer.verdict != RunVerdict::Missed);
+    let verdict = missed.map_or(&answer.verdict_text, |campaign| &campaign.verdict_text);
+    let head = sentence(&verdict.replace("MISSED: ", "Missed: ").replace("FAILED: ", "Failed: "));
     format!("<section class=\"answer {class}\"><h2>{}</h2>\n{}</section>\n", escaped(&head), list(&sentences))
 }
 
@@ -39,16 +43,15 @@ fn sentence(text: &str) -> String {
     format!("{first}{}{end}", letters.as_str())
 }
 
-/// Returns what the campaign says.
-fn campaign_sentence(campaign: &CampaignAnswer) -> Option<String> {
+/// Returns what the campaign says; how many runs meet what is asked, unless it is the verdict.
+fn campaign_sentence(campaign: &CampaignAnswer, is_verdict: bool) -> Option<String> {
     campaign.met.as_ref()?;
     let first = campaign.requirements.first()?;
     let text = campaign.verdict_text.trim_start_matches("MISSED: ").trim_start_matches("undecided: ");
-    let driven = first
-        .driven_by
-        .first()
-        .map_or_else(String::new, |own| format!(" {} depends on {}.", first.name, own.text));
-    Some(format!("Campaign: {text}.{driven}"))
+    let driven = first.driven_by.first().map(|own| format!("{} is driven by {}.", first.name, own.text));
+    let share = (!is_verdict).then(|| format!("campaign: {text}."));
+    let text: Vec<String> = share.into_iter().chain(driven).map(|text| sentence(&text)).collect();
+    (!text.is_empty()).then(|| text.join(" "))
 }
 
 /// Returns which requirements are met, and by how much at least.
@@ -59,10 +62,12 @@ fn met_sentence(answer: &Answer) -> Option<String> {
     let text = &least.text;
     let rest = match met.len() {
         1 => String::new(),
-        all => format!(" {} met; the least margin is that of", counted(all, "requirement")),
+        all => format!(" In the run {} are met; the least margin is that of", counted(all, "requirement")),
     };
     Some(if rest.is_empty() {
-        format!("{} is met with {} of {}: margin {}.", least.name, text.value, text.limit, text.margin)
+        let name = sentence(&least.name);
+        let name = name.trim_end_matches('.');
+        format!("{name} is met in the run with {} of {}: margin {}.", text.value, text.limit, text.margin)
     } else {
         format!("{} {}: {} of {}, {}.", rest.trim_start(), least.name, text.value, text.limit, text.margin)
     })

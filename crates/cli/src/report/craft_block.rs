@@ -9,14 +9,14 @@ use flexsc_core::formats::reader_units::{ReaderUnits, number};
 use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_view::drawing::spacecraft_svg;
 
-use super::html::{FigureCounter, HtmlRow, HtmlTable, cell, command, head, number_head};
+use super::html::{HtmlRow, HtmlTable, cell, command, head, number_head, picture};
 use super::study::Study;
 
 /// Largest number of frequencies in a line.
 const MOST: usize = 4;
 
 /// Returns the block.
-pub fn block(study: &Study, figures: &mut FigureCounter) -> String {
+pub fn block(study: &Study) -> String {
     let scenario = &study.scenario;
     let mut lines = body_lines(scenario);
     lines.extend(part_lines(scenario));
@@ -31,7 +31,7 @@ pub fn block(study: &Study, figures: &mut FigureCounter) -> String {
     let drawn = spacecraft_svg(scenario).map(|svg| {
         let caption =
             "Drawn from the scenario. It gives no sizes: each part is the box of its mass and inertia.";
-        figures.figure(&svg, caption).replacen("figscroll", "craft", 1)
+        picture(&svg, caption).replacen("figscroll", "craft", 1)
     });
     let body = match drawn {
         Some(figure) => format!("<div class=\"cols\">{figure}{table}</div>\n"),

@@ -120,25 +120,33 @@ impl HtmlTable {
     }
 }
 
-/// Figures of a page, which are numbered.
-#[derive(Default)]
-pub struct FigureCounter(usize);
+/// Place of the number of a figure until the page is complete.
+const NUMBER: &str = "\u{1}";
+/// Start of a figure.
+const FIGURE: &str = "<figure ";
 
-impl FigureCounter {
-    /// Returns a figure with its number and caption, which opens to the whole window at a click.
-    pub fn figure(&mut self, svg: &str, caption: &str) -> String {
-        self.0 += 1;
-        let Self(number) = self;
-        // The figure begins with its element.
-        let from = svg.find("<svg").unwrap_or(0);
-        format!(
-            "<figure class=\"figscroll\"><input class=\"zoom\" type=\"checkbox\" id=\"zoom-{number}\" \
-             aria-label=\"enlarge figure {number}\"><label class=\"z\" for=\"zoom-{number}\">{}</label>\
-             <figcaption><b>Figure {number}.</b> {}</figcaption></figure>\n",
-            svg[from..].trim_end(),
-            escaped(caption)
-        )
+/// Returns a figure with its caption, which opens to the whole window at a click. [`numbered`] gives it its number.
+pub fn picture(svg: &str, caption: &str) -> String {
+    // The figure begins with its element.
+    let from = svg.find("<svg").unwrap_or(0);
+    format!(
+        "{FIGURE}class=\"figscroll\"><input class=\"zoom\" type=\"checkbox\" id=\"zoom-{NUMBER}\" \
+         aria-label=\"enlarge figure {NUMBER}\"><label class=\"z\" for=\"zoom-{NUMBER}\">{}</label>\
+         <figcaption><b>Figure {NUMBER}.</b> {}</figcaption></figure>\n",
+        svg[from..].trim_end(),
+        escaped(caption)
+    )
+}
+
+/// Returns a page with the numbers of its figures, in their order.
+pub fn numbered(page: &str) -> String {
+    let mut pieces = page.split(FIGURE);
+    let mut all = pieces.next().unwrap_or_default().to_owned();
+    for (place, piece) in pieces.enumerate() {
+        all.push_str(FIGURE);
+        all.push_str(&piece.replace(NUMBER, &(place + 1).to_string()));
     }
+    all
 }
 
 /// Returns the command that repeats a block.
@@ -155,4 +163,31 @@ pub fn paragraph(text: &str) -> String {
 pub fn list(items: &[String]) -> String {
     let items: Vec<String> = items.iter().map(|item| format!("<li>{}</li>\n", escaped(item))).collect();
     format!("<ul>{}</ul>\n", items.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_numbered_in_their_order() {
+        let page = numbered(&format!("a{}b{}", picture("<svg/>", "one"), picture("<?xml?><svg/>", "two")));
+        assert!(page.contains("Figure 1.</b> one") && page.contains("Figure 2.</b> two"), "{page}");
+        assert!(page.contains("id=\"zoom-2\"") && !page.contains(NUMBER) && !page.contains("xml"), "{page}");
+    }
+
+    #[test]
+    fn a_table_has_rows_with_heads_and_marks() {
+        let table = HtmlTable {
+            heads: vec![head("No."), head("Name"), number_head("Value")],
+            rows: vec![HtmlRow {
+                cells: vec![cell("R1"), cell("a < b"), cell("3").hot(true)],
+                is_missed: true,
+            }],
+            is_cards: true,
+        };
+        let html = table.html();
+        let row = "<tr class=\"bad\"><th scope=\"row\">R1</th><td>a &lt; b</td><td class=\"n hot\" data-l=\"Value\">3</td></tr>";
+        assert!(html.contains(row), "{html}");
+    }
 }

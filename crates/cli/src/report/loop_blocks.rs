@@ -4,14 +4,15 @@ use std::f64::consts::PI;
 
 use flexsc_core::analysis::margins::SignalMargins;
 use flexsc_core::analysis::noise::OutputNoise;
+use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::scenario_margins::ScenarioMargins;
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
-use flexsc_core::worst_case::MarginKind;
+use flexsc_core::worst_case::{MarginKind, MarginSearch};
 
 use super::conclusions::share;
 use super::html::{
-    FigureCounter, HtmlCell, HtmlRow, HtmlTable, cell, command, escaped, head, number_head, paragraph,
+    HtmlCell, HtmlRow, HtmlTable, cell, command, escaped, head, number_head, paragraph, picture,
 };
 use super::study::Study;
 use crate::error::CliError;
@@ -20,6 +21,8 @@ use crate::{Verb, margins, spectrum, stop};
 
 /// Least gain margin (dB) and phase margin (deg) of the verdict.
 const MASK: [f64; 2] = [6.0, 30.0];
+/// Number of loops of the search for the least margin.
+const SEARCHED: usize = 100;
 
 /// What the conclusions say of the loops.
 #[derive(Default)]
@@ -67,13 +70,13 @@ struct LeastMargins {
 }
 
 /// Computes both blocks; `searches` for the least margins over the uncertain keys too.
-pub fn blocks(study: &Study, figures: &mut FigureCounter, searches: bool) -> Result<LoopBlocks, CliError> {
+pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
     let mut made = LoopBlocks::default();
     let (found, refused) = each_mode(study, "margins", |verb| match verb {
         Verb::Margins(args) => margins::results(&args.scenario.load()?, &args),
         _ => Err(CliError::Arguments(String::new())),
     })?;
-    made.margins = margins_html((study, searches), (&found, &refused), figures, &mut made.summary)?;
+    made.margins = margins_html((study, searches), (&found, &refused), &mut made.summary)?;
     if found.is_empty() {
         made.refused.push("Margins");
     }
@@ -81,7 +84,7 @@ pub fn blocks(study: &Study, figures: &mut FigureCounter, searches: bool) -> Res
         Verb::Spectrum(args) => spectrum::results(&args.scenario.load()?, &args),
         _ => Err(CliError::Arguments(String::new())),
     })?;
-    made.noise = noise_html(study, &found, &refused, figures, &mut made.summary);
+    made.noise = noise_html(study, &found, &refused, &mut made.summary);
     if found.is_empty() {
         made.refused.push("Noise");
     }
@@ -185,6 +188,11 @@ fn replaced<T>(found: &[Analysed<T>]) -> String {
     }
 }
 
+/// Returns the name of a loop without the point at which it is cut open.
+fn name_of_loop(own: &SignalMargins) -> String {
+    own.signal.trim_start_matches("command_").to_owned()
+}
+
 fn least(all: &[SignalMargins], margins: &ScenarioMargins) -> LeastMargins {
     let decibel = |factor: f64| 20.0 * factor.log10().abs();
     let fold = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
@@ -229,7 +237,6 @@ impl LeastMargins {
 fn margins_html(
     (study, searches): (&Study, bool),
     (found, refused): (&[Analysed<margins::LoopMargins>], &[Refused]),
-    figures: &mut FigureCounter,
     summary: &mut LoopSummary,
 ) -> Result<String, CliError> {
     let has_modes = !study.scenario.mode.is_empty();
@@ -241,7 +248,7 @@ fn margins_html(
             rows.push((own.mode.clone(), least(loops, all), place));
         } else {
             let each =
-                loops.iter().map(|one| (one.signal.clone(), least(std::slice::from_ref(one), all), place));
+                loops.iter().map(|one| (name_of_loop(one), least(std::slice::from_ref(one), all), place));
             rows.extend(each);
         }
     }
@@ -279,29 +286,28 @@ fn margins_html(
     let own = &found[*place];
     let drawn = own.results.figures();
     let nichols = drawn.iter().find(|(file, _)| file.contains("nichols"));
-    if let Some(svg) = nichols.and_then(|(_, figure)| figure.svg().ok()) {
+    if let Some(svg) = nichols.and_then(|(_, drawn)| drawn.svg().ok()) {
         let of = if has_modes { format!(", mode {}", own.mode) } else { String::new() };
-        html += &figures.figure(
+        html += &picture(
             &svg,
             &format!("Nichols diagram of the loops{of}, cut open at the command, with the others closed."),
         );
     }
     html += &replaced(found);
     html += &reasons(refused, "the loop");
+    html += &command(&study.command("margins", &own.options));
     if searches {
         html += &worst_paragraph(study, own)?;
     }
-    let worst = if study.scenario.uncertain.is_empty() { "" } else { " --worst" };
-    html += &command(&study.command("margins", format!("{}{worst}", own.options).trim()));
     Ok(html)
 }
 
-/// Returns the least margins over the uncertain keys in the mode of the least margins.
+/// Returns the least modulus margin over the uncertain keys in the mode of the least margins, with the command.
 fn worst_paragraph(study: &Study, own: &Analysed<margins::LoopMargins>) -> Result<String, CliError> {
     if study.scenario.uncertain.is_empty() {
         return Ok(String::new());
     }
-    let mut words = vec!["margins", "--worst"];
+    let mut words = vec!["margins"];
     if !own.mode.is_empty() {
         words.extend(["--mode", &own.mode]);
     }
@@ -312,69 +318,67 @@ fn worst_paragraph(study: &Study, own: &Analysed<margins::LoopMargins>) -> Resul
         Vec::new()
     };
     let Verb::Margins(args) = study.verb(&words, &set)? else { return Ok(String::new()) };
-    let found = match args.scenario.load().and_then(|scenario| margins::results(&scenario, &args)) {
-        Ok(found) => found,
-        Err(CliError::Interrupted(text)) => return Err(CliError::Interrupted(text)),
-        Err(_) => return Ok(String::new()),
-    };
-    let least = found.worst().iter().map(|(kind, case)| {
-        if case.is_unstable {
-            return format!("{}: unstable", kind.word());
-        }
-        match kind {
-            MarginKind::Gain => format!("gain {} dB", number(20.0 * case.value().log10())),
-            _ if kind.unit() == "rad" => format!("{} {} deg", kind.word(), number(case.value().to_degrees())),
-            _ => format!("{} {} {}", kind.word(), number(case.value()), kind.unit()).trim_end().to_owned(),
-        }
-    });
+    let search = MarginSearch { kind: MarginKind::Modulus, opened: LoopBreak::Command, most_loops: SEARCHED };
+    let found = search.run(&args.scenario.load()?, stop::stop_requested);
+    if stop::stop_requested() {
+        return Err(CliError::Interrupted(String::new()));
+    }
+    let Ok(case) = found else { return Ok(String::new()) };
     let mode = if own.mode.is_empty() { String::new() } else { format!(" in mode {}", own.mode) };
-    let least: Vec<String> = least.collect();
-    Ok(paragraph(&format!(
-        "Least margins that a search over the uncertain keys finds{mode}: {}.",
-        least.join(", ")
-    )))
+    let found = if case.is_unstable {
+        "an unstable loop".to_owned()
+    } else {
+        format!("a modulus margin of {}, nominal {}", number(case.value()), number(case.nominal()))
+    };
+    let text =
+        format!("The worst that a search of {SEARCHED} loops over the uncertain keys finds{mode}: {found}.");
+    let options = format!("--margin modulus --points {SEARCHED} {}", own.options);
+    Ok(paragraph(&text) + &command(&study.command("worst", options.trim())))
 }
 
 fn noise_html(
     study: &Study,
     found: &[Analysed<spectrum::SpectrumResults>],
     refused: &[Refused],
-    figures: &mut FigureCounter,
     summary: &mut LoopSummary,
 ) -> String {
     let has_modes = !study.scenario.mode.is_empty();
     let units = ReaderUnits::default();
+    let Some(first) = found.first() else {
+        return reasons(refused, "the loop") + &command(&study.command("spectrum", ""));
+    };
+    let source_cells = |output: &OutputNoise, sources: &[String]| -> [HtmlCell; 2] {
+        let all = largest_sources(output, sources);
+        [0, 1].map(|place| {
+            all.get(place).map_or_else(HtmlCell::default, |(name, part)| cell(&share(*part)).small(name))
+        })
+    };
+    let mut heads = vec![head(if has_modes { "Mode" } else { "Output" })];
     let mut rows = Vec::new();
-    for own in found {
-        let report = own.results.report();
-        for (place, output) in report.outputs.iter().enumerate() {
-            let first = if !has_modes {
-                cell(&output.output)
-            } else if place == 0 {
-                cell(&own.mode)
-            } else {
-                cell("")
-            };
-            let mut cells = vec![first];
-            cells.extend(has_modes.then(|| cell(&output.output)));
-            cells.push(cell(&units.quantity(output.rms, &output.unit)));
-            let sources = largest_sources(output, &report.sources);
-            for source in 0..2 {
-                cells.push(
-                    sources
-                        .get(source)
-                        .map_or_else(HtmlCell::default, |(name, part)| cell(&share(*part)).small(name)),
-                );
+    if has_modes {
+        // Each output is a column, in which all modes have one unit.
+        heads.extend(
+            first.results.report().outputs.iter().map(|output| number_head(format!("{} rms", output.output))),
+        );
+        for own in found {
+            let report = own.results.report();
+            let mut cells = vec![cell(&own.mode)];
+            cells.extend(report.outputs.iter().map(|output| cell(&units.quantity(output.rms, &output.unit))));
+            if let Some(output) = report.outputs.iter().max_by(|a, b| a.rms.total_cmp(&b.rms)) {
+                cells.extend(source_cells(output, &report.sources));
             }
             rows.push(HtmlRow { cells, is_missed: false });
         }
+    } else {
+        heads.push(number_head("Rms"));
+        let report = first.results.report();
+        for output in &report.outputs {
+            let mut cells = vec![cell(&output.output), cell(&units.quantity(output.rms, &output.unit))];
+            cells.extend(source_cells(output, &report.sources));
+            rows.push(HtmlRow { cells, is_missed: false });
+        }
     }
-    if rows.is_empty() {
-        return reasons(refused, "the loop") + &command(&study.command("spectrum", ""));
-    }
-    let mut heads = vec![head(if has_modes { "Mode" } else { "Output" })];
-    heads.extend(has_modes.then(|| head("Output")));
-    heads.extend([number_head("Rms"), number_head("Largest source, of the variance"), number_head("Second")]);
+    heads.extend([number_head("Largest source, of the variance"), number_head("Second")]);
     let mut html = HtmlTable { heads, rows, is_cards: false }.html();
     // The mode with the least noise is that of precise pointing.
     let angle = |own: &&Analysed<spectrum::SpectrumResults>| {
@@ -398,10 +402,10 @@ fn noise_html(
                 share(part)
             ));
         }
-        if let Some(svg) = own.results.figures().first().and_then(|(_, figure)| figure.svg().ok()) {
+        if let Some(svg) = own.results.figures().first().and_then(|(_, drawn)| drawn.svg().ok()) {
             let mode = if has_modes { format!(", mode {}", own.mode) } else { String::new() };
-            html += &figures
-                .figure(&svg, &format!("Noise by frequency{mode}: density, and rms up to each frequency."));
+            html +=
+                &picture(&svg, &format!("Noise by frequency{mode}: density, and rms up to each frequency."));
         }
         html += &replaced(found);
         html += &reasons(refused, "the loop");

@@ -22,7 +22,6 @@ use flexsc_core::answer::RunVerdict;
 use crate::error::CliError;
 use crate::human::Units;
 use crate::{bound, files, out, say, stop};
-use html::FigureCounter;
 use page::Review;
 use study::{Study, StudyCampaign};
 
@@ -87,11 +86,9 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
 
 /// Computes the page of a study with a campaign of some runs; 0 leaves it out.
 fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
-    let mut figures = FigureCounter::default();
     let run = study.run()?;
-    let craft = craft_block::block(study, &mut figures);
     // A page that is watched is to be there soon.
-    let loops = loop_blocks::blocks(study, &mut figures, script.is_empty())?;
+    let loops = loop_blocks::blocks(study, script.is_empty())?;
     let bounds = if study.scenario.bound.is_empty() {
         None
     } else {
@@ -111,6 +108,6 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
         unmet.push(format!("{refuted} of the claims not proved"));
     }
     let refused = loops.refused.clone();
-    let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, craft, script };
-    Ok(FinishedPage { html: page::html(&review, &mut figures), refused, unmet })
+    let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, script };
+    Ok(FinishedPage { html: page::html(&review), refused, unmet })
 }

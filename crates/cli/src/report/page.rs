@@ -6,10 +6,12 @@ use flexsc_core::analysis::bound::{OutputBound, Verdict};
 use flexsc_core::answer::EventKind;
 use flexsc_core::formats::reader_units::{ReaderUnits, time};
 
-use super::html::{FigureCounter, HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head};
+use super::html::{HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head, numbered, picture};
 use super::loop_blocks::LoopBlocks;
 use super::study::{Study, StudyCampaign, StudyRun};
-use super::{assumptions, campaign_block, conclusions, mode_block, requirement_block, time_line};
+use super::{
+    assumptions, campaign_block, conclusions, craft_block, mode_block, requirement_block, time_line,
+};
 use crate::bound;
 use crate::results::Results;
 
@@ -36,14 +38,12 @@ pub struct Review<'a> {
     pub campaign: Option<&'a StudyCampaign>,
     pub loops: LoopBlocks,
     pub bounds: Option<bound::OutputBounds>,
-    /// Block of the spacecraft, whose figure is the first.
-    pub craft: String,
     /// Script that reloads the page; empty for one that stays as it is.
     pub script: String,
 }
 
 /// Returns the page.
-pub fn html(review: &Review<'_>, figures: &mut FigureCounter) -> String {
+pub fn html(review: &Review<'_>) -> String {
     let Review { study, run, campaign, .. } = review;
     let answer = &run.answer;
     let mut page = opening(study, &review.script);
@@ -57,8 +57,8 @@ pub fn html(review: &Review<'_>, figures: &mut FigureCounter) -> String {
         let table = requirement_block::table(answer, campaign_answer);
         add("requirements", "Requirements", table + &command(&study.command("simulate", "")));
     }
-    add("spacecraft", "Spacecraft", review.craft.clone());
-    add("time", "Time line", time_block(review, figures));
+    add("spacecraft", "Spacecraft", craft_block::block(study));
+    add("time", "Time line", time_block(review));
     if answer.by_mode.is_empty() {
         add("run", "The run", mode_block::lines(answer) + &command(&study.command("simulate", "--all")));
     } else {
@@ -69,18 +69,18 @@ pub fn html(review: &Review<'_>, figures: &mut FigureCounter) -> String {
     add("margins", &format!("Margins{of}"), review.loops.margins.clone());
     add("noise", &format!("Noise{of}"), review.loops.noise.clone());
     if let Some(bounds) = &review.bounds {
-        add("ranges", "Guaranteed ranges", ranges(study, bounds, figures));
+        add("ranges", "Guaranteed ranges", ranges(study, bounds));
     }
     if let Some(campaign) = campaign {
-        if let Some(budget) = campaign_block::budget(study, campaign, figures) {
+        if let Some(budget) = campaign_block::budget(study, campaign) {
             add("budget", "Pointing budget", budget);
         }
         let title = format!("Campaign of {} runs", campaign.runs);
-        add("campaign", &title, campaign_block::block(study, campaign, figures));
+        add("campaign", &title, campaign_block::block(study, campaign));
     }
     add("assumptions", "Assumptions and what is left out", list(&assumptions::sentences(study)));
     let shown: usize = blocks.iter().map(|block| block.html.len()).sum();
-    let more = further_figures(review, figures, MOST_BYTES.saturating_sub(shown));
+    let more = further_figures(review, MOST_BYTES.saturating_sub(shown));
     page += &navigation(&blocks);
     for (place, block) in blocks.iter().enumerate() {
         let _ = writeln!(
@@ -93,7 +93,7 @@ pub fn html(review: &Review<'_>, figures: &mut FigureCounter) -> String {
         );
     }
     page += &more;
-    page + &scenario_text(study, blocks.len() + 1)
+    numbered(&(page + &scenario_text(study, blocks.len() + 1)))
 }
 
 fn opening(study: &Study, script: &str) -> String {
@@ -137,7 +137,9 @@ fn title_block(study: &Study, campaign: Option<&StudyCampaign>) -> String {
     let own = &scenario.document;
     let issue: Vec<&str> =
         [&own.issue, &own.date].into_iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
-    let epoch = scenario.epoch.map_or_else(String::new, |epoch| format!(" from {epoch}"));
+    let epoch = scenario.epoch.map_or_else(String::new, |epoch| {
+        format!(" from {}", epoch.to_string().replace('T', " ").replace('Z', " UTC"))
+    });
     let cells = [
         ("Project", own.project.clone()),
         ("Author", own.author.clone()),
@@ -159,7 +161,7 @@ fn navigation(blocks: &[PageBlock]) -> String {
 }
 
 /// Returns the time line with the figures of the run.
-fn time_block(review: &Review<'_>, figures: &mut FigureCounter) -> String {
+fn time_block(review: &Review<'_>) -> String {
     let scenario = &review.study.scenario;
     let asks = |kind: EventKind| match kind {
         EventKind::Saturation => !scenario.actuator_limits().is_empty(),
@@ -168,14 +170,13 @@ fn time_block(review: &Review<'_>, figures: &mut FigureCounter) -> String {
     };
     let answer = &review.run.answer;
     let mut html = String::new();
-    if scenario.axis_count() == 3 {
-        let caption = "Modes of operation and events. Point at a bar for its times.";
-        html += &figures.figure(&time_line::svg(answer, asks), caption);
+    if let Some(svg) = time_line::svg(answer, asks) {
+        html += &picture(&svg, "Modes of operation and events. Point at a bar for its times.");
     }
     let kinds = review.run.kinds();
     for kind in shown(&kinds) {
         if let Some(svg) = review.run.drawn(kind) {
-            html += &figures.figure(&svg, &format!("{}.", sentence_of(kind)));
+            html += &picture(&svg, &format!("{}.", sentence_of(kind)));
         }
     }
     let name = &scenario.name;
@@ -204,14 +205,14 @@ fn sentence_of(kind: &str) -> String {
 }
 
 /// Returns the other figures of the run, folded, up to a number of bytes.
-fn further_figures(review: &Review<'_>, figures: &mut FigureCounter, mut room: usize) -> String {
+fn further_figures(review: &Review<'_>, mut room: usize) -> String {
     let kinds = review.run.kinds();
     let shown = shown(&kinds);
     let mut html = String::new();
     for kind in kinds.iter().filter(|kind| !shown.contains(kind)) {
         let Some(svg) = review.run.drawn(kind).filter(|svg| svg.len() <= room) else { continue };
         room -= svg.len();
-        html += &figures.figure(&svg, &format!("{}.", sentence_of(kind)));
+        html += &picture(&svg, &format!("{}.", sentence_of(kind)));
     }
     if html.is_empty() {
         return html;
@@ -219,7 +220,7 @@ fn further_figures(review: &Review<'_>, figures: &mut FigureCounter, mut room: u
     format!("<details class=\"further\"><summary>Further figures of the run</summary>\n{html}</details>\n")
 }
 
-fn ranges(study: &Study, bounds: &bound::OutputBounds, figures: &mut FigureCounter) -> String {
+fn ranges(study: &Study, bounds: &bound::OutputBounds) -> String {
     let units = ReaderUnits::default();
     let row = |own: &OutputBound| {
         let values: Vec<f64> = own.range.iter().chain(own.limits.iter().flatten()).copied().collect();
@@ -250,9 +251,9 @@ fn ranges(study: &Study, bounds: &bound::OutputBounds, figures: &mut FigureCount
     ];
     let mut html =
         HtmlTable { heads, rows: bounds.bounds().iter().map(row).collect(), is_cards: false }.html();
-    for (_, figure) in bounds.figures() {
-        if let Ok(svg) = figure.svg() {
-            html += &figures.figure(
+    for (_, drawn) in bounds.figures() {
+        if let Ok(svg) = drawn.svg() {
+            html += &picture(
                 &svg,
                 "Guaranteed ranges over sets of initial states, inputs, frequencies and damping ratios.",
             );

@@ -8,15 +8,17 @@ use super::html::{HtmlCell, HtmlRow, HtmlTable, cell, head, number_head};
 /// Returns the table of the requirements, in the order of the scenario.
 pub fn table(answer: &Answer, campaign: Option<&CampaignAnswer>) -> String {
     let mut heads = vec![head("No."), head("Requirement"), number_head("Value"), number_head("Limit")];
-    heads.extend([number_head("Margin"), head("Verdict"), head("Worst instant")]);
+    heads.extend([number_head("Margin"), head("Verdict")]);
+    let has_instants = answer.requirements.iter().any(|own| own.largest.is_some());
+    heads.extend(has_instants.then(|| head("Worst instant")));
     heads.extend(campaign.map(|_| number_head("Campaign: runs that meet it")));
     let mut all: Vec<&RequirementAnswer> = answer.requirements.iter().collect();
     all.sort_by_key(|own| own.id[1..].parse::<usize>().unwrap_or(0));
-    let rows = all.into_iter().map(|own| row(own, campaign)).collect();
+    let rows = all.into_iter().map(|own| row(own, has_instants, campaign)).collect();
     HtmlTable { heads, rows, is_cards: true }.html()
 }
 
-fn row(own: &RequirementAnswer, campaign: Option<&CampaignAnswer>) -> HtmlRow {
+fn row(own: &RequirementAnswer, has_instants: bool, campaign: Option<&CampaignAnswer>) -> HtmlRow {
     let text = &own.text;
     let worst = match &own.largest {
         Some(largest) => {
@@ -33,8 +35,8 @@ fn row(own: &RequirementAnswer, campaign: Option<&CampaignAnswer>) -> HtmlRow {
         cell(&text.limit),
         cell(&text.margin),
         HtmlCell::verdict(own.met),
-        worst,
     ];
+    cells.extend(has_instants.then_some(worst));
     let mut is_missed = !own.met;
     if let Some(campaign) = campaign {
         let runs = campaign.requirements.iter().find(|other| other.id == own.id);

@@ -30,8 +30,9 @@ const STRIPS: [(EventKind, &str, &str, &str); 5] = [
     (EventKind::Failure, "failure", "#b35c00", "none"),
 ];
 
-/// Returns the time line as SVG; `asks` says for which kinds a strip without an event applies.
-pub fn svg(answer: &Answer, asks: impl Fn(EventKind) -> bool) -> String {
+/// Returns the time line as SVG; `asks` says for which kinds a strip without an event applies. `None` if there is nothing to
+/// show.
+pub fn svg(answer: &Answer, asks: impl Fn(EventKind) -> bool) -> Option<String> {
     let own = |kind: EventKind| -> Vec<&RunEvent> {
         answer.events.iter().filter(|event| event.kind == kind).collect()
     };
@@ -77,6 +78,9 @@ pub fn svg(answer: &Answer, asks: impl Fn(EventKind) -> bool) -> String {
         }
         y += STEP;
     }
+    if y == TOP {
+        return None;
+    }
     let axis = y - STEP + HEIGHT + 8.0;
     let _ = write!(body, "<path d=\"M{LEFT},{axis} H{}\" stroke=\"#6b7785\"/>", WIDTH - RIGHT);
     for tick in ticks(end) {
@@ -90,11 +94,11 @@ pub fn svg(answer: &Answer, asks: impl Fn(EventKind) -> bool) -> String {
             if is_last { time(tick) } else { number(tick) }
         );
     }
-    format!(
+    Some(format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {:.0}\" class=\"timeline\" role=\"img\" \
          aria-label=\"modes and events over time\">{body}</svg>",
         axis + 24.0
-    )
+    ))
 }
 
 fn label(body: &mut String, y: f64, name: &str) {

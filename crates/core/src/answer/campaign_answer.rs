@@ -15,6 +15,8 @@ use crate::statistics::{quantile, wilson};
 
 /// Confidence of the intervals of shares.
 const CONFIDENCE: f64 = 0.95;
+/// Distance from 0 or 1 by which rounding may move the end of an interval.
+const ROUNDING: f64 = 1e-12;
 
 /// Answer of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -165,7 +167,9 @@ impl MetShare {
 
     /// Returns the interval as text, with digits that keep it from 0 and 100 %.
     fn interval_text(&self) -> String {
-        let [low, high] = self.share_interval.map(percent);
+        // Rounding may leave an end that is 0 or 1 just off it.
+        let whole = |end: f64| if (end - end.round()).abs() < ROUNDING { end.round() } else { end };
+        let [low, high] = self.share_interval.map(|end| percent(whole(end)));
         format!("{} to {high}", low.trim_end_matches(" %"))
     }
 }
@@ -344,5 +348,18 @@ impl CampaignRequirementText {
             note: verdict.note(),
             ..self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_end_at_whole_numbers_only_where_they_do() {
+        // scipy.stats.binomtest(met, runs).proportion_ci(0.95, "wilson"): 0.7225 to 1, and 0.9722 to 0.9991.
+        assert_eq!(MetShare::new(10, 10).interval_text(), "72 to 100 %");
+        assert_eq!(MetShare::new(199, 200).interval_text(), "97 to 99.9 %");
+        assert_eq!(MetShare::new(0, 10).interval_text(), "0 to 28 %");
     }
 }

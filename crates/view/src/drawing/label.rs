@@ -10,9 +10,9 @@ use super::{SIZE, escaped};
 /// Distance of labels, and of the upper and the lower ones from the edges.
 const STEP: f64 = 46.0;
 const TOP: f64 = 22.0;
-const BOTTOM: [f64; 2] = [130.0, 72.0];
+const BOTTOM: [f64; 2] = [140.0, 72.0];
 /// Widths of a character of the first and the second line.
-const WIDTHS: [f64; 2] = [8.0, 6.6];
+const WIDTHS: [f64; 2] = [8.6, 7.2];
 
 /// Text with the point that it names.
 #[derive(Clone, Debug)]
@@ -51,13 +51,13 @@ pub fn drawn(labels: &[Label], view: &Projection) -> String {
 fn add(svg: &mut String, label: &Label, (right, y): (bool, f64), [px, py]: [f64; 2]) {
     let (x, anchor, side) = if right { (SIZE[0] - 8.0, "end", -1.0) } else { (8.0, "start", 1.0) };
     let widths = [0, 1].map(|line| label.lines[line].chars().count() as f64 * WIDTHS[line]);
-    let from = x + side * (widths[0].max(widths[1]) + 4.0);
+    let (from, height) = (x + side * (widths[0].max(widths[1]) + 5.0), y + 4.0);
     let [first, second] = [0, 1].map(|line| escaped(&label.lines[line]));
     let text = format!("text x=\"{x}\" text-anchor=\"{anchor}\"");
     // Writing to a string cannot fail.
     let _ = writeln!(
         svg,
-        "<path d=\"M{px:.1},{py:.1} L{from:.1},{y:.1}\" stroke=\"#6b7785\" stroke-width=\".9\" fill=\"none\"/>\
+        "<path d=\"M{px:.1},{py:.1} L{from:.1},{height:.1}\" stroke=\"#6b7785\" stroke-width=\".9\" fill=\"none\"/>\
          <circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"2.4\" fill=\"#1b2733\"/>\
          <{text} y=\"{y:.1}\" font-size=\"14.5\" font-weight=\"bold\" fill=\"#1b2733\">{first}</text>\
          <{text} y=\"{:.1}\" font-size=\"13\" fill=\"#4a5663\">{second}</text>",

@@ -24,8 +24,8 @@ use projection::Projection;
 use solid::Solid;
 
 /// Size of the picture, and its margins.
-const SIZE: [f64; 2] = [640.0, 470.0];
-const MARGINS: [f64; 2] = [90.0, 95.0];
+const SIZE: [f64; 2] = [640.0, 540.0];
+const MARGINS: [f64; 2] = [70.0, 135.0];
 /// Half angle of the cone of a boresight without one (rad), largest one that is drawn as a cone, and number of its sides.
 const CONE: f64 = 0.35;
 const WIDEST: f64 = 1.2;
@@ -119,7 +119,11 @@ fn named(scenario: &Scenario, own: &Appendage, solid: &Solid) -> Label {
     } else {
         String::new()
     };
-    let size = format!("{} × {}{mode}", number(sides[0]), length(sides[1]));
+    let size = if own.inertia_tensor() == Matrix3::zeros() {
+        format!("point mass{mode}")
+    } else {
+        format!("{} × {}{mode}", number(sides[0]), length(sides[1]))
+    };
     Label::new(solid.far_end(&vector(&own.at)), format!("{} {}", own.name, mass(own.mass.get())), size)
 }
 
