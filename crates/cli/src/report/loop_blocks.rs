@@ -24,12 +24,12 @@ const MASK: [f64; 2] = [6.0, 30.0];
 /// Number of loops of the search for the least margin.
 const SEARCHED: usize = 100;
 
-/// What the conclusions say of the loops.
+/// Sentences of the conclusions on the loops.
 #[derive(Default)]
 pub struct LoopSummary {
     /// Least margins of all modes.
     pub margins: Option<String>,
-    /// What limits the accuracy.
+    /// Largest source of noise.
     pub accuracy: Option<String>,
 }
 

@@ -54,7 +54,7 @@ struct FinishedPage {
     html: String,
     /// Titles of blocks without numbers.
     refused: Vec<&'static str>,
-    /// What is not met or not proved.
+    /// Requirements that are not met, and claims that are not proved.
     unmet: Vec<String>,
 }
 

@@ -53,7 +53,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
         files::write(&args.out, page.as_bytes(), true)?;
         files::write(&version_file, format!("flexscVersion({version})\n").as_bytes(), true)?;
     }
-    // Nobody tells the page of later versions. What cannot be removed stays.
+    // There are no later versions. A file that cannot be removed stays.
     let _ = fs::remove_file(&version_file);
     Ok(())
 }
