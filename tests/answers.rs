@@ -158,3 +158,110 @@ fn a_strict_judge_accepts_no_lost_filter() {
         .exits(2)
         .says(&["--strict judges the warnings of single runs"]);
 }
+
+/// Returns the objects that a campaign prints with `--json`: those of the runs, and the answer.
+fn campaign(dir: &Dir, line: &str, code: i32) -> (Vec<Json>, Json) {
+    let printed = dir.run(line).exits(code).out;
+    let mut lines: Vec<Json> =
+        printed.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    let last = lines.pop().expect("an answer");
+    (lines, last["answer"].clone())
+}
+
+/// The answer of a campaign counts and orders the values of its runs, and names the key that drives the requirement.
+#[test]
+fn a_campaign_answers_by_the_values_of_its_runs() {
+    let dir = Dir::with(&["half-turn"]);
+    let (runs, answer) = campaign(&dir, "simulate half-turn.toml --runs 40 --json", 3);
+    let number = |value: &Json| value.as_f64().expect("a number");
+    let values: Vec<f64> = runs.iter().map(|run| number(&run["requirements"][0]["value"])).collect();
+    let own = &answer["requirements"][0];
+    let limit = number(&own["limit"]);
+    let met = values.iter().filter(|value| **value <= limit).count();
+    assert_eq!((answer["runs"].as_u64(), answer["failed"].as_u64()), (Some(40), Some(0)));
+    assert_eq!(own["runs_met"].as_u64(), Some(met as u64));
+    assert!((number(&own["share"]) - met as f64 / 40.0).abs() < 1e-15 && (2..38).contains(&met), "{met}");
+    let mut sorted = values.clone();
+    sorted.sort_by(f64::total_cmp);
+    // numpy.quantile: 40 values have the median between the 20th and the 21st, and 95 % at 0.05 from the 38th to the 39th.
+    let [median, p95] = [f64::midpoint(sorted[19], sorted[20]), 0.95 * sorted[37] + 0.05 * sorted[38]];
+    assert!((number(&own["median"]) / median - 1.0).abs() < 1e-12, "{own}");
+    assert!((number(&own["p95"]) / p95 - 1.0).abs() < 1e-12, "{own}");
+    let worst = own["worst"]["run"].as_u64().expect("a run") as usize;
+    assert_eq!((values[worst], number(&own["worst"]["value"])), (sorted[39], sorted[39]));
+    assert!((number(&own["margin"]["worst"]) - (limit - sorted[39]) / limit).abs() < 1e-12);
+    // Runs are driven by the inertia about the axis of the turn: those that miss it are farther from the design.
+    let driven = &own["driven_by"][0];
+    assert_eq!(driven["key"], "spacecraft.inertia[2][2]");
+    let sizes: Vec<f64> = runs
+        .iter()
+        .map(|run| (number(&run["drawn"]["spacecraft.inertia[2][2]"]) / 600.0 - 1.0).abs())
+        .collect();
+    let nearest_missed =
+        sizes.iter().zip(&values).filter(|(_, value)| **value > limit).map(|(size, _)| *size);
+    let nearest_missed = nearest_missed.fold(f64::INFINITY, f64::min);
+    let met_within = sizes.iter().copied().filter(|size| *size < nearest_missed).fold(0.0, f64::max);
+    assert!((number(&driven["met_within"]) - met_within).abs() < 1e-12, "{driven}");
+    // The screen says the same, in the unit of the limit.
+    let screen = dir.run("simulate half-turn.toml --runs 40").exits(3).err;
+    let flat = screen.split_whitespace().collect::<Vec<_>>().join(" ");
+    for text in [&answer["verdict_text"], &own["text"]["worst"], &own["text"]["median"], &driven["text"]] {
+        let text = text.as_str().expect("a text").split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(flat.contains(&text), "{text}: {screen}");
+    }
+    assert!(
+        screen.lines().count() <= SCREEN[0] && screen.lines().all(|line| line.chars().count() <= SCREEN[1])
+    );
+}
+
+/// The answer of a campaign is the same from its directory, by any number of threads.
+#[test]
+fn a_campaign_answers_alike_from_its_directory() {
+    let dir = Dir::with(&["half-turn"]);
+    let (_, memory) = campaign(&dir, "simulate half-turn.toml --runs 10 --json --jobs 1", 3);
+    let (_, mut parts) = campaign(&dir, "simulate half-turn.toml --runs 10 --json --jobs 4 -o mc", 3);
+    let repeat = parts.as_object_mut().expect("an object").remove("repeat").expect("a command");
+    let run = memory["requirements"][0]["worst"]["run"].as_u64().expect("a run");
+    assert_eq!(repeat, format!("flexsc simulate --from mc --row {run} -o run-{run}"));
+    assert_eq!(memory, parts);
+}
+
+/// Eclipses and actuators at limits are events, with their times.
+#[test]
+fn events_have_eclipses_and_limits() {
+    let dir = Dir::with(&["cubesat-day", "safe-mode"]);
+    let events = |line: &str, kind: &str| -> Vec<Json> {
+        let answer = dir.run(line).json()["answer"].clone();
+        let all = answer["events"].as_array().into_iter().flatten();
+        all.filter(|event| event["kind"] == kind).cloned().collect()
+    };
+    let line =
+        "simulate cubesat-day.toml --log full --json --set duration=8000 --set log.period=1 -o day.mcap";
+    let found = events(line, "eclipse");
+    // The light of the rows of each second.
+    let rows = dir.run("export day.mcap --topic /orbit").exits(0).out;
+    let mut lines = rows.lines();
+    let heads: Vec<&str> = lines.next().expect("heads").split(',').collect();
+    let column = |name: &str| heads.iter().position(|head| *head == name).expect("a column");
+    let (time, light) = (column("time_s"), column("light"));
+    let rows: Vec<(f64, bool)> = lines
+        .map(|line| line.split(',').collect::<Vec<_>>())
+        .map(|cells| (cells[time].parse().expect("a time"), cells[light].contains("shadow")))
+        .collect();
+    let changes: Vec<f64> = rows
+        .windows(2)
+        .filter(|pair| pair[0].1 != pair[1].1)
+        .map(|pair| f64::midpoint(pair[0].0, pair[1].0))
+        .collect();
+    let ends: Vec<f64> = found
+        .iter()
+        .flat_map(|event| [event["from_s"].as_f64(), event["to_s"].as_f64()])
+        .map(|end| end.expect("a time"))
+        .filter(|end| *end < 8000.0)
+        .collect();
+    assert_eq!(ends.len(), changes.len());
+    assert!(
+        ends.len() == 3 && ends.iter().zip(&changes).all(|(end, change)| (end - change).abs() <= 0.51),
+        "{ends:?} {changes:?}"
+    );
+}

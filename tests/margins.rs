@@ -419,7 +419,8 @@ fn a_delay_of_wheels_is_taken_from_the_delay_that_is_left() {
     let (before, rest) = text.split_once("[actuator.wheel]").expect("a wheel");
     let (_, after) = rest.split_once("[[disturbance]]").expect("a disturbance");
     let left = |delay: f64| {
-        let wheels = format!("[actuator.wheels]\narrangement = \"orthogonal\"\ninertia = 0.1\ndelay = {delay}\n");
+        let wheels =
+            format!("[actuator.wheels]\narrangement = \"orthogonal\"\ninertia = 0.1\ndelay = {delay}\n");
         dir.write("late.toml", &format!("{before}{wheels}[[disturbance]]{after}"));
         let json: serde_json::Value =
             serde_json::from_str(&dir.run("margins late.toml --json").exits(0).out).expect("an object");

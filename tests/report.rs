@@ -1,59 +1,145 @@
-//! `flexsc report`: a page that stands alone, has the output of the commands it names, and is the same each time.
+//! `flexsc report`: a page that stands alone, says what the answers say, names the commands, and is the same each time.
+
+use std::time::{Duration, Instant};
+
+use serde_json::Value as Json;
 
 use crate::util::Dir;
 
+/// Returns the texts of an answer's requirements.
+fn texts(answer: &Json) -> Vec<String> {
+    let requirements = answer["requirements"].as_array().into_iter().flatten();
+    let own =
+        requirements.flat_map(|own| own["text"].as_object().into_iter().flat_map(serde_json::Map::values));
+    own.filter_map(Json::as_str).map(str::to_owned).collect()
+}
+
+/// Returns a page without the marks of HTML in texts.
+fn plain(page: &str) -> String {
+    page.replace("&quot;", "\"").replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")
+}
+
 #[test]
 fn a_page_for_a_review() {
-    let dir = Dir::with(&["attitude-hold"]);
-    let line = "report attitude-hold.toml --runs 3 --set duration=20";
-    dir.run(&format!("{line} -o study.html"))
-        .exits(0)
-        .says(&["flexsc margins attitude-hold.toml", "study.html"]);
-    let page = dir.text("study.html");
-    for title in ["Spacecraft", "Margins at the command", "Margins at the measurement", "One run", "Campaign"]
-    {
-        assert!(page.contains(&format!("<h2>{title}</h2>")), "{title}");
+    let dir = Dir::with(&["half-turn"]);
+    let line = "report half-turn.toml --runs 40";
+    dir.run(&format!("{line} -o study.html")).exits(3).says(&["study.html", "MISSED", "of 40 runs meet"]);
+    let page = plain(&dir.text("study.html"));
+    for title in [
+        "Requirements",
+        "Spacecraft",
+        "Time line",
+        "The run",
+        "Margins",
+        "Noise",
+        "Campaign of 40 runs",
+        "Assumptions and what is left out",
+        "Scenario",
+    ] {
+        assert!(page.contains(&format!("</span>{title}</h2>")), "{title}");
     }
-    // Each block is what its command prints.
-    let margins = dir.run("margins attitude-hold.toml --set duration=20").exits(0).err;
-    for line in margins.lines().filter(|line| !line.is_empty()) {
-        assert!(page.contains(&line.replace('&', "&amp;")), "{line}");
+    // The strings of the answers, and no numbers of its own.
+    let run = dir.run("simulate half-turn.toml --log none --json").exits(0).json()["answer"].clone();
+    let lines = dir.run("simulate half-turn.toml --runs 40 --json").exits(3).out;
+    let last: Json = serde_json::from_str(lines.lines().last().expect("a line")).expect("an object");
+    let campaign = &last["answer"];
+    for text in texts(&run).iter().chain(&texts(campaign)) {
+        assert!(page.contains(text), "{text}");
     }
+    for line in run["lines"].as_array().expect("lines") {
+        let text = line["text"].as_str().expect("a text");
+        assert!(page.contains(text), "{text}");
+    }
+    assert!(page.contains(campaign["verdict_text"].as_str().expect("words").trim_start_matches("MISSED: ")));
+    assert!(page.contains(campaign["requirements"][0]["driven_by"][0]["text"].as_str().expect("words")));
+    // The scenario as it is, beside the runs.
+    let nominal = run["requirements"][0]["text"]["value"].as_str().expect("a text");
+    let nominal = nominal.split(' ').next().expect("a number");
+    assert!(page.contains(&format!("<td class=\"n\" data-l=\"Nominal\">{nominal}</td>")), "{nominal}");
     for command in [
-        "flexsc modes attitude-hold.toml --set 'duration=20'",
-        "flexsc margins attitude-hold.toml --set 'duration=20' -o margins",
-        "flexsc simulate attitude-hold.toml --set 'duration=20' -o run.mcap",
-        "flexsc simulate attitude-hold.toml --set 'duration=20' --runs 3 -o campaign",
+        "flexsc simulate half-turn.toml",
+        "flexsc modes half-turn.toml",
+        "flexsc margins half-turn.toml",
+        "flexsc worst half-turn.toml --margin modulus --points 100",
+        "flexsc simulate half-turn.toml --runs 40 -o campaign",
     ] {
         assert!(page.contains(&format!("<code>{command}</code>")), "{command}");
     }
-    assert!(page.matches("<svg").count() >= 8, "{}", page.matches("<svg").count());
-    // Long lines wrap on the screen too.
-    let (screen, _) = page.split_once("@media print").expect("a style for print");
-    assert!(screen.contains("white-space: pre-wrap"));
+    assert!(page.matches("<table").count() >= 5 && page.matches("<svg").count() >= 4);
+    for number in 1..=page.matches("<figure ").count() {
+        assert!(page.contains(&format!("<b>Figure {number}.</b>")), "{number}");
+    }
     // The page refers to no other file, and names nothing of the computer.
-    for outside in ["http://", "https://", "<script", "<link", "<img", "/tmp", " ms"] {
+    for outside in ["http://", "https://", "<script", "<link", "<img", "/tmp"] {
         let found = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!found.contains(outside), "{outside}");
     }
-    dir.run(&format!("{line} -o again.html")).exits(0);
-    assert_eq!(page, dir.text("again.html"));
+    assert!(page.contains("@page{size:A4") && page.contains("@media(max-width:700px)"));
+    dir.run(&format!("{line} -o again.html")).exits(3);
+    assert_eq!(dir.text("study.html"), dir.text("again.html"));
     dir.run(&format!("{line} -o study.html")).exits(2).says(&["already exists", "--force"]);
+}
+
+/// The margins of each loop are those of `flexsc margins`.
+#[test]
+fn margins_are_those_of_the_command() {
+    let dir = Dir::with(&["attitude-hold"]);
+    let set = "--set duration=20";
+    dir.run(&format!("report attitude-hold.toml --runs 0 {set} -o page.html")).exits(0);
+    let page = dir.text("page.html");
+    let found = dir.run(&format!("margins attitude-hold.toml {set} --json")).exits(0).json();
+    let loops = found["loops"].as_array().expect("loops");
+    assert_eq!(loops.len(), 3);
+    for own in loops {
+        let number = |name: &str| own[name].as_f64();
+        let modulus = own["modulus"]["margin"].as_f64().expect("a number");
+        let phase = number("phase_rad").expect("a phase").abs().to_degrees();
+        for value in [modulus, phase] {
+            let digits = if value < 1.0 { format!("{value:.3}") } else { format!("{value:.1}") };
+            assert!(page.contains(&format!("<td class=\"n\">{digits}</td>")), "{digits}");
+        }
+    }
+    assert!(
+        page.contains("--set 'duration=20'") && page.contains("Keys set on the command line: duration=20.")
+    );
+}
+
+#[test]
+fn the_title_block_has_what_is_given() {
+    let dir = Dir::with(&["half-turn"]);
+    let text = dir.text("half-turn.toml");
+    let (before, after) = text.split_once("\n[spacecraft]").expect("a table");
+    let block =
+        "[document]\ntitle = \"Turn <1>\"\nauthor = \"A. Engineer\"\nissue = \"2\"\ndate = \"May 2027\"\n";
+    dir.write("half-turn.toml", format!("{before}\n{block}\n[spacecraft]{after}"));
+    dir.run("report half-turn.toml --runs 0 -o page.html").exits(0);
+    let page = dir.text("page.html");
+    for piece in [
+        "<h1>Turn &lt;1&gt;</h1>",
+        "<b>Author</b>A. Engineer</div>",
+        "<b>Issue</b>2, May 2027</div>",
+        "content:\"half-turn, issue 2\"",
+    ] {
+        assert!(page.contains(piece), "{piece}");
+    }
+    assert!(!page.contains("<b>Project</b>") && !page.contains("<b>Campaign</b>"));
+    dir.run("simulate half-turn.toml --log none --set document.revision=3").exits(2).says(&["unknown key"]);
 }
 
 #[test]
 fn what_has_no_numbers_has_a_reason() {
     let dir = Dir::with(&["relay-fixed"]);
     let line = "report relay-fixed.toml -o page.html --runs 0 --set duration=2000";
-    dir.run(line).exits(0).says(&["without numbers", "Margins at the command"]);
+    dir.run(line).exits(0).says(&["without numbers", "Margins"]);
     let page = dir.text("page.html");
     assert!(page.contains("class=\"refused\"") && page.contains("is not linear"));
-    assert!(!page.contains("<h2>Campaign</h2>"));
+    assert!(!page.contains("</span>Campaign"));
     for (arguments, told) in [
         ("-o page.pdf", "cannot be written as .pdf"),
         ("-o page", "must end in"),
         ("-o other.html --runs 1000000", "--runs must be at most 100000"),
         ("-o other.html --set law.relay.k=1", "unknown key"),
+        ("-o other.html --runs 3 --watch", "--watch"),
         ("", "--out"),
     ] {
         dir.run(&format!("report relay-fixed.toml {arguments}")).exits(2).says(&[told]);
@@ -61,57 +147,38 @@ fn what_has_no_numbers_has_a_reason() {
     assert!(!dir.path("other.html").exists());
 }
 
-/// Returns the processes whose parent is this one.
-#[cfg(target_os = "linux")]
-fn children(parent: u32) -> Vec<u32> {
-    let all = std::fs::read_dir("/proc").expect("there").flatten();
-    let numbers = all.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-    let is_child = |number: &u32| {
-        let stat = std::fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
-        let after_name = stat.rsplit(')').next().unwrap_or_default();
-        after_name.split_whitespace().nth(1) == Some(&parent.to_string())
-    };
-    numbers.filter(is_child).collect()
-}
-
-#[cfg(target_os = "linux")]
+/// While it is watched, the page follows the file, and shows its errors above what was good last.
+#[cfg(unix)]
 #[test]
-fn a_report_that_is_killed_takes_its_command_along() {
-    use std::time::{Duration, Instant};
-
-    let dir = Dir::with(&["earth-observer"]);
-    std::fs::create_dir(dir.path("tmp")).expect("made");
-    let begin = format!("export TMPDIR={}", dir.path("tmp").display());
-    let report = dir.start_by(&begin, "report earth-observer.toml --set duration=1e8 --runs 0 -o r.html");
-    let is_running = |pid: u32, word: &str| {
-        std::fs::read_to_string(format!("/proc/{pid}/cmdline")).is_ok_and(|line| line.contains(word))
-    };
-    let began = Instant::now();
-    // A run of this length takes minutes.
-    let child = loop {
-        let found = children(report.id()).into_iter().find(|pid| is_running(*pid, "simulate"));
-        if let Some(child) = found {
-            break child;
+fn a_page_that_is_watched_follows_the_file() {
+    let dir = Dir::with(&["half-turn"]);
+    let text = dir.text("half-turn.toml");
+    let watched = dir.start("report half-turn.toml -o page.html --watch");
+    let until = |wanted: &dyn Fn(&str) -> bool, what: &str| {
+        let began = Instant::now();
+        loop {
+            let page = std::fs::read_to_string(dir.path("page.html")).unwrap_or_default();
+            if wanted(&page) {
+                return page;
+            }
+            assert!(began.elapsed() < Duration::from_secs(60), "{what}: {page}");
+            std::thread::sleep(Duration::from_millis(20));
         }
-        assert!(began.elapsed() < Duration::from_secs(60), "no run");
-        std::thread::sleep(Duration::from_millis(5));
     };
-    report.sends("KILL");
-    drop(report);
-    let began = Instant::now();
-    while is_running(child, "simulate") {
-        assert!(began.elapsed() < Duration::from_secs(5), "the run lives on");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    assert_eq!(dir.names("tmp").len(), 1);
-    // The next report removes what that one has left.
-    let next = dir.start_by(&begin, "report earth-observer.toml --set duration=1e8 --runs 0 -o r.html");
-    let began = Instant::now();
-    while children(next.id()).is_empty() {
-        assert!(began.elapsed() < Duration::from_secs(60), "no command");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert_eq!(dir.names("tmp").len(), 1);
-    next.signal("TERM").exits(130);
-    assert!(dir.names("tmp").is_empty());
+    let first = until(&|page| page.contains("1 of 1 requirement met."), "the first page");
+    assert!(
+        first.contains("flexscVersion")
+            && !first.contains("http://localhost")
+            && !first.contains("</span>Campaign")
+    );
+    dir.write("half-turn.toml", text.replace("[law.attitude]", "[law.attitude]\nwrong = 1"));
+    let broken = until(&|page| page.contains("class=\"broken\""), "the error");
+    assert!(broken.contains("wrong") && broken.contains("1 of 1 requirement met."));
+    dir.write("half-turn.toml", text.replace("duration = 90.0", "duration = 85.0"));
+    let last =
+        until(&|page| page.contains("duration = 85.0") && !page.contains("class=\"broken\""), "the change");
+    assert!(last.contains("85 s</div>"));
+    assert!(dir.path("page.html.js").exists());
+    watched.signal("TERM");
+    assert!(!dir.path("page.html.js").exists());
 }

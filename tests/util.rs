@@ -220,12 +220,6 @@ impl Started {
         self.wait()
     }
 
-    /// Returns the number of the command's process.
-    #[cfg(unix)]
-    pub fn id(&self) -> u32 {
-        self.child.as_ref().expect("not yet waited for").id()
-    }
-
     /// Returns true if the command has not ended.
     #[cfg(unix)]
     pub fn is_alive(&mut self) -> bool {

@@ -98,7 +98,7 @@ def test_lines_for_machines_are_whole_objects(tmp_path: Path) -> None:
     for arguments, count in (
         (["check", fixed, str(SCENARIOS / "wheel-ekf.toml"), "--json"], 2),
         (["simulate", fixed, *short, "--json"], 1),
-        (["simulate", fixed, *short, "--runs", "3", "--json"], 3),
+        (["simulate", fixed, *short, "--runs", "3", "--json"], 4),
         (["sweep", fixed, *short, "--vary", "law.relay.k_t=0.3:0.34:4", "-o", "out", "--json"], 4),
         (["plot", "relay-fixed.mcap", "--what", "torque,modes", "--format", "svg", "--json"], 2),
         (["modes", fixed, "--json"], 1),

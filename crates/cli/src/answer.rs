@@ -42,9 +42,14 @@ impl AnswerArgs {
         Answer::new(scenario, metrics, observed, self.units.units.into())
     }
 
+    /// Returns the options of the screen.
+    pub fn screen(self) -> ScreenOptions {
+        ScreenOptions { width: width(), all: self.all, style: style(), units: self.units.units.into() }
+    }
+
     /// Prints an answer, with its log and its size, if there is one.
     pub fn print(self, answer: &Answer, took: f64, log: Option<(&Path, u64)>) {
-        let screen = answer.screen(Some(took), screen_options(self.units, self.all));
+        let screen = answer.screen(Some(took), self.screen());
         // Only terminals that support colours get them, and not if NO_COLOR is set.
         let _ = writeln!(anstream::stderr(), "{}", coloured(&screen, answer));
         let log = log.map(|(path, bytes)| {
@@ -74,11 +79,6 @@ impl AnswerArgs {
 
 fn without_failed(text: &str) -> &str {
     text.trim_start_matches("FAILED: ")
-}
-
-/// Returns the width, the characters and the units of a screen that shows everything or only what comes first.
-pub fn screen_options(units: UnitsArgs, all: bool) -> ScreenOptions {
-    ScreenOptions { width: width(), all, style: style(), units: units.units.into() }
 }
 
 /// Returns the width of the terminal within bounds.

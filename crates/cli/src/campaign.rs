@@ -17,21 +17,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::answer::{Answer, Observed};
+use flexsc_core::answer::{Answer, CampaignRuns, Observed};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::requirement_verdict::{self, RequirementRuns, RequirementVerdict};
+use flexsc_core::requirement_verdict::{self, RequirementVerdict};
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use crate::answer::AnswerArgs;
 use crate::error::CliError;
-use crate::results::print_lines;
+use crate::results::{print_lines, with_scenario_name};
 use crate::runs_table::RunsTable;
 use crate::{files, requirements, say, stop};
 use campaign_record::CampaignRecord;
@@ -126,17 +126,23 @@ pub fn run(
             "warning: no metric differs between the {runs} runs: does the scenario have noise or [uncertain] keys?"
         );
     }
-    if !job.json {
-        let took = began.elapsed().as_secs_f64();
-        if let Some(only) = &reported.only {
-            let observed = job.observed.lock().unwrap_or_else(PoisonError::into_inner).take();
-            job.answer.print(&job.answer.answer(campaign.scenario(), only, observed.as_ref()), took, None);
+    let (scenario, took) = (campaign.scenario(), began.elapsed().as_secs_f64());
+    if let Some(only) = &reported.only {
+        let observed = job.observed.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let answer = job.answer.answer(scenario, only, observed.as_ref());
+        if job.json {
+            print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
+        } else {
+            job.answer.print(&answer, took, None);
             if let Some(path) = &reported.table {
                 say!("  table {}", path.display());
             }
-        } else {
-            reported.say(campaign.scenario(), Some(took), job.answer);
         }
+    } else if !job.json {
+        reported.say(scenario, Some(took), job.answer);
+    } else if campaign.design().blocks.is_empty() {
+        let answer = reported.answer(scenario, job.answer);
+        print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
     }
     match reported.failed {
         None => Ok(reported.requirements),
@@ -187,7 +193,7 @@ fn table(
         shown: points::runs(campaign, &job.range),
         points: RunRows::new(campaign.fields(&job.selection)),
         all: MetricColumns::default(),
-        requirements: RequirementRuns::new(campaign.scenario()),
+        values: CampaignRuns::new(campaign),
         only: None,
         live: LiveStatistics::new(runs, 0),
         next: job.range.start,
@@ -200,7 +206,7 @@ fn table(
     } else {
         campaign.for_each_run(range, threads, work, report)
     };
-    let CampaignPrinter { all, only, failed, points, requirements, .. } = printer;
+    let CampaignPrinter { all, only, failed, points, values, .. } = printer;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
             (CliError::Interrupted(_) | CliError::Write { .. } | CliError::First { .. }, Some(table)) => {
@@ -211,7 +217,7 @@ fn table(
     }
     let mut table = table.map(|table| table.finish(campaign)).transpose()?;
     let only = only.filter(|_| all.runs() == 1);
-    let (runs, statistics, requirements) = (runs as usize, all.finish(), requirements.finish());
+    let (runs, statistics, requirements) = (runs as usize, all.finish(), values.verdicts());
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
         if !requirements.is_empty() {
@@ -233,7 +239,7 @@ fn table(
     let column =
         |name: &str| -> Result<_, CliError> { Ok(points.column(name).map(std::borrow::Cow::into_owned)) };
     let points = Points::new((campaign, &job.range), (&statistics, &job.selection), column)?;
-    Ok(CampaignReport { runs, statistics, requirements, points, failed, only, table })
+    Ok(CampaignReport { runs, statistics, requirements, values, points, failed, only, table })
 }
 
 fn interruption(run: u64) -> CliError {
@@ -282,7 +288,7 @@ struct CampaignPrinter<'a> {
     shown: Vec<Range<u64>>,
     points: RunRows,
     all: MetricColumns,
-    requirements: RequirementRuns,
+    values: CampaignRuns,
     only: Option<Metrics>,
     live: LiveStatistics,
     /// Number of the next expected run.
@@ -316,7 +322,7 @@ impl CampaignPrinter<'_> {
             let RunOutcome { number, drawn, metrics, .. } = &outcome;
             print_lines(&[object(self.campaign, *number, drawn, metrics.as_ref())])?;
         }
-        self.requirements.add(outcome.number, outcome.metrics.as_ref().ok());
+        self.values.add(outcome.number, &outcome.drawn, outcome.metrics.as_ref().ok());
         match outcome.metrics {
             Ok(metrics) => {
                 self.all.add(&metrics);

@@ -9,7 +9,7 @@ use flexsc_core::answer::{Answer, KeyDifference, RunComparison, RunObserver};
 use flexsc_core::record::{Detail, Log};
 use serde_json::json;
 
-use crate::answer::screen_options;
+use crate::answer::AnswerArgs;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
@@ -80,7 +80,10 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     if args.json {
         return print_lines(&[json!(comparison)]);
     }
-    say!("{}", comparison.screen(screen_options(args.units, args.all)));
+    say!(
+        "{}",
+        comparison.screen(AnswerArgs { all: args.all, ..AnswerArgs::from_units(args.units) }.screen())
+    );
     Ok(())
 }
 

@@ -221,7 +221,6 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
-    stop::follow_stdin();
     stop::run_watched(move || match execute(cli.verb) {
         Ok(()) => 0,
         Err(failure) => failure.print(),

@@ -4,92 +4,37 @@ use std::path::Path;
 
 use flexsc_core::answer::Answer;
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{ReaderUnits, percent, percent_beside};
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::formats::text_columns::columns;
 use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
-use flexsc_core::statistics::Statistics;
 use serde_json::Value as Json;
 
 use crate::error::CliError;
 use crate::files;
 
-/// Index of the median and of the 95 % quantile among the quantiles.
-const MEDIAN_AND_P95: [usize; 2] = [2, 4];
-/// Their columns in the table.
-const MEDIAN_AND_P95_COLUMNS: std::ops::Range<usize> = 3..5;
-
-/// Returns the table of the verdicts as lines: with the distribution over the runs, if there are statistics of them, and the
-/// level or the share of each that has one.
-pub fn lines(verdicts: &[RequirementVerdict], statistics: &[Statistics], units: ReaderUnits) -> Vec<String> {
+/// Returns the table of the verdicts as lines, and the level or the share of each that has one.
+pub fn lines(verdicts: &[RequirementVerdict], units: ReaderUnits) -> Vec<String> {
     if verdicts.is_empty() {
         return Vec::new();
     }
-    let heads = ["", "requirement", "limit", "median", "95 %", "worst", "met"].map(str::to_owned);
-    let mut rows = vec![heads.to_vec()];
-    for (index, verdict) in verdicts.iter().enumerate() {
+    let mut rows = vec![["", "requirement", "limit", "worst", "met"].map(str::to_owned).to_vec()];
+    for verdict in verdicts {
         let RequirementVerdict { requirement, decision, runs, runs_met, worst: (run, worst), .. } = verdict;
         let written = requirement.written_limit.as_deref();
         let unit = units.as_written(written, requirement.limit, requirement.unit);
-        let own = statistics.iter().find(|s| s.name == format!("requirement_values[{index}]"));
-        let [median, p95] =
-            MEDIAN_AND_P95.map(|place| own.map_or_else(String::new, |own| unit.number(own.quantiles[place])));
-        let mark = match decision {
-            Decision::Met => "✓",
-            Decision::Undecided => "?",
-            Decision::Missed => "✗",
-        };
         let worst =
             if worst.is_nan() { "no value".to_owned() } else { unit.beside(*worst, requirement.limit) };
         rows.push(vec![
-            mark.to_owned(),
+            decision.mark().to_owned(),
             requirement.name.clone(),
             format!("at most {}", unit.limit(requirement.limit, written)),
-            median,
-            p95,
             format!("{worst}, run {run}"),
             format!("{runs_met} of {runs}"),
         ]);
     }
-    if statistics.is_empty() {
-        for row in &mut rows {
-            row.drain(MEDIAN_AND_P95_COLUMNS);
-        }
-    }
     let mut lines = columns(&rows, |_| true);
-    lines.extend(verdicts.iter().filter_map(level_note));
+    lines.extend(verdicts.iter().filter_map(RequirementVerdict::note));
     lines
-}
-
-/// Returns a line on the level of the ensemble or on the share of all values, if the requirement has one.
-fn level_note(verdict: &RequirementVerdict) -> Option<String> {
-    let RequirementVerdict { requirement, decision, value, share, confidence, .. } = verdict;
-    let name = &requirement.name;
-    let least = percent(requirement.level);
-    if !value.is_finite() && share.is_finite() {
-        return Some(format!(
-            "{name}: within its limit for {} of all values, at least {least}",
-            percent_beside(*share, requirement.level)
-        ));
-    }
-    let shown = confidence.as_ref()?;
-    let mut text = format!(
-        "{name}: {} at {least} of the runs; confidence {}",
-        decision.word(),
-        percent_beside(shown.reached, shown.wanted.unwrap_or(1.0))
-    );
-    if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
-        let wanted_part = percent(wanted);
-        let more = if shown.reached >= wanted {
-            format!(", at least {wanted_part}")
-        } else if *decision == Decision::Missed {
-            // More runs are no remedy.
-            format!(", below {wanted_part}")
-        } else {
-            format!(", {} needed for {wanted_part}", counted(needed, "run"))
-        };
-        text.push_str(&more);
-    }
-    Some(text)
 }
 
 /// Returns the verdicts as JSON.

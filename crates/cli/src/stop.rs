@@ -13,9 +13,6 @@ use flexsc_core::record::{RecordError, StopFlag};
 use crate::error::CliError;
 use crate::say;
 
-/// Environment variable of a program that stops when its stdin is closed.
-pub const UNTIL_STDIN_CLOSES: &str = "FLEXSC_UNTIL_STDIN_CLOSES";
-
 static STOP: LazyLock<StopFlag> = LazyLock::new(StopFlag::default);
 
 /// Polling period of the flag.
@@ -98,20 +95,6 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
-    }
-}
-
-/// Asks the program to stop when its stdin is closed, if the program that started it, such as `flexsc report`, wants that: the death
-/// of that one closes it too.
-pub fn follow_stdin() {
-    if std::env::var_os(UNTIL_STDIN_CLOSES).is_some() {
-        let follow = || {
-            // An error of reading is an end, too.
-            let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
-            STOP.request();
-        };
-        // Without a thread, the program ends by itself.
-        let _ = thread::Builder::new().spawn(follow);
     }
 }
 

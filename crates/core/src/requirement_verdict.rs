@@ -1,6 +1,9 @@
 //! Verdicts on the requirements of a scenario, over one run or the runs of a campaign.
 
+use flexsc_formats::count::counted;
 use flexsc_formats::document::{ConfigError, nearest};
+use flexsc_formats::reader_units::{percent, percent_beside};
+use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 use crate::metrics::{MetricValue, Metrics, MetricsCollector};
@@ -34,7 +37,8 @@ pub struct RequirementVerdict {
 }
 
 /// Decision on a requirement.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+#[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Decision {
     /// Value within the limit, with the wanted confidence.
     Met,
@@ -51,6 +55,15 @@ impl Decision {
             Self::Met => "met",
             Self::Undecided => "undecided",
             Self::Missed => "missed",
+        }
+    }
+
+    /// Returns the mark of the decision before a line.
+    pub fn mark(self) -> &'static str {
+        match self {
+            Self::Met => "✓",
+            Self::Undecided => "?",
+            Self::Missed => "✗",
         }
     }
 }
@@ -83,6 +96,16 @@ impl RequirementRuns {
         let requirements = scenario.study.requirements.clone();
         let empty = vec![Vec::new(); requirements.len()];
         Self { requirements, runs: Vec::new(), values: empty.clone(), shares: empty }
+    }
+
+    /// Returns the values of a requirement, one of each run.
+    pub fn values(&self, requirement: usize) -> &[f64] {
+        &self.values[requirement]
+    }
+
+    /// Returns the numbers of the runs.
+    pub fn numbers(&self) -> &[u64] {
+        &self.runs
     }
 
     /// Returns true if the scenario has no requirement.
@@ -203,6 +226,38 @@ impl RequirementVerdict {
     /// Returns the 95 % interval of the probability that a run meets the requirement (Wilson).
     pub fn interval(&self) -> [f64; 2] {
         wilson(self.runs_met, self.runs).into()
+    }
+
+    /// Returns a line on the level of the ensemble or on the share of all values, if the requirement has one.
+    pub fn note(&self) -> Option<String> {
+        let Self { requirement, decision, value, share, confidence, .. } = self;
+        let name = &requirement.name;
+        let least = percent(requirement.level);
+        if !value.is_finite() && share.is_finite() {
+            return Some(format!(
+                "{name}: within its limit for {} of all values, at least {least}",
+                percent_beside(*share, requirement.level)
+            ));
+        }
+        let shown = confidence.as_ref()?;
+        let mut text = format!(
+            "{name}: {} at {least} of the runs; confidence {}",
+            decision.word(),
+            percent_beside(shown.reached, shown.wanted.unwrap_or(1.0))
+        );
+        if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
+            let wanted_part = percent(wanted);
+            let more = if shown.reached >= wanted {
+                format!(", at least {wanted_part}")
+            } else if *decision == Decision::Missed {
+                // More runs are no remedy.
+                format!(", below {wanted_part}")
+            } else {
+                format!(", {} needed for {wanted_part}", counted(needed, "run"))
+            };
+            text.push_str(&more);
+        }
+        Some(text)
     }
 
     /// Returns the verdict as JSON, with null for NaN.

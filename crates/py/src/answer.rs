@@ -1,10 +1,10 @@
-//! Answer of a run: its text, and its fields as JSON.
+//! Answer of a run or a campaign: its text, and its fields as JSON.
 
 use flexsc_core::answer::{Answer, ScreenOptions};
 use pyo3::prelude::*;
 use serde_json::json;
 
-/// Answer of a run.
+/// Answer of a run or a campaign.
 #[pyclass(frozen, module = "flexsc._native")]
 pub struct RunAnswer(Contents);
 
@@ -21,6 +21,11 @@ impl RunAnswer {
         Self(Contents::Made(Box::new(answer), took))
     }
 
+    /// Creates an answer from its fields as JSON, its first screen, and everything that is known.
+    pub fn copied(json: String, screen: String, all: String) -> Self {
+        Self(Contents::Copied { json, screen, all })
+    }
+
     fn text(&self, is_all: bool) -> String {
         match &self.0 {
             Contents::Made(answer, took) => {
@@ -35,7 +40,7 @@ impl RunAnswer {
 impl RunAnswer {
     #[new]
     fn new(json: String, screen: String, all: String) -> Self {
-        Self(Contents::Copied { json, screen, all })
+        Self::copied(json, screen, all)
     }
 
     fn __getnewargs__(&self) -> (String, String, String) {

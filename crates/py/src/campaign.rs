@@ -6,10 +6,12 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use flexsc_core::answer::{CampaignAnswer, ScreenOptions};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR, MANIFEST,
     Manifest, RowMaker as Whole, RunRows, SECONDS,
 };
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::StopFlag;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -17,7 +19,9 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
+use serde_json::json;
 
+use super::answer::RunAnswer;
 use super::aside::aside;
 use super::design::Design;
 use super::error::{allowed, no_file, scenario_error};
@@ -316,6 +320,28 @@ pub fn campaign_statistics(
         work.statistics(rows, selection_of)
     })?;
     Ok(reported.map_err(failed)?.into_iter().map(summary).collect())
+}
+
+/// The answer of a campaign's columns.
+#[pyfunction]
+pub fn campaign_answer(
+    py: Python<'_>,
+    work: &Work,
+    columns: HashMap<String, Bound<'_, PyAny>>,
+) -> PyResult<RunAnswer> {
+    let columns: HashMap<String, ColumnCells> =
+        columns.iter().map(|(name, object)| Ok((name.clone(), column(object)?))).collect::<PyResult<_>>()?;
+    let work = work.0.clone();
+    let answer = aside(py, move |_| -> Result<_, DirectoryError> {
+        let selection_of = |names: &[&str]| -> Result<_, DirectoryError> {
+            Ok(names.iter().map(|name| columns.get(*name).cloned()).collect())
+        };
+        let runs = work.campaign_runs(selection_of)?;
+        Ok(CampaignAnswer::new(work.campaign.scenario(), &runs, None, None, ReaderUnits::default()))
+    })?
+    .map_err(failed)?;
+    let screen = |all| answer.screen(None, ScreenOptions { all, ..ScreenOptions::default() });
+    Ok(RunAnswer::copied(json!(answer).to_string(), screen(false), screen(true)))
 }
 
 fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {

@@ -61,7 +61,7 @@ mod _native {
     #[pymodule_export]
     use super::arrow::{arrow_schema, arrow_stream};
     #[pymodule_export]
-    use super::campaign::{Directory, Work, campaign_statistics};
+    use super::campaign::{Directory, Work, campaign_answer, campaign_statistics};
     #[pymodule_export]
     use super::commands::Commands;
     #[pymodule_export]

@@ -39,6 +39,7 @@ mod saturation;
 mod sensor_checks;
 mod small_angle_checks;
 mod spec;
+mod title_block;
 pub mod uncertain;
 
 use std::ops::Deref;
@@ -70,6 +71,7 @@ pub use reference_values::{Pointing, Reference};
 pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, WindowConvention};
 pub use resolved::ResolvedScenario;
 pub use spec::ScenarioSpec;
+pub use title_block::TitleBlock;
 
 /// A validated scenario: the keys as written, and the data resolved from them.
 #[derive(Clone, Debug, PartialEq)]

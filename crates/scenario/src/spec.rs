@@ -21,7 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
-use super::{BoundSpec, LineOfSight, LogSpec, Reference, Requirement, epoch};
+use super::{BoundSpec, LineOfSight, LogSpec, Reference, Requirement, TitleBlock, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
@@ -45,6 +45,9 @@ pub struct ScenarioSpec {
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::parse")]
     #[schemars(with = "Option<String>")]
     pub epoch: Option<Datetime>,
+    /// Title block of the page that `flexsc report` writes.
+    #[serde(default, skip_serializing_if = "TitleBlock::is_empty")]
+    pub document: TitleBlock,
     /// The controlled body, unless it is a `spacecraft`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Body")]

@@ -1,8 +1,9 @@
-//! Viewers of runs: layouts of their panels, and three-dimensional scenes.
+//! Viewers of runs: layouts of their panels, three-dimensional scenes, and drawings of spacecraft.
 //!
 //! The engine does not depend on this crate. A [`scene::Scene`] is a record that supplies the engine with the scene of a
 //! run; [`with_layout`] attaches the layout of a run's log to its provenance.
 
+pub mod drawing;
 pub mod layout;
 pub mod scene;
 

@@ -72,6 +72,11 @@ pub fn run(args: &BoundArgs) -> Result<(), CliError> {
 }
 
 impl OutputBounds {
+    /// Returns the claims with their ranges.
+    pub fn bounds(&self) -> &[OutputBound] {
+        &self.bounds
+    }
+
     /// Returns the claims with their ranges as JSON.
     pub fn claims_json(&self) -> Json {
         json!(self.bounds)

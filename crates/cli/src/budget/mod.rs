@@ -12,7 +12,7 @@ use flexsc_core::analysis::budget::{
     CampaignBudget, DisturbedLoop, ErrorSources, IndexBudget, IndexRun, PointingBudget, linear_noise,
     linear_sources, noise_cycle, sine_frequencies,
 };
-use flexsc_core::campaign::{Campaign, Design};
+use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::IndexRecord;
 use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
@@ -85,8 +85,18 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
 pub fn pointing_budget(scenario: Scenario, runs: u64, jobs: u16) -> Result<PointingBudget, String> {
     let name = scenario.name.clone();
     let setup = CampaignSetup { origin: name, runs, jobs, units: Units::Si, consent: None };
-    let budgets = setup.budgets(scenario).map_err(|failure| failure.to_string())?;
+    let budgets = setup.budgets(scenario, |_, _| ()).map_err(|failure| failure.to_string())?;
     Ok(budgets.report())
+}
+
+/// Runs the campaign of a scenario from a file, calls `each` with every outcome, and computes the budgets.
+pub fn with_outcomes(
+    scenario: Scenario,
+    origin: String,
+    runs: u64,
+    each: impl FnMut(&Campaign, &RunOutcome),
+) -> Result<Budgets, CliError> {
+    CampaignSetup { origin, runs, jobs: 0, units: Units::default(), consent: None }.budgets(scenario, each)
 }
 
 /// Runs the campaign, and computes the budgets.
@@ -98,7 +108,7 @@ pub fn results(scenario: Scenario, args: &BudgetArgs) -> Result<Budgets, CliErro
         units: args.units.units,
         consent: Some(args.consent),
     };
-    setup.budgets(scenario)
+    setup.budgets(scenario, |_, _| ())
 }
 
 /// Campaign from which budgets are computed.
@@ -113,7 +123,12 @@ struct CampaignSetup {
 }
 
 impl CampaignSetup {
-    fn budgets(&self, scenario: Scenario) -> Result<Budgets, CliError> {
+    /// Runs the campaign, calls `each` with every outcome, and computes the budgets.
+    fn budgets(
+        &self,
+        scenario: Scenario,
+        mut each: impl FnMut(&Campaign, &RunOutcome),
+    ) -> Result<Budgets, CliError> {
         let name = scenario.name.clone();
         let samples = |source: &RequirementSource| match source {
             RequirementSource::Metric(..) => 0,
@@ -161,6 +176,7 @@ impl CampaignSetup {
                     Ok(())
                 };
             };
+            each(&campaign, &outcome);
             let number = outcome.number;
             let metrics = outcome.metrics.map_err(|error| CliError::Runs {
                 failed: 1,
@@ -230,14 +246,15 @@ impl Results for Budgets {
         for budget in &self.indices {
             self.print_budget(budget);
         }
-        let verdicts = requirements::lines(&self.verdicts, &[], self.units.into()).join("\n  ");
+        let verdicts = requirements::lines(&self.verdicts, self.units.into()).join("\n  ");
         say!("\n  {}", style().styled(&verdicts));
         Ok(())
     }
 }
 
 impl Budgets {
-    fn report(&self) -> PointingBudget {
+    /// Returns the budgets as `--json` prints them.
+    pub fn report(&self) -> PointingBudget {
         PointingBudget {
             runs: self.runs,
             budgets: self.indices.iter().map(IndexBudget::from).collect(),

@@ -11,7 +11,6 @@ use flexsc_core::campaign::{
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::Metrics;
-use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
 
 use super::points::{self, Points};
 use super::progress_table::LiveStatistics;
@@ -179,7 +178,7 @@ impl PartProgress<'_> {
 
 /// Returns the results of a directory and writes the table of its statistics; of a sweep, with the points in `range`.
 pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignReport, CliError> {
-    let CampaignSummary { runs, failed, statistics } = directory.summary().map_err(failure)?;
+    let CampaignSummary { runs, failed, statistics, values } = directory.summary().map_err(failure)?;
     write_statistics(&directory.path().join(STATISTICS), &statistics)?;
     let work = directory.work();
     let shown = points::runs(&work.campaign, range);
@@ -202,29 +201,11 @@ pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignRepo
     let is_whole = directory.missing_among(range.clone()).map_err(failure)?.is_empty();
     let points = Points::new((&work.campaign, range), (&statistics, &work.selection), column)?;
     let (points, table) = (points.filter(|_| is_whole), Some(directory.path().to_owned()));
-    let requirements = verdicts(directory)?;
+    let requirements = values.verdicts();
     if !requirements.is_empty() {
         requirements::write_table(&directory.path().join(REQUIREMENTS), &requirements)?;
     }
-    Ok(CampaignReport { runs, statistics, requirements, points, failed, only: None, table })
-}
-
-/// Returns the verdicts on the requirements over all runs of a directory.
-fn verdicts(directory: &Directory) -> Result<Vec<RequirementVerdict>, CliError> {
-    let work = directory.work();
-    let mut runs = RequirementRuns::new(work.campaign.scenario());
-    let names = ["requirement_values", "requirement_shares"];
-    if runs.is_empty() || !work.fields().iter().any(|field| field.name == names[0]) {
-        return Ok(Vec::new());
-    }
-    for part in directory.parts().map_err(failure)? {
-        let columns = directory.columns_of(&part, &names).map_err(failure)?;
-        let [ColumnCells::Lists(values), ColumnCells::Lists(shares)] = &columns[..] else { continue };
-        for (run, (values, shares)) in part.zip(values.iter().zip(shares)) {
-            runs.add_values(run, values.as_deref().unwrap_or(&[]), shares.as_deref().unwrap_or(&[]));
-        }
-    }
-    Ok(runs.finish())
+    Ok(CampaignReport { runs, statistics, requirements, values, points, failed, only: None, table })
 }
 
 /// Writes the table of the statistics of a directory.

@@ -4,21 +4,18 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
+use flexsc_core::answer::{CampaignAnswer, CampaignRuns};
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{ReaderUnits, percent, rough_time};
+use flexsc_core::formats::reader_units::{ReaderUnits, rough_time};
 use flexsc_core::formats::text_columns::columns;
 use flexsc_core::metrics::{Metrics, goal};
-use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
-use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
+use flexsc_core::requirement_verdict::RequirementVerdict;
+use flexsc_core::statistics::{QUANTILES, Statistics};
 
 use super::points::Points;
 use crate::answer::{AnswerArgs, style};
 use crate::error::CliError;
-use crate::{files, requirements, say};
-
-/// Names of the metrics that say whether a run meets its goal, and all requirements.
-const GOAL: &str = goal::NAMES[0];
-const REQUIREMENT: &str = goal::NAMES[1];
+use crate::{files, say};
 
 /// Results of a campaign.
 pub struct CampaignReport {
@@ -28,6 +25,8 @@ pub struct CampaignReport {
     pub statistics: Vec<Statistics>,
     /// Verdicts on the requirements.
     pub requirements: Vec<RequirementVerdict>,
+    /// Values of requirements and uncertain keys.
+    pub values: CampaignRuns,
     /// Points of a sweep.
     pub points: Option<Points>,
     /// Number of failed runs, number of the first failed run, and its error.
@@ -68,24 +67,18 @@ impl CampaignReport {
     /// some real time (s).
     pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: AnswerArgs) {
         let (name, runs) = (&scenario.name, counted(self.runs, "run"));
-        let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         if let (Some(points), true) = (&self.points, self.runs > 0) {
+            let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
             say!("{name}   {runs}{took}\n{}", points.text().trim_end());
             if let Some(table) = table {
                 say!("  {table}");
             }
             return;
         }
-        let verdict = self.verdict(scenario.reference.band.is_some());
-        say!("{}", style().styled(&format!("{name}   {verdict}   {runs}{took}")));
+        say!("{}", self.answer(scenario, args).screen(took, args.screen()));
         if self.runs == 0 {
             return;
-        }
-        let rows = self.requirement_rows(args);
-        if !rows.is_empty() {
-            let text: Vec<String> = rows.iter().map(|row| format!("  {row}")).collect();
-            say!("\n{}", style().styled(&text.join("\n")));
         }
         // Without a requirement, the statistics are what is asked for.
         let shown: Vec<&Statistics> = self.shown_statistics(args.all).collect();
@@ -119,49 +112,11 @@ impl CampaignReport {
         self.statistics.iter().filter(move |s| s.runs > 0 && !is_verdict(s) && !is_idle(s) && !is_late(s))
     }
 
-    /// Returns the verdict in words: how many runs meet all requirements, or the goal that the scenario gives.
-    fn verdict(&self, has_goal: bool) -> String {
-        let share = |name: &str, what: &str| {
-            let own = self.statistics.iter().find(|s| s.name == name && s.runs > 0)?;
-            let met = (own.mean * own.runs as f64).round() as u64;
-            let share = met as f64 / self.runs as f64;
-            let (low, high) = wilson(met, self.runs as u64);
-            let runs = counted(self.runs, "run");
-            Some(format!(
-                "{met} of {runs} meet {what}, {} ({:.0} to {:.0} %)",
-                percent(share),
-                100.0 * low,
-                100.0 * high
-            ))
-        };
-        let what = match self.requirements.len() {
-            0 => {
-                let goal = share(GOAL, "the goal").filter(|_| has_goal);
-                return goal.unwrap_or_else(|| "no requirement".to_owned());
-            }
-            1 => "the requirement".to_owned(),
-            all => format!("all {all} requirements"),
-        };
-        let has = |decision: Decision| self.requirements.iter().any(|own| own.decision == decision);
-        let head = match (has(Decision::Missed), has(Decision::Undecided)) {
-            (true, _) => "MISSED: ",
-            (false, true) => "undecided: ",
-            (false, false) => "",
-        };
-        format!("{head}{}", share(REQUIREMENT, &what).unwrap_or_default())
-    }
-
-    /// Returns the lines of the requirements, and how the worst run of the first that is missed is repeated.
-    fn requirement_rows(&self, args: AnswerArgs) -> Vec<String> {
-        let mut lines = requirements::lines(&self.requirements, &self.statistics, args.units.units.into());
-        if let (Some(path), Some(missed)) =
-            (&self.table, self.requirements.iter().find(|own| own.decision == Decision::Missed))
-            && path.is_dir()
-        {
-            let (path, run) = (path.display(), missed.worst.0);
-            lines.push(format!("repeat the worst: flexsc simulate --from {path} --row {run} -o run-{run}"));
-        }
-        lines
+    /// Returns the answer of the campaign.
+    pub fn answer(&self, scenario: &Scenario, args: AnswerArgs) -> CampaignAnswer {
+        let directory = self.table.as_ref().filter(|path| path.is_dir());
+        let directory = directory.map(|path| path.display().to_string());
+        CampaignAnswer::new(scenario, &self.values, None, directory.as_deref(), args.units.units.into())
     }
 }
 

@@ -143,6 +143,11 @@ const CROSSINGS: [Column<'_>; 6] = [
 ];
 
 impl LoopMargins {
+    /// Returns the margins as `--json` prints them.
+    pub fn margins(&self) -> &ScenarioMargins {
+        &self.margins
+    }
+
     /// Returns an object without its delay for several samples in a period, where a delay is more than a phase.
     fn row(&self, of: impl Serialize) -> Json {
         let mut row = json!(of);

@@ -1,20 +1,29 @@
-//! `flexsc report`: one page for a design review, made of the output and the figures of other commands, with the command
-//! under each.
+//! `flexsc report`: one page for a design review, made from the structures of the other verbs, with the command that repeats each
+//! block.
 
+mod assumptions;
+mod campaign_block;
+mod conclusions;
+mod craft_block;
+mod html;
+mod loop_blocks;
+mod mode_block;
 mod page;
-mod scratch;
-mod section;
+mod requirement_block;
+mod study;
+mod time_line;
+mod watch;
 
-use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
-use flexsc_core::Scenario;
+use flexsc_core::answer::RunVerdict;
 
 use crate::error::CliError;
-use crate::{files, out, say, scenario, stop};
-use scratch::ScratchDirectory;
-use section::{ReportRunner, ReportSection};
+use crate::human::Units;
+use crate::{bound, files, out, say, stop};
+use page::Review;
+use study::{Study, StudyCampaign};
 
 /// Largest number of runs of the report's campaign.
 const MOST_RUNS: u64 = 100_000;
@@ -32,9 +41,21 @@ pub struct ReportArgs {
     /// Number of runs of the campaign; 0 leaves it out
     #[arg(long, value_name = "COUNT", default_value_t = 100)]
     runs: u64,
+    /// Write the page again, without the campaign, each time the scenario file is saved, until Ctrl-C; an open page reloads itself
+    #[arg(long, conflicts_with = "runs")]
+    watch: bool,
     /// Replace a FILE of other content
     #[arg(long)]
     force: bool,
+}
+
+/// Page with what it found.
+struct FinishedPage {
+    html: String,
+    /// Titles of blocks without numbers.
+    refused: Vec<&'static str>,
+    /// Requirements that are not met, and claims that are not proved.
+    unmet: Vec<String>,
 }
 
 pub fn run(args: &ReportArgs) -> Result<(), CliError> {
@@ -46,100 +67,47 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
         let why = format!("--runs must be at most {MOST_RUNS}, got {}", args.runs);
         return Err(CliError::Arguments(why));
     }
-    let scenario = scenario::load(&args.scenario, &args.set, None)?;
-    // An interruption waits for the scratch directory to be removed.
     let _files = stop::writing();
-    let scratch = ScratchDirectory::new()?;
-    let runner = ReportRunner::new(&args.scenario, &args.set, scratch.path());
-    let mut sections = Vec::new();
-    for make in makers(&scenario, args.runs) {
-        if stop::stop_requested() {
-            return Err(CliError::Interrupted(String::new()));
-        }
-        sections.push(make(&runner)?);
+    if args.watch {
+        return watch::run(args);
     }
-    let text = fs::read_to_string(&args.scenario).unwrap_or_default();
-    let page = page::html(&scenario, &args.set, &text, &sections);
-    files::write(&args.out, page.as_bytes(), true)?;
-    let titles = |selected: fn(&ReportSection) -> bool| -> Vec<&str> {
-        sections.iter().filter(|section| selected(section)).map(|section| section.title).collect()
-    };
-    let (failed, unmet) = (titles(ReportSection::is_refused), titles(ReportSection::is_unmet));
-    say!("{} ({:.0} kB)", args.out.display(), page.len() as f64 / 1e3);
-    if !failed.is_empty() {
-        say!("  without numbers, with the reason on the page: {}", failed.join(", "));
+    let study = Study::load(&args.scenario, &args.set)?;
+    let page = finished(&study, args.runs, String::new())?;
+    files::write(&args.out, page.html.as_bytes(), true)?;
+    say!("{} ({:.0} kB)", args.out.display(), page.html.len() as f64 / 1e3);
+    if !page.refused.is_empty() {
+        say!("  without numbers, with the reason on the page: {}", page.refused.join(", "));
     }
-    if unmet.is_empty() {
+    if page.unmet.is_empty() {
         return Ok(());
     }
-    Err(CliError::Requirements(format!("{}: not met or not proved: {}", scenario.name, unmet.join(", "))))
+    Err(CliError::Requirements(format!("{}: {}", study.scenario.name, page.unmet.join("; "))))
 }
 
-/// Function that makes a section.
-type Maker = Box<dyn Fn(&ReportRunner<'_>) -> Result<ReportSection, CliError>>;
-
-/// Returns the makers of the sections of a scenario.
-fn makers(scenario: &Scenario, runs: u64) -> Vec<Maker> {
-    let mut makers: Vec<Maker> = vec![
-        Box::new(|runner| {
-            let intro = "Masses and inertias, and the elastic modes: clamped, as a finite-element model has them, and \
-                         free, as the loop sees them.";
-            runner.printed("Spacecraft", intro, &["modes"], None)
-        }),
-        Box::new(|runner| {
-            let intro = "Gain, phase and delay at every crossing, modulus and disk margins, of each loop with the others \
-                         closed and of all together, with the loop cut open at the commands of the law.";
-            runner.printed("Margins at the command", intro, &["margins"], Some("margins"))
-        }),
-        Box::new(|runner| {
-            let intro = "The same with the loop cut open at the measurements.";
-            runner.printed("Margins at the measurement", intro, &["margins", "--loop", "measurement"], None)
-        }),
-        Box::new(|runner| {
-            let intro = "Noise of the measured angles and of lines of sight, exact from the closed loop: rms by source, \
-                         spectral density with cumulative rms, and the lines of unbalanced wheels.";
-            runner.printed("Noise", intro, &["spectrum"], Some("spectrum"))
-        }),
-        Box::new(|runner| {
-            let intro = "A run of the scenario as it is, with its metrics and verdicts.";
-            runner.simulated("One run", intro)
-        }),
-    ];
-    if !scenario.bound.is_empty() {
-        makers.push(Box::new(|runner| {
-            let intro =
-                "Guaranteed ranges of outputs over sets of initial states, inputs, frequencies and damping ratios.";
-            runner.printed("Guaranteed ranges", intro, &["bound"], Some("bound"))
-        }));
+/// Computes the page of a study with a campaign of some runs; 0 leaves it out.
+fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
+    let run = study.run()?;
+    // A page that is watched is to be there soon.
+    let loops = loop_blocks::blocks(study, script.is_empty())?;
+    let bounds = if study.scenario.bound.is_empty() {
+        None
+    } else {
+        Some(bound::claims(&study.scenario, Units::default())?)
+    };
+    let campaign: Option<StudyCampaign> =
+        (runs > 0).then(|| study.campaign(runs, &run.answer)).transpose()?;
+    let mut unmet = Vec::new();
+    if run.answer.verdict == RunVerdict::Failed || run.answer.verdict == RunVerdict::Missed {
+        unmet.push(run.answer.verdict_text.clone());
     }
-    if runs > 0 && !scenario.requirement.is_empty() {
-        makers.push(Box::new(move |runner| {
-            let intro = "Levels of the pointing indices of the requirements: by a campaign, by convolution of the error \
-                         sources, and by the rule of k sigma.";
-            let count = runs.to_string();
-            runner.printed("Pointing budget", intro, &["budget", "--runs", &count], Some("budget"))
-        }));
+    let runs_verdict =
+        campaign.as_ref().map(|own| &own.answer).filter(|own| own.verdict == RunVerdict::Missed);
+    unmet.extend(runs_verdict.map(|own| own.verdict_text.clone()));
+    let refuted = bounds.as_ref().map_or(0, |own| own.bounds().iter().filter(|bound| bound.fails()).count());
+    if refuted > 0 {
+        unmet.push(format!("{refuted} of the claims not proved"));
     }
-    if runs > 0 && !scenario.uncertain.is_empty() {
-        makers.push(Box::new(|runner| {
-            let intro = "The least modulus margin that a search over the uncertain keys finds, with the loop cut open at the \
-                         commands of the law.";
-            runner.printed("Least margins", intro, &["worst", "--margin", "modulus"], Some("least-margin"))
-        }));
-    }
-    if runs > 0 && !scenario.uncertain.is_empty() && !scenario.study.requirements.is_empty() {
-        makers.push(Box::new(move |runner| {
-            let intro = "The worst case of each requirement that a search over the uncertain keys finds: a witness, not a \
-                         proof.";
-            let count = runs.to_string();
-            runner.printed("Worst case", intro, &["worst", "--points", &count], Some("worst"))
-        }));
-    }
-    if runs > 0 {
-        makers.push(Box::new(move |runner| {
-            let intro = "Runs with other noise, and with the uncertain keys drawn anew for each.";
-            runner.campaign("Campaign", intro, runs)
-        }));
-    }
-    makers
+    let refused = loops.refused.clone();
+    let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, script };
+    Ok(FinishedPage { html: page::html(&review), refused, unmet })
 }

@@ -149,6 +149,11 @@ const INDICES: [Column<'_>; 8] = [
 ];
 
 impl SpectrumResults {
+    /// Returns the noise as `--json` prints it.
+    pub fn report(&self) -> &NoiseReport {
+        &self.report
+    }
+
     /// Returns the text of values in the unit that fits the largest of some.
     fn in_one_unit(&self, values: &[f64], unit: &str) -> impl Fn(f64) -> String + use<> {
         let (factor, unit) = self.units.common(values, unit);

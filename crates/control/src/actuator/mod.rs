@@ -75,7 +75,7 @@ pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use saturation::{EndState, LimitTime, Saturation};
 pub use steering::{GyroAxes, NullMotion, Robustness, Steering};
-pub use target_loss::{TargetLoss, TargetLossMonitor};
+pub use target_loss::{SATURATION_GAP, TargetLoss, TargetLossMonitor};
 pub use thrusters::Thrusters;
 pub use unloading::{UnloadingTask, WheelUnloading};
 pub use wheel_allocation::{Allocation, AllocationCriterion};

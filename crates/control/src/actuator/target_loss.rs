@@ -16,8 +16,8 @@ use super::limits::ActuatorLimits;
 const GROWTH: f64 = 3.0;
 /// Error that rounding alone may leave (rad).
 const ROUNDING: f64 = 1e-9;
-/// Longest gap between two times at a limit that are one stay (s), at least [`GAP_CYCLES`] control cycles.
-const GAP: f64 = 15.0;
+/// Longest gap between two times at a limit that are one stay (s); here, at least [`GAP_CYCLES`] control cycles.
+pub const SATURATION_GAP: f64 = 15.0;
 const GAP_CYCLES: f64 = 10.0;
 
 /// Loss of a target in a visit.
@@ -127,7 +127,7 @@ impl TargetLossMonitor {
     /// Creates the monitor of a run. `pursuits` has, for each mode of operation or once, the instants from which on its law pursues
     /// a target or does not, and `accepted` the error (rad) that is never a loss; `cycle` is the period of the observed cycles.
     pub fn new(pursuits: Vec<Vec<(Instant, bool)>>, accepted: Vec<f64>, cycle: Span) -> Self {
-        let gap = Span::from_seconds(GAP.max(GAP_CYCLES * cycle.seconds()));
+        let gap = Span::from_seconds(SATURATION_GAP.max(GAP_CYCLES * cycle.seconds()));
         Self {
             pursuits,
             accepted,

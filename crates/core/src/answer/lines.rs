@@ -75,7 +75,7 @@ impl RunData<'_> {
             let from = starts.get(index).copied()?;
             let mode = self.scenario.mode.get(modes.get(index).copied()? as usize);
             Some(RunEvent {
-                kind: EventKind::Saturation,
+                kind: EventKind::TargetLoss,
                 part: limit.clone(),
                 cause: String::new(),
                 mode: mode.map(|mode| mode.name.clone()),

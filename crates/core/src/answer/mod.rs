@@ -2,9 +2,14 @@
 //! an observer saw in every control cycle. Numbers are in SI units; beside them stand their texts in the reader's units, so
 //! that text, JSON, Python and reports say the same.
 
+mod campaign_answer;
+mod campaign_runs;
+mod campaign_screen;
+mod driving_key;
 mod error_statistics;
 mod event;
 mod key_difference;
+mod limit_watch;
 mod lines;
 mod mode_answer;
 mod one_axis_lines;
@@ -23,6 +28,11 @@ use serde::Serialize;
 use crate::metrics::Metrics;
 use crate::requirement_verdict::{self, RequirementVerdict};
 
+pub use campaign_answer::{
+    CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
+};
+pub use campaign_runs::CampaignRuns;
+pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};
 pub use key_difference::KeyDifference;
@@ -97,6 +107,9 @@ impl Answer {
         let (by_mode, lines) = if diverges { Default::default() } else { (run.by_mode(), run.lines()) };
         let mut events = observed.map_or_else(Vec::new, |observed| observed.events.clone());
         events.extend(run.losses());
+        if observed.is_some() {
+            events.extend(scenario.orbit_environment().eclipses_seen().into_iter().map(RunEvent::eclipse));
+        }
         events.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
         Self {
             schema: SCHEMA,

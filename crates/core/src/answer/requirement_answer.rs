@@ -110,7 +110,7 @@ impl RequirementAnswer {
             ),
         };
         Self {
-            id: format!("R{}", index + 1),
+            id: requirement_id(index),
             name: requirement.name.clone(),
             description: requirement.description(),
             unit: requirement.unit,
@@ -124,8 +124,13 @@ impl RequirementAnswer {
     }
 }
 
+/// Returns the identifier of the requirement at a place in the scenario.
+pub(super) fn requirement_id(index: usize) -> String {
+    format!("R{}", index + 1)
+}
+
 /// Returns a margin in whole per cent, or how many limits the value is; empty without a number.
-fn margin_text(margin: f64, multiple: f64) -> String {
+pub(super) fn margin_text(margin: f64, multiple: f64) -> String {
     if !margin.is_finite() {
         return String::new();
     }

@@ -14,6 +14,7 @@ use flexsc_scenario::{RequirementSource, Scenario};
 
 use super::error_statistics::{ErrorStatistics, ErrorSummary};
 use super::event::{EventKind, RunEvent};
+use super::limit_watch::{LimitStay, LimitWatch};
 use crate::metrics::ErrorStream;
 
 /// Part of a run after which its end begins.
@@ -37,6 +38,7 @@ pub struct RunObserver {
     /// Events that have begun, and not ended, by kind, part and cause.
     open: BTreeMap<(EventKind, String, String), usize>,
     names: Vec<String>,
+    limits: LimitWatch,
     /// True if the body has three axes, and thus control cycles; true if it has wheels; true if errors are required.
     has_cycles: bool,
     has_wheels: bool,
@@ -122,6 +124,7 @@ impl RunObserver {
             events: Vec::new(),
             open: BTreeMap::new(),
             names: scenario.mode.iter().map(|mode| mode.name.clone()).collect(),
+            limits: LimitWatch::new(scenario.actuator_limits(), MOST_EVENTS),
             has_cycles: scenario.axis_count() == 3,
             has_wheels: scenario.actuator.wheels().is_some(),
             has_errors: scenario
@@ -143,6 +146,15 @@ impl RunObserver {
         for index in std::mem::take(&mut self.open).into_values() {
             self.events[index].to_s = end;
         }
+        let stay = |(part, stay): (String, LimitStay)| RunEvent {
+            kind: EventKind::Saturation,
+            part,
+            cause: String::new(),
+            mode: self.names.get(stay.mode).cloned(),
+            from_s: stay.from,
+            to_s: stay.to,
+        };
+        self.events.extend(self.limits.finish(self.end).into_iter().map(stay));
         let has_slews = self.slewing.is_some();
         Observed {
             slews: self.slews.finish(),
@@ -278,6 +290,7 @@ impl Record for RunObserver {
             && let Some(cycle) = report.get()
         {
             self.observe_cycle(now, cycle);
+            self.limits.observe(now, cycle.visit.mode, report);
             if self.has_wheels {
                 report.get().into_iter().for_each(|wheels| self.observe_wheels(wheels));
             }

@@ -195,18 +195,12 @@ impl Answer {
 
     fn event_lines(&self) -> Vec<String> {
         let line = |event: &super::RunEvent| {
-            let kind = match event.kind {
-                super::EventKind::Mode => "mode",
-                super::EventKind::Saturation => "at a limit",
-                super::EventKind::Blinding => "blinded",
-                super::EventKind::Failure => "failure",
-            };
             let cause = if event.cause.is_empty() { String::new() } else { format!(": {}", event.cause) };
             vec![
                 number(event.from_s),
                 "to".to_owned(),
                 time(event.to_s),
-                format!("{kind} {}{cause}", event.part),
+                format!("{} {}{cause}", event.kind.words(), event.part).trim_end().to_owned(),
             ]
         };
         let rows: Vec<Vec<String>> = self.events.iter().map(line).collect();
@@ -261,7 +255,7 @@ fn aligned(rows: &[Vec<String>], most: usize) -> Vec<String> {
 }
 
 /// Returns lines with the indent of a block.
-fn indented(lines: Vec<String>) -> Vec<String> {
+pub(super) fn indented(lines: Vec<String>) -> Vec<String> {
     lines.into_iter().map(|line| format!("  {line}")).collect()
 }
 

@@ -64,7 +64,7 @@ impl Campaign {
     }
 
     /// Returns the value of a key in the scenario.
-    fn nominal(&self, key: &str) -> Value {
+    pub(crate) fn nominal(&self, key: &str) -> Value {
         // The scenario was checked: every uncertain key holds a number.
         key::get(&self.table, key).cloned().unwrap_or(Value::Float(f64::NAN))
     }

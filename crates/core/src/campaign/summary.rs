@@ -4,6 +4,7 @@ use super::directory::Directory;
 use super::error::DirectoryError;
 use super::row_maker::RowMaker;
 use super::rows::{ColumnCells, ColumnKind, ERROR, RUN};
+use crate::answer::CampaignRuns;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
 
@@ -11,7 +12,7 @@ use crate::statistics::Statistics;
 const HELD: usize = 1 << 23;
 
 /// Summary of rows.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct CampaignSummary {
     /// Number of rows.
     pub runs: usize,
@@ -19,6 +20,8 @@ pub struct CampaignSummary {
     pub failed: Option<(u64, u64, String)>,
     /// Statistics of each metric.
     pub statistics: Vec<Statistics>,
+    /// Values of requirements and uncertain keys.
+    pub values: CampaignRuns,
 }
 
 impl Directory {
@@ -38,6 +41,7 @@ impl Directory {
             runs,
             failed,
             statistics: self.work().statistics(runs, |names| self.columns(names))?,
+            values: self.work().campaign_runs(|names| self.columns(names))?,
         })
     }
 }

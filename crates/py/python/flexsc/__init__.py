@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._analysis import analysis as _analysis
-from flexsc._answer import Answer
+from flexsc._answer import Answer, CampaignAnswer
 from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._log import Log
@@ -103,6 +103,7 @@ __all__ = [
     "Adaptation",
     "Answer",
     "BudgetLevel",
+    "CampaignAnswer",
     "CompiledLaw",
     "Effort",
     "Estimator",

@@ -1,4 +1,4 @@
-"""The answer of a run: what was asked, whether it is met, by how much, and when not."""
+"""The answer of a run or a campaign: what was asked, whether it is met, by how much, and when not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,62 @@ from typing import Any
 from flexsc import _native as engine
 
 
-class Answer:
+class _Fields:
+    """Fields and text of an answer."""
+
+    verdict: str
+    verdict_text: str
+    requirements: tuple[dict[str, Any], ...]
+
+    def __init__(self, native: engine.RunAnswer) -> None:
+        self._native = native
+        fields = self.to_dict()
+        self.verdict, self.verdict_text = fields["verdict"], fields["verdict_text"]
+        self.requirements = tuple(fields.get("requirements", ()))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the fields as dictionaries and lists, as `flexsc simulate --json` has them.
+
+        >>> import flexsc
+        >>> answer = flexsc.Scenario.example("half-turn").simulate(log="none").answer
+        >>> answer.to_dict()["schema"]
+        'flexsc-answer-1'
+        """
+        fields: dict[str, Any] = json.loads(self._native.json())
+        return fields
+
+    def text(self, *, all: bool = False) -> str:
+        """Return the first screen, or everything that is known.
+
+        Args:
+            all: Everything: each event, and lines that the first screen leaves out.
+
+        >>> import flexsc
+        >>> answer = flexsc.Scenario.example("half-turn").simulate(log="none").answer
+        >>> print(answer.text().splitlines()[2])
+          ✓ pointing   1.82 arcsec   at most 7 arcsec   margin 74 %
+        """
+        return self._native.screen(all)
+
+    def __str__(self) -> str:
+        return self.text()
+
+    def __repr__(self) -> str:
+        return f"<flexsc.{type(self).__name__}: {self.verdict_text}>"
+
+    def __eq__(self, other: object) -> bool:
+        return self.to_dict() == other.to_dict() if isinstance(other, type(self)) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._native.json())
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f"<pre>{escape(self.text())}</pre>"
+
+
+class Answer(_Fields):
     """The answer of a run: its verdict, requirements, warnings, modes of operation and events.
 
     As text it is the first screen of `flexsc simulate`, in the units of the limits.
@@ -53,55 +108,76 @@ class Answer:
     ()
     """
     events: tuple[dict[str, Any], ...]
-    """Stays in modes, losses of the target, blinding and failures: `kind`, `part`, `from_s`, `to_s`.
+    """Stays in modes, actuators at limits, losses of the target, eclipses, blinding and failures: `kind`, `part`, `from_s`, `to_s`.
 
     >>> answer.events
     ()
     """
 
     def __init__(self, native: engine.RunAnswer) -> None:
-        self._native = native
+        super().__init__(native)
         fields = self.to_dict()
-        self.verdict, self.verdict_text = fields["verdict"], fields["verdict_text"]
-        for name in ("requirements", "warnings", "by_mode", "events"):
+        for name in ("warnings", "by_mode", "events"):
             setattr(self, name, tuple(fields.get(name, ())))
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the fields as dictionaries and lists, as `flexsc simulate --json` has them.
 
-        >>> answer.to_dict()["schema"]
-        'flexsc-answer-1'
-        """
-        fields: dict[str, Any] = json.loads(self._native.json())
-        return fields
+class CampaignAnswer(_Fields):
+    """The answer of a campaign: how many runs meet what is asked, by how much, and what drives it.
 
-    def text(self, *, all: bool = False) -> str:
-        """Return the first screen, or everything that is known.
+    As text it is the first screen of `flexsc simulate --runs`, in the units of the limits.
 
-        Args:
-            all: Everything: each event, and lines that the first screen leaves out.
+    >>> import flexsc
+    >>> table = flexsc.campaign(flexsc.Scenario.example("half-turn"), runs=20)
+    >>> answer = table.answer
+    >>> answer.runs, answer.runs_met == sum(table["requirement"] == "met")
+    (20, True)
+    """
 
-        >>> print(answer.text().splitlines()[2])
-          ✓ pointing   1.82 arcsec   at most 7 arcsec   margin 74 %
-        """
-        return self._native.screen(all)
+    verdict: str
+    """`missed`, `met`, `goal_met`, `goal_missed`, or `not_asked` without a requirement.
 
-    def __str__(self) -> str:
-        return self.text()
+    >>> answer.verdict
+    'missed'
+    """
+    verdict_text: str
+    """The verdict in words.
 
-    def __repr__(self) -> str:
-        return f"<flexsc.Answer: {self.verdict_text}>"
+    >>> answer.verdict_text.startswith("MISSED: ")
+    True
+    """
+    runs: int
+    """The number of runs.
 
-    def __eq__(self, other: object) -> bool:
-        return self.to_dict() == other.to_dict() if isinstance(other, Answer) else NotImplemented
+    >>> answer.runs
+    20
+    """
+    runs_met: int | None
+    """The number of runs that meet all requirements, or the goal; None if nothing is asked.
 
-    def __hash__(self) -> int:
-        return hash(self._native.json())
+    >>> 0 < answer.runs_met < 20
+    True
+    """
+    share_interval: tuple[float, float] | None
+    """The 95 % interval of the probability that a run meets them (Wilson); None if nothing is asked.
 
-    def _repr_html_(self) -> str:
-        from html import escape
+    >>> low, high = answer.share_interval
+    >>> low < answer.runs_met / answer.runs < high
+    True
+    """
+    requirements: tuple[dict[str, Any], ...]
+    """The requirements, missed ones first, then by margin: `limit`, `median`, `p95`, `worst` with its `run`,
+    `margin`, `runs_met`, `share_interval`, the keys it is `driven_by`, and the same as `text`.
 
-        return f"<pre>{escape(self.text())}</pre>"
+    >>> answer.requirements[0]["driven_by"][0]["key"]
+    'spacecraft.inertia[2][2]'
+    """
+
+    def __init__(self, native: engine.RunAnswer) -> None:
+        super().__init__(native)
+        fields = self.to_dict()
+        self.runs, self.runs_met = fields["runs"], fields.get("runs_met")
+        interval = fields.get("share_interval")
+        self.share_interval = None if interval is None else (interval[0], interval[1])
 
 
-Answer.__module__ = "flexsc"
+Answer.__module__ = CampaignAnswer.__module__ = "flexsc"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc import _units
+from flexsc._answer import CampaignAnswer
 from flexsc._columns import Columns, read_only
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
@@ -189,6 +190,24 @@ class Table(Columns):
             }
             self._statistics = Named.of(found, "no numeric metric")
         return self._statistics
+
+    @property
+    def answer(self) -> CampaignAnswer:
+        """The answer: how many runs meet the requirements, by how much, the worst run, and what drives it.
+
+        >>> import flexsc
+        >>> table = flexsc.campaign(flexsc.Scenario.example("half-turn"), runs=20)
+        >>> table.answer.requirements[0]["text"]["limit"]
+        '7 arcsec'
+        """
+        names = ("run", "error", "goal", "requirement_values", "requirement_shares", *self.varied)
+        columns = {
+            # Texts, and lists, as lists.
+            name: self[name] if self[name].dtype in ("float64", "int64") else self[name].tolist()
+            for name in names
+            if name in self._names
+        }
+        return CampaignAnswer(engine.campaign_answer(self._campaign(), columns))
 
     def unit(self, column: str) -> str:
         """Return the unit of a column, a metric or a key; empty for a count, a ratio or a word.

@@ -192,6 +192,7 @@ __all__ = [
     "Thermal",
     "Thruster",
     "Thrusters",
+    "TitleBlock",
     "Tracker",
     "TruthEstimator",
     "Turn",
@@ -4224,6 +4225,30 @@ class Thrusters(Part):
     """Intervals in which the thrusters fail."""
 
 
+class TitleBlock(Part):
+    """Title block of the page that `flexsc report` writes. Every key is a plain text; one that is absent
+    leaves no empty field.
+
+    Args:
+        title: Title of the page; default: `about`, or the name of the scenario.
+        project: Project.
+        author: Author.
+        issue: Issue or revision.
+        date: Date of the issue.
+    """
+
+    title: str | None = None
+    """Title of the page; default: `about`, or the name of the scenario."""
+    project: str | None = None
+    """Project."""
+    author: str | None = None
+    """Author."""
+    issue: str | None = None
+    """Issue or revision."""
+    date: str | None = None
+    """Date of the issue."""
+
+
 class Tracker(Part):
     """Initial values of one mode in the observer of a channel.
 
@@ -4720,6 +4745,9 @@ class Keys(TypedDict, total=False):
     """Date and time of the start, such as `2026-03-20T14:46:00Z`, from which a log counts its time; a
     second 60 is a leap second, at the end of June or December. Default: none.
     """
+
+    document: TitleBlock
+    """Title block of the page that `flexsc report` writes."""
 
     body: BodyKind
     """The controlled body, unless it is a `spacecraft`."""

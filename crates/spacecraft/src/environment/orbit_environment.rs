@@ -151,6 +151,38 @@ impl OrbitEnvironment {
         self.part_in_view(t) >= 0.5
     }
 
+    /// Returns the times of the run (s) with less than half of the Sun's disc in view.
+    pub fn eclipses_seen(&self) -> Vec<[f64; 2]> {
+        let dark = |[from, to]: [Instant; 2]| {
+            let [from, to] = [from, to].map(|edge| edge.seconds().clamp(0.0, self.duration));
+            let middle = 0.5 * (from + to);
+            if self.is_lit(middle) {
+                return None;
+            }
+            // The last lit instant on each side of the middle, unless the run begins or ends in the dark.
+            let [enters, leaves] =
+                [from, to].map(|end| if self.is_lit(end) { self.dusk(end, middle) } else { end });
+            Some([enters, leaves])
+        };
+        self.eclipses().map_or_else(Vec::new, |eclipses| {
+            eclipses
+                .outer
+                .iter()
+                .filter(|[from, _]| from.seconds() < self.duration)
+                .filter_map(|own| dark(*own))
+                .collect()
+        })
+    }
+
+    /// Returns the time (s) between a lit and a dark one at which half of the Sun's disc is in view, to a microsecond.
+    fn dusk(&self, mut lit: f64, mut dark: f64) -> f64 {
+        while (dark - lit).abs() > 1e-6 {
+            let middle = 0.5 * (lit + dark);
+            if self.is_lit(middle) { lit = middle } else { dark = middle }
+        }
+        dark
+    }
+
     /// Returns an upper bound of the field on the orbit (T).
     pub fn field_bound(&self) -> f64 {
         let on = self.orbit.as_ref().zip(self.field.as_ref());

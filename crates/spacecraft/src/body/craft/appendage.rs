@@ -94,18 +94,18 @@ impl Appendage {
     }
 
     /// Returns the centre of mass from the root (m), in the axes of the appendage.
-    pub(super) fn centre_of_mass(&self) -> Vector {
+    pub fn centre_of_mass(&self) -> Vector {
         self.uniform_plate().map_or_else(|| vector(&self.centre), UniformPlate::centre)
     }
 
     /// Returns the inertia tensor about the centre of mass (kg m²), in the axes of the appendage.
-    pub(super) fn inertia_tensor(&self) -> Matrix3<f64> {
+    pub fn inertia_tensor(&self) -> Matrix3<f64> {
         self.uniform_plate().map_or_else(|| tensor(&self.inertia), |plate| plate.inertia(self.mass.get()))
     }
 
     /// Returns the matrix that transforms vectors from the appendage's axes, at drive angle `angle` (rad), to the
     /// body's.
-    pub(super) fn axes(&self, angle: f64) -> Matrix3<f64> {
+    pub fn axes(&self, angle: f64) -> Matrix3<f64> {
         let orientation = self.turned.matrix();
         self.drive.as_ref().map_or(orientation, |drive| orientation * drive.rotation(angle))
     }

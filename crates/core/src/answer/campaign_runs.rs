@@ -1,0 +1,124 @@
+//! Values of the runs of a campaign: of its requirements, its goal and its uncertain keys.
+
+use toml::Value;
+
+use crate::campaign::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
+use crate::metrics::{MetricValue, Metrics, goal};
+use crate::requirement_verdict::{RequirementRuns, RequirementVerdict};
+
+/// Name of the metric that says whether a run meets its goal.
+const GOAL: &str = goal::NAMES[0];
+
+/// Values of runs, as they are collected.
+#[derive(Clone, Debug)]
+pub struct CampaignRuns {
+    pub(super) requirements: RequirementRuns,
+    /// Uncertain keys, each with its value in the scenario and in every run.
+    pub(super) keys: Vec<UncertainValues>,
+    /// Number of runs that meet the goal, and of those that have one.
+    pub(super) goals: [u64; 2],
+    /// Number of runs, and of those that failed.
+    pub(super) runs: u64,
+    pub(super) failed: u64,
+    /// Number of varied keys before the uncertain ones.
+    designed: usize,
+}
+
+/// Values of an uncertain key.
+#[derive(Clone, Debug)]
+pub(super) struct UncertainValues {
+    pub key: String,
+    pub design: f64,
+    pub values: Vec<f64>,
+}
+
+/// Returns the value of a key as a number; NaN without one.
+fn number(value: &Value) -> f64 {
+    value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64)).unwrap_or(f64::NAN)
+}
+
+impl CampaignRuns {
+    /// Creates an empty collector for runs of a campaign.
+    pub fn new(campaign: &Campaign) -> Self {
+        let scenario = campaign.scenario();
+        let uncertain = |key: &String| UncertainValues {
+            key: key.clone(),
+            design: number(&campaign.nominal(key)),
+            values: Vec::new(),
+        };
+        let keys: Vec<UncertainValues> = scenario.uncertain.keys().map(uncertain).collect();
+        Self {
+            requirements: RequirementRuns::new(scenario),
+            designed: campaign.keys().count() - keys.len(),
+            keys,
+            goals: [0; 2],
+            runs: 0,
+            failed: 0,
+        }
+    }
+
+    /// Adds a run of this number by the values of all keys that vary and by its metrics; one that failed has none.
+    pub fn add(&mut self, run: u64, drawn: &[Value], metrics: Option<&Metrics>) {
+        self.requirements.add(run, metrics);
+        for (own, value) in self.keys.iter_mut().zip(drawn.iter().skip(self.designed)) {
+            own.values.push(number(value));
+        }
+        let word = metrics.and_then(|metrics| metrics.get(GOAL));
+        self.add_goal(word.and_then(|word| match word {
+            MetricValue::Word(word) => goal::score(word),
+            _ => None,
+        }));
+        self.runs += 1;
+        self.failed += u64::from(metrics.is_none());
+    }
+
+    /// Returns the verdicts on the requirements, in their order; none without a run.
+    pub fn verdicts(&self) -> Vec<RequirementVerdict> {
+        self.requirements.clone().finish()
+    }
+
+    fn add_goal(&mut self, score: Option<f64>) {
+        if let Some(score) = score {
+            self.goals[0] += u64::from(score > 0.5);
+            self.goals[1] += 1;
+        }
+    }
+}
+
+impl RowMaker {
+    /// Returns the values of runs from their rows; `columns` returns columns by their names, `None` for a missing one.
+    pub fn campaign_runs<E>(
+        &self,
+        columns: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, E>,
+    ) -> Result<CampaignRuns, E> {
+        let mut all = CampaignRuns::new(&self.campaign);
+        let keys: Vec<String> = all.keys.iter().map(|own| own.key.clone()).collect();
+        let mut names = vec![RUN, ERROR, GOAL, "requirement_values", "requirement_shares"];
+        names.extend(keys.iter().map(String::as_str));
+        let mut found = columns(&names)?;
+        for (own, cells) in all.keys.iter_mut().zip(found.drain(5..)) {
+            own.values = cells.map_or_else(Vec::new, |cells| cells.numbers());
+        }
+        let [runs, errors, goals, values, shares] = [0, 1, 2, 3, 4].map(|place| found[place].take());
+        let Some(ColumnCells::Integers(runs)) = runs else { return Ok(all) };
+        let list = |cells: &Option<ColumnCells>, row: usize| match cells {
+            Some(ColumnCells::Lists(cells)) => cells.get(row).cloned().flatten().unwrap_or_default(),
+            _ => Vec::new(),
+        };
+        let has_values = values.is_some();
+        for (row, run) in runs.iter().enumerate() {
+            if has_values {
+                let run = run.unwrap_or_default().cast_unsigned();
+                all.requirements.add_values(run, &list(&values, row), &list(&shares, row));
+            }
+            all.runs += 1;
+        }
+        for score in goals.map_or_else(Vec::new, |goals| goals.numbers()) {
+            all.add_goal(Some(score).filter(|score| score.is_finite()));
+        }
+        if let Some(ColumnCells::Text(errors)) = errors {
+            all.failed = errors.iter().flatten().filter(|error| !error.is_empty()).count() as u64;
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,81 @@
+//! First screen of a campaign: the verdict, the distribution of each requirement, what drives it, and how to repeat it.
+
+use flexsc_formats::count::counted;
+use flexsc_formats::reader_units::rough_time;
+use flexsc_formats::text_columns::columns;
+
+use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
+use super::screen::{ScreenOptions, indented, wrapped};
+
+/// Largest number of requirements, and of keys that drive one, on a first screen.
+const MOST: [usize; 2] = [6, 1];
+/// Columns between the limit and the worst value, which are left out where no requirement has them.
+const NOMINAL: usize = 3;
+
+impl CampaignAnswer {
+    /// Returns the answer as text; `took` is the real time that the runs took (s).
+    pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
+        let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
+        let head = format!("{}   {}   {}{took}", self.scenario, self.verdict_text, counted(self.runs, "run"));
+        let mut blocks = vec![wrapped(&head, options.width, 4)];
+        if !self.requirements.is_empty() && self.runs > 0 {
+            blocks.push(self.requirement_table(options));
+            blocks.push(self.lines(options));
+        }
+        let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
+        options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
+    }
+
+    fn requirement_table(&self, options: ScreenOptions) -> Vec<String> {
+        let shown = if options.all { self.requirements.len() } else { MOST[0] };
+        let heads = ["", "requirement", "limit", "nominal", "median", "95 %", "worst", "met"];
+        let mut rows = vec![heads.map(str::to_owned).to_vec()];
+        rows.extend(self.requirements.iter().take(shown).map(CampaignRequirement::cells));
+        if self.requirements.iter().all(|own| own.nominal.is_none()) {
+            for row in &mut rows {
+                row.remove(NOMINAL);
+            }
+        }
+        let mut lines = indented(columns(&rows, |_| true));
+        let notes = self.requirements.iter().filter_map(|own| own.text.note.as_ref());
+        lines.extend(notes.flat_map(|note| wrapped(&format!("  {note}"), options.width, 4)));
+        if self.requirements.len() > shown {
+            lines.push(format!("    {} more: --all", self.requirements.len() - shown));
+        }
+        lines
+    }
+
+    /// Returns the keys that drive the first requirement, or, if all are wanted, each of them, and how the worst run is
+    /// repeated.
+    fn lines(&self, options: ScreenOptions) -> Vec<String> {
+        let [requirements, keys] = if options.all { [usize::MAX; 2] } else { [1, MOST[1]] };
+        let mut heads: Vec<[String; 2]> = Vec::new();
+        let driven = self.requirements.iter().filter(|own| !own.driven_by.is_empty());
+        for own in driven.take(requirements) {
+            let name = if self.requirements.len() > 1 { format!("{}, ", own.name) } else { String::new() };
+            let mut head = "driven by".to_owned();
+            for key in own.driven_by.iter().take(keys) {
+                heads.push([std::mem::take(&mut head), format!("{name}{}", key.text)]);
+            }
+        }
+        heads.extend(self.repeat.iter().map(|command| ["repeat".to_owned(), command.clone()]));
+        let line = |[head, text]: [String; 2]| wrapped(&format!("  {head:<12}{text}"), options.width, 14);
+        heads.into_iter().flat_map(line).collect()
+    }
+}
+
+impl CampaignRequirement {
+    fn cells(&self) -> Vec<String> {
+        let text = &self.text;
+        vec![
+            self.decision.mark().to_owned(),
+            self.name.clone(),
+            format!("at most {}", text.limit),
+            text.nominal.clone(),
+            text.median.clone(),
+            text.p95.clone(),
+            text.worst.clone(),
+            text.met.clone(),
+        ]
+    }
+}
