@@ -66,14 +66,34 @@ fn curves_lie_one_over_the_other() {
 }
 
 #[test]
+fn campaigns_have_their_distributions_side_by_side() {
+    let dir = Dir::with(&["half-turn"]);
+    let text = dir.text("half-turn.toml");
+    let loose = text.replacen("\"7 arcsec\"", "\"20 arcsec\"", 1);
+    assert_ne!(text, loose);
+    dir.write("loose.toml", &loose);
+    dir.run("simulate half-turn.toml --runs 12 -o wide").exits(3);
+    dir.run("simulate loose.toml --runs 12 -o narrow").exits(0);
+    let ran = dir.run("compare wide narrow").exits(0);
+    for told in ["at most 7 arcsec", "at most 20 arcsec", "of 12", "requirement[0].limit"] {
+        assert!(ran.err.contains(told), "{told}: {}", ran.err);
+    }
+    let json: Json = serde_json::from_str(&dir.run("compare wide narrow --json").exits(0).out).expect("an object");
+    assert_eq!(json["answers"][0]["runs"], 12);
+    assert_eq!(json["answers"][0]["requirements"][0]["median"], json["answers"][1]["requirements"][0]["median"]);
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused() {
     let dir = log_and_other();
     std::fs::create_dir(dir.path("empty")).expect("a directory");
     for (line, told) in [
         ("attitude-hold.mcap", "2 values required"),
         ("attitude-hold.mcap softer.toml --set seed=2", "keys cannot be set"),
+        ("empty empty", "empty"),
+        ("empty empty -o figures", "one by one"),
         ("attitude-hold.toml missing.toml", "missing.toml"),
-        ("empty softer.toml", "is a directory"),
+        ("empty softer.toml", "compare two campaigns, or two runs"),
         ("softer.toml softer.toml -o softer.toml", "softer.toml"),
     ] {
         dir.run(&format!("compare {line}")).exits(2).says(&[told]);

@@ -1,15 +1,20 @@
-//! `flexsc compare`: two scenarios or logs, the keys in which they differ, and their answers side by side.
+//! `flexsc compare`: two scenarios, logs or campaigns, the keys in which they differ, and their answers side by side.
 
 use std::ffi::OsStr;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::answer::{Answer, KeyDifference, RunComparison, RunObserver};
+use flexsc_core::answer::{
+    Answer, CampaignAnswer, CampaignComparison, KeyDifference, RunComparison, RunObserver, ScreenOptions,
+};
+use flexsc_core::campaign::Directory;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::record::{Detail, Log};
 use serde_json::json;
 
 use crate::answer::AnswerArgs;
+use crate::campaign::part_files;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
@@ -19,7 +24,7 @@ use crate::{memory_log, plot, say, scenario};
 
 #[derive(clap::Args)]
 pub struct CompareArgs {
-    /// Two scenarios or logs; a scenario is run, and the run of a log is repeated
+    /// Two scenarios or logs, or the directories of two campaigns; a scenario is run, and the run of a log is repeated
     #[arg(required = true, num_args = 2, value_names = ["A", "B"])]
     sides: Vec<PathBuf>,
     /// Set a key of both scenarios, such as duration=200; not for logs
@@ -53,13 +58,17 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     };
     for side in [first, second] {
         args.drawing.check(side)?;
-        if side.is_dir() {
-            let why = "is a directory; compare takes scenarios (.toml) and logs (.mcap)";
-            return Err(CliError::Arguments(format!("{}: {why}", side.display())));
-        }
-        if is_log(side) && !args.set.is_empty() {
-            let why = format!("--set: {} is a log, whose keys cannot be set", side.display());
+        if !args.set.is_empty() && (is_log(side) || side.is_dir()) {
+            let why = format!("--set: {} is no scenario, and its keys cannot be set", side.display());
             return Err(CliError::Arguments(why));
+        }
+    }
+    match [first, second].map(|side| side.is_dir()) {
+        [true, true] => return campaigns([first, second], args),
+        [false, false] => {}
+        _ => {
+            let why = "one is the directory of a campaign, and the other is not: compare two campaigns, or two runs";
+            return Err(CliError::Arguments(why.to_owned()));
         }
     }
     // Both are read before one is run.
@@ -82,9 +91,41 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     }
     say!(
         "{}",
-        comparison.screen(AnswerArgs { all: args.all, ..AnswerArgs::from_units(args.units) }.screen())
+        comparison.screen(args.screen())
     );
     Ok(())
+}
+
+/// Compares the campaigns in two directories.
+fn campaigns(sides: [&Path; 2], args: &CompareArgs) -> Result<(), CliError> {
+    if args.drawing.figures.is_some() {
+        let why = "-o: figures of campaigns are drawn one by one: flexsc plot DIR";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
+    let opened = |path: &Path| Directory::open(path).map_err(part_files::failure);
+    let directories = [opened(sides[0])?, opened(sides[1])?];
+    let units: ReaderUnits = args.units.units.into();
+    let answered = |directory: &Directory| {
+        let work = directory.work();
+        let runs = work.campaign_runs(|names| directory.columns(names)).map_err(part_files::failure)?;
+        let path = directory.path().display().to_string();
+        Ok::<_, CliError>(CampaignAnswer::new(work.campaign.scenario(), &runs, None, Some(&path), units))
+    };
+    let answers = [answered(&directories[0])?, answered(&directories[1])?];
+    let scenarios = directories.each_ref().map(|directory| directory.work().campaign.scenario());
+    let keys = KeyDifference::between(scenarios, units);
+    let comparison = CampaignComparison { names: sides.map(|path| path.display().to_string()), keys, answers };
+    if args.json {
+        return print_lines(&[json!(comparison)]);
+    }
+    say!("{}", comparison.screen(args.screen()));
+    Ok(())
+}
+
+impl CompareArgs {
+    fn screen(&self) -> ScreenOptions {
+        AnswerArgs { all: self.all, ..AnswerArgs::from_units(self.units) }.screen()
+    }
 }
 
 /// Run that is to be compared, read and not yet made.

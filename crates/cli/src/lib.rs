@@ -163,7 +163,7 @@ enum Verb {
     Observer(observer::ObserverArgs),
     /// Plot a log, a campaign or a sweep
     Plot(plot::PlotArgs),
-    /// Compare two scenarios or logs: keys, answers, curves
+    /// Compare two scenarios, logs or campaigns: keys and answers
     ///
     /// The keys in which they differ, the answers side by side and, with -o, their figures one over the other.
     Compare(compare::CompareArgs),

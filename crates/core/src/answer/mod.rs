@@ -3,6 +3,7 @@
 //! that text, JSON, Python and reports say the same.
 
 mod campaign_answer;
+mod campaign_comparison;
 mod campaign_runs;
 mod campaign_screen;
 mod driving_key;
@@ -31,6 +32,7 @@ use crate::requirement_verdict::{self, RequirementVerdict};
 pub use campaign_answer::{
     CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
 };
+pub use campaign_comparison::CampaignComparison;
 pub use campaign_runs::CampaignRuns;
 pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;

@@ -6,11 +6,11 @@ use serde::Serialize;
 
 use super::key_difference::KeyDifference;
 use super::mode_answer::ModeAnswer;
-use super::screen::{ScreenOptions, wrapped};
+use super::screen::{ScreenOptions, indented, wrapped};
 use super::{Answer, RequirementAnswer};
 
 /// Letters of the two sides.
-const SIDES: [&str; 2] = ["A", "B"];
+pub(super) const SIDES: [&str; 2] = ["A", "B"];
 /// Largest number of keys on a first screen.
 const MOST_KEYS: usize = 12;
 
@@ -29,8 +29,8 @@ impl RunComparison {
     /// Returns the comparison as text.
     pub fn screen(&self, options: ScreenOptions) -> String {
         let blocks = [
-            self.heads(),
-            self.key_lines(options.all),
+            heads(&self.names, &self.answers.each_ref().map(|answer| answer.verdict_text.clone())),
+            key_lines(&self.keys, options.all),
             self.requirement_lines(),
             self.warning_lines(options.width),
             self.mode_lines(options.units),
@@ -38,27 +38,6 @@ impl RunComparison {
         ];
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
-    }
-
-    fn heads(&self) -> Vec<String> {
-        let row = |side: usize| {
-            vec![SIDES[side].to_owned(), self.names[side].clone(), self.answers[side].verdict_text.clone()]
-        };
-        columns(&[row(0), row(1)], |_| true)
-    }
-
-    fn key_lines(&self, all: bool) -> Vec<String> {
-        if self.keys.is_empty() {
-            return vec!["  the scenarios have the same keys".to_owned()];
-        }
-        let shown = if all { self.keys.len() } else { MOST_KEYS };
-        let or_none = |text: &String| if text.is_empty() { "none".to_owned() } else { text.clone() };
-        let row = |own: &KeyDifference| vec![own.key.clone(), or_none(&own.texts[0]), or_none(&own.texts[1])];
-        let mut lines = table("key", self.keys.iter().take(shown).map(row));
-        if self.keys.len() > shown {
-            lines.push(format!("    {} more: --all", self.keys.len() - shown));
-        }
-        lines
     }
 
     fn requirement_lines(&self) -> Vec<String> {
@@ -155,6 +134,27 @@ impl RunComparison {
     }
 }
 
+/// Returns a line for each side with its name and its verdict.
+pub(super) fn heads(names: &[String; 2], verdicts: &[String; 2]) -> Vec<String> {
+    let row = |side: usize| vec![SIDES[side].to_owned(), names[side].clone(), verdicts[side].clone()];
+    columns(&[row(0), row(1)], |_| true)
+}
+
+/// Returns the keys that differ, the first ones or all.
+pub(super) fn key_lines(keys: &[KeyDifference], all: bool) -> Vec<String> {
+    if keys.is_empty() {
+        return vec!["  the scenarios have the same keys".to_owned()];
+    }
+    let shown = if all { keys.len() } else { MOST_KEYS };
+    let or_none = |text: &String| if text.is_empty() { "none".to_owned() } else { text.clone() };
+    let row = |own: &KeyDifference| vec![own.key.clone(), or_none(&own.texts[0]), or_none(&own.texts[1])];
+    let mut lines = table("key", keys.iter().take(shown).map(row));
+    if keys.len() > shown {
+        lines.push(format!("    {} more: --all", keys.len() - shown));
+    }
+    lines
+}
+
 /// Returns a table with a column for each side, without its head if it has no rows.
 fn table(head: &str, rows: impl Iterator<Item = Vec<String>>) -> Vec<String> {
     let rows: Vec<Vec<String>> = rows.collect();
@@ -163,5 +163,5 @@ fn table(head: &str, rows: impl Iterator<Item = Vec<String>>) -> Vec<String> {
     }
     let head = [head, SIDES[0], SIDES[1]].map(str::to_owned).to_vec();
     let all: Vec<Vec<String>> = std::iter::once(head).chain(rows).collect();
-    columns(&all, |_| true).into_iter().map(|line| format!("  {line}")).collect()
+    indented(columns(&all, |_| true))
 }

@@ -1,0 +1,62 @@
+//! Answers of two campaigns side by side.
+
+use flexsc_formats::count::counted;
+use flexsc_formats::text_columns::columns;
+use serde::Serialize;
+
+use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
+use super::key_difference::KeyDifference;
+use super::run_comparison::{SIDES, heads, key_lines};
+use super::screen::{ScreenOptions, indented};
+
+/// Two campaigns, and in what they differ.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CampaignComparison {
+    /// Names of the two sides.
+    pub names: [String; 2],
+    /// Keys in which the scenarios differ.
+    pub keys: Vec<KeyDifference>,
+    /// Answer of each side.
+    pub answers: [CampaignAnswer; 2],
+}
+
+impl CampaignComparison {
+    /// Returns the comparison as text.
+    pub fn screen(&self, options: ScreenOptions) -> String {
+        let verdicts = self
+            .answers
+            .each_ref()
+            .map(|answer| format!("{}   {}", answer.verdict_text, counted(answer.runs, "run")));
+        let blocks = [
+            heads(&self.names, &verdicts),
+            key_lines(&self.keys, options.all),
+            self.requirement_lines(),
+        ];
+        let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
+        options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
+    }
+
+    /// Returns a table with a row for each requirement and side.
+    fn requirement_lines(&self) -> Vec<String> {
+        let [first, second] = self.answers.each_ref().map(|answer| &answer.requirements);
+        let is_new = |own: &&CampaignRequirement| first.iter().all(|other| other.name != own.name);
+        let names = first.iter().chain(second.iter().filter(is_new)).map(|own| &own.name);
+        let heads = ["requirement", "", "limit", "median", "95 %", "worst", "met"];
+        let mut rows = vec![heads.map(str::to_owned).to_vec()];
+        for name in names {
+            for (side, all) in [first, second].into_iter().enumerate() {
+                let head = if side == 0 { name.clone() } else { String::new() };
+                let own = all.iter().find(|own| own.name == *name);
+                let cells = own.map_or_else(|| vec!["not required".to_owned()], cells);
+                rows.push([head, SIDES[side].to_owned()].into_iter().chain(cells).collect());
+            }
+        }
+        if rows.len() == 1 { Vec::new() } else { indented(columns(&rows, |_| true)) }
+    }
+}
+
+fn cells(own: &CampaignRequirement) -> Vec<String> {
+    let text = &own.text;
+    let met = format!("{} {}", own.decision.mark(), text.met);
+    vec![format!("at most {}", text.limit), text.median.clone(), text.p95.clone(), text.worst.clone(), met]
+}
