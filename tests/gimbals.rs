@@ -247,11 +247,11 @@ fn their_summary_and_figure_show_gimbals_and_limits() {
     dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");
     drawing.shows(&[
-        "gimbal angle (rad)",
-        "gimbal rate (mrad/s)",
+        "gimbal angle (deg)",
+        "gimbal rate (deg/s)",
         "singularity measure",
         "momentum (N m s)",
-        "limits",
+        "limit 57.3 deg/s",
         "gimbal 4",
     ]);
 }

@@ -19,7 +19,7 @@ fn a_goal_of_the_program_is_no_verdict() {
         assert_eq!(said.contains("a   no requirement"), is_unasked, "{said}");
         let metrics = dir.run("simulate a.toml --log none --json").exits(0).json()["metrics"].clone();
         assert_eq!((metrics["goal"] == "met", metrics["goal_band_rad"].is_null()), (is_judged, !is_judged));
-        dir.run("plot a.mcap --what pointing -o p.svg --force").exits(0);
+        dir.run("plot a.mcap --what pointing --axes -o p.svg --force").exits(0);
         assert_eq!(dir.text("p.svg").contains("goal band"), is_judged);
     }
 }

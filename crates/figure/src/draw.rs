@@ -9,13 +9,11 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle, WHITE};
 
 use crate::area::polygons;
-use crate::layout::{
-    LEGEND, LETTERS, Layout, NAME, NUMBERS, ROW, SMALLEST, bar_height, fitting, rows, split, ticks_upward,
-    wide,
-};
+use crate::layout::{LEGEND, LETTERS, Layout, MARK, NAME, NUMBERS, ROW, bar_height, rows, ticks_upward};
 use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::note::{self, Note, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
+use crate::text_width::{SMALLEST, fitting, split, wide};
 use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
 
 /// Height of a title, and of each further line of it (px).
@@ -89,7 +87,7 @@ fn draw_row<'a>(
     for ((layout, panel), y) in layout.row(panels).into_iter().zip(panels).zip(upward) {
         let (own, after) = rest.split_horizontally(layout.width * UNITS);
         let (_, own) = own.split_vertically((top - layout.top(panel)) * UNITS);
-        strip::draw(&own, panel, layout)?;
+        strip::draw(&own, panel, (layout.left, layout.across()))?;
         draw_legend(&own, panel, layout)?;
         draw_panel(&own, (panel, y), layout)?;
         rest = after;
@@ -228,12 +226,12 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
 
 /// Draws the legend above the panel, in rows.
 fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
-    let top = strip::height(layout, panel);
+    let top = layout.strips(panel);
     for entry in layout.entries(panel) {
         let (middle, column) = (top + LEGEND / 2 + 1 + ROW * entry.row, entry.column);
         let mut left = column;
         if let Some(layer) = entry.layer {
-            left += crate::layout::MARK;
+            left += MARK;
             let (from, to) = (at(column, middle), at(column + 18, middle));
             match layer.shape {
                 LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,

@@ -1,5 +1,6 @@
 //! Layout of a figure: places and sizes of its panels, and of the words above their axes.
 
+use crate::text_width::{split, wide};
 use crate::{Figure, Layer, LayerShape, Panel, bar, strip};
 
 /// Width of a figure whose panels have their nominal height (px).
@@ -22,9 +23,8 @@ const BETWEEN: u32 = 16;
 /// Size of a digit that is wider than a letter, and room for the name of an axis and the spaces around its numbers (px).
 const NUMBER: f64 = 12.2;
 const BEFORE_NUMBERS: u32 = 28;
-/// Size of the letters of a legend, and the least size of letters (px): 5.5 pt where the axes' names have 7 pt.
+/// Size of the letters of a legend (px).
 pub const LETTERS: f64 = 11.0;
-pub const SMALLEST: f64 = 9.5;
 
 /// Layout of a figure, or of a panel in a row of panels side by side.
 #[derive(Copy, Clone)]
@@ -107,7 +107,12 @@ impl Layout {
 
     /// Returns the distance from the top of a panel, below its colour bar, to its plot (px).
     pub fn top(self, panel: &Panel) -> u32 {
-        strip::height(self, panel) + self.legend(panel)
+        self.strips(panel) + self.legend(panel)
+    }
+
+    /// Returns the height of a panel's strips (px).
+    pub fn strips(self, panel: &Panel) -> u32 {
+        strip::height((self.left, self.across()), panel)
     }
 
     /// Returns the height of a panel's legend (px).
@@ -164,34 +169,9 @@ fn letters(text: &str) -> u32 {
     wide(text, LETTERS).round() as u32
 }
 
-/// Estimates the width of a text of a size (px).
-pub fn wide(text: &str, size: f64) -> f64 {
-    0.57 * size * text.chars().count() as f64
-}
-
-/// Returns the font size, at most `most` (px), at which a text fits into `room` (px), but no smaller than legible.
-pub fn fitting(text: &str, room: f64, most: f64) -> f64 {
-    (room / wide(text, 1.0)).clamp(SMALLEST, most)
-}
-
 /// Splits a text between words into lines of legend letters within `room` (px).
 fn wrapped(text: &str, room: u32) -> Vec<String> {
     split(text, |line| letters(line) <= room)
-}
-
-/// Splits a text between words into lines that fit, each as long as possible.
-pub fn split(text: &str, fits: impl Fn(&str) -> bool) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if fits(&format!("{line} {word}")) => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }
 
 /// Whether a panel shows any of a layer.

@@ -19,6 +19,7 @@ mod sheet;
 mod strip;
 mod style;
 mod svg;
+mod text_width;
 
 pub use area::band;
 pub use axis::{FigureAxis, Scale, Ticks, name_and_unit, round_to_nice};

@@ -5,9 +5,9 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, WHITE};
 
 use crate::colour;
-use crate::layout::wide;
 use crate::line::Point;
 use crate::svg::{Area, Error, UNITS, text};
+use crate::text_width::wide;
 
 /// Words at a point of a panel.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, RGBColor};
 
 use crate::Panel;
-use crate::layout::{Layout, wide};
 use crate::svg::{Area, Error, UNITS, at, text};
+use crate::text_width::wide;
 
 /// Thin bar above the axes, with a name before it.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,16 +48,16 @@ pub fn names_width(strips: &[Strip]) -> u32 {
 }
 
 /// Returns the height of a panel's strips (px).
-pub fn height(layout: Layout, panel: &Panel) -> u32 {
+pub fn height((left, across): (u32, u32), panel: &Panel) -> u32 {
     let strips = panel.strips.len() as u32;
-    let keys = keys(layout, panel).last().map_or(0, |(_, _, row, _)| row + 1);
+    let keys = keys((left, across), panel).last().map_or(0, |(_, _, row, _)| row + 1);
     if strips == 0 { 0 } else { 2 * MARGIN + ROW * (strips + keys) }
 }
 
 /// Returns the pixels of a span from the left end of the plot; `None` if it is outside.
-fn pixels(layout: Layout, panel: &Panel, span: &StripSpan) -> Option<(f64, f64)> {
+fn pixels(across: u32, panel: &Panel, span: &StripSpan) -> Option<(f64, f64)> {
     let extent = panel.x.extent();
-    let scale = f64::from(layout.across()) / (extent.end - extent.start);
+    let scale = f64::from(across) / (extent.end - extent.start);
     let place = |x: f64| (panel.x.place(x).clamp(extent.start, extent.end) - extent.start) * scale;
     let (from, to) = (place(span.from), place(span.to));
     let is_outside = span.to < panel.x.range.start || span.from > panel.x.range.end;
@@ -70,23 +70,23 @@ fn has_room(span: &StripSpan, (from, to): (f64, f64)) -> bool {
 }
 
 /// Returns names that fit into none of their spans, each with its colour, row and left end (px): they are a legend.
-fn keys(layout: Layout, panel: &Panel) -> Vec<(&str, RGBColor, u32, u32)> {
+fn keys((left, across): (u32, u32), panel: &Panel) -> Vec<(&str, RGBColor, u32, u32)> {
     let mut names: Vec<(&StripSpan, bool)> = Vec::new();
     for span in panel.strips.iter().flat_map(|strip| &strip.spans).filter(|span| !span.name.is_empty()) {
-        let Some(shown) = pixels(layout, panel, span) else { continue };
+        let Some(shown) = pixels(across, panel, span) else { continue };
         let fits = has_room(span, shown);
         match names.iter_mut().find(|(known, _)| known.name == span.name) {
             Some((_, is_named)) => *is_named |= fits,
             None => names.push((span, fits)),
         }
     }
-    let (mut row, mut column) = (0, layout.left);
+    let (mut row, mut column) = (0, left);
     let unnamed = names.into_iter().filter(|(_, is_named)| !is_named);
     unnamed
         .map(|(span, _)| {
             let width = 14 + wide(&span.name, LETTERS).ceil() as u32;
-            if column > layout.left && column + width > layout.left + layout.across() {
-                (row, column) = (row + 1, layout.left);
+            if column > left && column + width > left + across {
+                (row, column) = (row + 1, left);
             }
             let key = (span.name.as_str(), span.colour, row, column);
             column += width + 12;
@@ -96,30 +96,30 @@ fn keys(layout: Layout, panel: &Panel) -> Vec<(&str, RGBColor, u32, u32)> {
 }
 
 /// Draws the strips of a panel from its top.
-pub fn draw(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
+pub fn draw(area: &Area<'_>, panel: &Panel, (left, across): (u32, u32)) -> Result<(), Error> {
     let unit = f64::from(UNITS);
     let bar = |from: f64, to: f64, top: u32, colour: RGBColor| {
-        let [left, right] = [from, to].map(|x| ((f64::from(layout.left) + x) * unit).round() as i32);
+        let [left, right] = [from, to].map(|x| ((f64::from(left) + x) * unit).round() as i32);
         let [top, bottom] = [top, top + BAR].map(|y| (y * UNITS) as i32);
         let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
         area.draw(&Polygon::new(corners, colour.filled()))
     };
     let mut top = MARGIN;
     let letters = |h: HPos| text(LETTERS, h, VPos::Center);
-    for (name, colour, row, column) in keys(layout, panel) {
-        let (from, own) = (f64::from(column - layout.left), MARGIN + ROW * row);
+    for (name, colour, row, column) in keys((left, across), panel) {
+        let (from, own) = (f64::from(column - left), MARGIN + ROW * row);
         bar(from, from + 10.0, own, colour)?;
         area.draw_text(name, &letters(HPos::Left), at(column + 14, own + BAR / 2))?;
         top = own + ROW;
     }
     for strip in &panel.strips {
         let middle = top + BAR / 2;
-        area.draw_text(&strip.name, &letters(HPos::Right), at(layout.left - SPACE, middle))?;
+        area.draw_text(&strip.name, &letters(HPos::Right), at(left - SPACE, middle))?;
         for span in &strip.spans {
-            let Some(shown) = pixels(layout, panel, span) else { continue };
+            let Some(shown) = pixels(across, panel, span) else { continue };
             bar(shown.0, shown.1, top, span.colour)?;
             if !span.name.is_empty() && has_room(span, shown) {
-                let centre = f64::from(layout.left) + f64::midpoint(shown.0, shown.1);
+                let centre = f64::from(left) + f64::midpoint(shown.0, shown.1);
                 area.draw_text(&span.name, &letters(HPos::Center), at(centre.round() as u32, middle))?;
             }
         }

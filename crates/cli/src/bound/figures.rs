@@ -1,7 +1,7 @@
 //! Figure of guaranteed ranges over time, with their limits and witnesses.
 
 use flexsc_core::analysis::bound::OutputBound;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, band, colour};
 
 /// Returns the figure: a panel for each claim.
 pub fn figure(name: &str, bounds: &[OutputBound]) -> Figure {
@@ -26,16 +26,17 @@ fn panel(bound: &OutputBound) -> Panel {
         Layer::new("", colour::BLUE, LayerShape::Line(1.0), lower),
         Layer::new("", colour::BLUE, LayerShape::Line(1.0), upper),
     ];
-    for (index, limit) in limits.enumerate() {
+    let mut notes = Vec::new();
+    for limit in limits {
         let points = vec![(0.0, limit), (bound.until_s, limit)];
-        let name = if index == 0 { "limit" } else { "" };
-        layers.push(Layer::new(name, colour::VERMILLION, LayerShape::Dashes, points));
+        layers.push(Layer::new("", colour::RED, LayerShape::Line(1.4), points));
+        notes.push(Note::new(y.reader_unit().quantity(limit), (bound.until_s, limit), colour::RED));
     }
     if let Some(witness) = &bound.witness {
         let point = vec![(witness.time_s, witness.value)];
         layers.push(Layer::new("witness", colour::BLACK, LayerShape::Ring, point));
     }
-    Panel::new(x, y, layers)
+    Panel::new(x, y, layers).noted(notes)
 }
 
 /// Returns a unit as figures have it.

@@ -12,8 +12,15 @@ use super::ModeSetResults;
 const COLOURS: [RGBColor; 5] =
     [colour::BLUE, colour::GREEN, colour::ORANGE, colour::VERMILLION, colour::BLACK];
 
-/// Returns the figure; a run lasts `whole` seconds.
+/// Time after the last run has found its modes, relative to that before.
+const AFTER: f64 = 1.5;
+
+/// Returns the figure; a run lasts `whole` seconds, of which it shows those until all runs have found their modes.
 pub fn figure(sets: &[ModeSetResults], whole: f64) -> Figure {
+    let all = || sets.iter().flat_map(|set| &set.rows);
+    let is_complete = all().all(|row| row.times_s.len() as f64 >= row.runs as f64);
+    let last = all().flat_map(|row| &row.times_s).copied().fold(0.0, f64::max);
+    let whole = if is_complete && last > 0.0 { whole.min(AFTER * last) } else { whole };
     let x = FigureAxis::exact("time (s)", "", 0.0..whole);
     let panel = |set: &ModeSetResults| {
         let layer = |(index, row): (usize, &IdentificationRow)| {

@@ -3,12 +3,12 @@
 
 use flexsc_core::formats::reader_units::four_digits;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
+use flexsc_figure::{Figure, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::consistency::{FAR, averages};
 use super::cycle_data::CycleData;
 use super::pointing::{decades, norm};
 use super::run_events::RunEvents;
+use super::running_mean::{averages, ratio_axis};
 use super::three_axis::panels;
 use super::{assessed_mean, time, title};
 
@@ -67,11 +67,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     };
     let level = |height: f64| [(0.0, height), (story.end, height)];
     let values = || nees.iter().map(|point| point.1).chain(INSIDE);
-    let y = if values().any(|value| value > FAR) {
-        FigureAxis::decades("NEES / states", "", values())
-    } else {
-        FigureAxis::from_zero("NEES / states", "", values())
-    };
+    let y = ratio_axis("NEES / states", values());
     let mut layers = vec![
         Layer::new(
             "95 % of chi-square",

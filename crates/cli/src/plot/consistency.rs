@@ -3,13 +3,14 @@
 
 use flexsc_core::control::estimator::chi_square;
 use flexsc_core::record::AttitudeEstimate;
-use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
+use flexsc_figure::{Figure, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::cycle_data::RowSource;
 use super::estimate::filters_one_axis;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::{DominantModeEstimate, MotionData};
 use super::run_events::RunEvents;
+use super::running_mean::{averages, ratio_axis};
 use super::{assessed_mean, attitude_filter, time, title};
 
 pub const SPEC: FigureSpec = FigureSpec {
@@ -31,8 +32,6 @@ fn draw(run: &RunData<'_>) -> Figure {
 
 /// Number of samples in an average, as in the filter's own test of lost lock.
 const WINDOW: usize = 50;
-/// Value above which an axis is logarithmic.
-pub const FAR: f64 = 10.0;
 
 fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let scenario = &story.scenario;
@@ -44,12 +43,7 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let line = averages(&values, window);
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
         let shown = || line.iter().map(|point| point.1).chain([low, high]);
-        let far = shown().any(|value| value > FAR);
-        let y = if far {
-            FigureAxis::decades(name, "", shown())
-        } else {
-            FigureAxis::from_zero(name, "", shown())
-        };
+        let y = ratio_axis(name, shown());
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let samples = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
         let mut layers = vec![
@@ -76,25 +70,4 @@ fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let nees = panel("NEES / states", |e| e.nees, states.max(1), 1);
     let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
-}
-
-/// Returns the moving averages over `window` samples, each at its last sample. Samples without a value are skipped.
-pub fn averages(values: &[Point], window: usize) -> Vec<Point> {
-    let mean = |row: &[Point]| {
-        let finite = || row.iter().map(|point| point.1).filter(|value| value.is_finite());
-        (row[row.len() - 1].0, finite().sum::<f64>() / finite().count() as f64)
-    };
-    values.windows(window).map(mean).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn dropped_samples_do_not_count() {
-        let values = [(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0), (3.0, 5.0)];
-        assert_eq!(averages(&values, 3), [(2.0, 2.0), (3.0, 4.0)]);
-        assert!(averages(&[], 3).is_empty());
-    }
 }

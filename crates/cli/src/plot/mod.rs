@@ -38,6 +38,7 @@ mod pointing;
 mod repeated_run;
 mod requirement_lines;
 mod run_events;
+mod running_mean;
 mod stale_check;
 mod strips;
 mod three_axis;

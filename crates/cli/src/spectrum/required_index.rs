@@ -2,19 +2,18 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::noise::{SpectralLine, Window, WindowRms};
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_core::scenario::{
     AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity, WindowConvention,
 };
 
+use crate::required_limit::RequiredLimit;
+
 /// Requirement on an output.
 pub struct RequiredIndex {
-    /// Name of the requirement with its limit as it was written.
-    pub text: String,
-    /// Limit (rad).
-    pub limit: f64,
-    /// Unit of the limit.
-    pub unit: ReaderUnit,
+    /// Name of the requirement.
+    pub name: String,
+    /// Limit.
+    pub required: RequiredLimit,
     /// Window within which only deviations from the mean count (s), if there is one.
     pub window_s: Option<f64>,
     convention: WindowConvention,
@@ -55,11 +54,8 @@ impl RequiredIndex {
             }
             IndexWindow::Mean { .. } | IndexWindow::Difference { .. } => return None,
         };
-        let AssessedRequirement { name, limit, written_limit, unit, .. } = requirement;
-        let written = written_limit.as_deref();
-        let unit = ReaderUnits::Engineering.as_written(written, *limit, unit);
-        let text = format!("{name}: at most {}", unit.limit(*limit, written));
-        is_own.then_some(Self { text, limit: *limit, unit, window_s, convention })
+        let (name, required) = (requirement.name.clone(), RequiredLimit::new(requirement));
+        is_own.then_some(Self { name, required, window_s, convention })
     }
 
     /// Returns the rms of the deviations of lines from their mean over windows of a length (s).

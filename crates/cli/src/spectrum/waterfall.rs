@@ -115,7 +115,7 @@ impl<'a> OutputWaterfall<'a> {
     pub fn unit(&self) -> ReaderUnit {
         let largest = self.rms().iter().copied().fold(0.0, f64::max);
         let fitting = || ReaderUnits::Engineering.fitting(largest, &self.output.unit);
-        self.required.map_or_else(fitting, |own| own.unit.clone())
+        self.required.map_or_else(fitting, |own| own.required.unit.clone())
     }
 
     fn figure(&self, name: &str, modes: &[NamedMode]) -> Figure {
@@ -148,14 +148,15 @@ impl<'a> OutputWaterfall<'a> {
             notes.extend(self.largest(within, colour::BLUE));
         }
         notes.extend(self.largest(rms, colour::GREY));
-        values.extend(self.required.map(|own| own.limit));
+        values.extend(self.required.map(|own| own.required.limit));
         // The names of the peaks are above them.
         values.push(2.0 * rms.iter().copied().fold(0.0, f64::max));
         let x = self.speed();
-        if let Some(own) = self.required {
-            let ends = vec![(0.0, own.limit), (x.range.end, own.limit)];
-            layers.push(Layer::new("", colour::RED, LayerShape::Line(1.4), ends));
-            notes.push(Note::new(&own.text, (x.range.end, own.limit), colour::RED));
+        if let Some(RequiredIndex { name, required, .. }) = self.required {
+            let line = required.across(&x);
+            layers.push(Layer { name: String::new(), ..line });
+            let text = format!("{name}: {}", required.text);
+            notes.push(Note::new(text, (x.range.end, required.limit), colour::RED));
         }
         let y = FigureAxis::decades(&label, unit, values).in_unit(self.unit());
         Panel::new(x.unnamed(), y, layers).noted(notes)
