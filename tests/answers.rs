@@ -195,7 +195,7 @@ fn a_campaign_answers_by_the_values_of_its_runs() {
     assert_eq!(driven["key"], "spacecraft.inertia[2][2]");
     let sizes: Vec<f64> = runs
         .iter()
-        .map(|run| (number(&run["drawn"]["spacecraft.inertia[2][2]"]) / 600.0 - 1.0).abs())
+        .map(|run| (number(&run["drawn"]["spacecraft.inertia[2][2]"]) - 600.0).abs() / 600.0)
         .collect();
     let nearest_missed =
         sizes.iter().zip(&values).filter(|(_, value)| **value > limit).map(|(size, _)| *size);

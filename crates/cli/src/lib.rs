@@ -133,7 +133,7 @@ enum Verb {
     Margins(margins::MarginsArgs),
     /// Write a page for a design review
     ///
-    /// Spacecraft, margins, a run and a campaign with their figures on one HTML page, with the command that repeats each.
+    /// Conclusions, requirements, spacecraft, time line, margins, noise and a campaign on one HTML page, with the command that repeats each.
     Report(report::ReportArgs),
     /// Print the noise of a loop: rms, density, pointing indices
     ///

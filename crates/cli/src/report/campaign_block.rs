@@ -4,6 +4,7 @@ use flexsc_core::analysis::budget::{IndexBudget, LevelsAtProbability};
 use flexsc_core::answer::CampaignRequirement;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 
+use super::conclusions::sentence;
 use super::html::{HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head, paragraph, picture};
 use super::study::{Study, StudyCampaign};
 use crate::results::Results;
@@ -25,12 +26,10 @@ pub fn block(study: &Study, campaign: &StudyCampaign) -> String {
     let answer = &campaign.answer;
     if !answer.requirements.is_empty() {
         html += &table(&answer.requirements);
-        let driven = answer
-            .requirements
-            .iter()
-            .filter_map(|own| Some(format!("{} is driven by {}.", own.name, own.driven_by.first()?.text)));
-        let notes =
-            answer.requirements.iter().filter_map(|own| Some(format!("{}.", own.text.note.as_ref()?)));
+        let driven = answer.requirements.iter().filter_map(|own| {
+            Some(sentence(&format!("{} is driven by {}", own.name, own.driven_by.first()?.text)))
+        });
+        let notes = answer.requirements.iter().filter_map(|own| Some(sentence(own.text.note.as_ref()?)));
         html += &list(&driven.chain(notes).collect::<Vec<_>>());
     }
     if answer.failed > 0 {

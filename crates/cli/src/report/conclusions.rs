@@ -36,7 +36,7 @@ pub fn block(answer: &Answer, campaign: Option<&CampaignAnswer>, loops: &LoopSum
 }
 
 /// Returns a text as a sentence: with a capital and a full stop.
-fn sentence(text: &str) -> String {
+pub fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().collect());
     let end = if text.ends_with('.') { "" } else { "." };

@@ -68,7 +68,7 @@ fn driving_key(
     unit: Option<&'static str>,
 ) -> DrivingKey {
     let is_relative = own.design != 0.0;
-    let deviation = |value: &f64| if is_relative { value / own.design - 1.0 } else { *value };
+    let deviation = |value: &f64| if is_relative { (value - own.design) / own.design } else { *value };
     let deviations: Vec<f64> = own.values.iter().map(deviation).collect();
     let sizes: Vec<f64> = deviations.iter().map(|own| own.abs()).collect();
     let rank_correlation = rank_correlation(&own.values, values);
@@ -189,7 +189,7 @@ mod tests {
         assert!(
             first
                 .text
-                .starts_with("mass: met in every run within ±4.00 % of its value, in none beyond ±4.00 %"),
+                .starts_with("mass: met in every run within ±4 % of its value, in none beyond ±4 %"),
             "{}",
             first.text
         );

@@ -129,7 +129,7 @@ class CampaignAnswer(_Fields):
     >>> import flexsc
     >>> table = flexsc.campaign(flexsc.Scenario.example("half-turn"), runs=20)
     >>> answer = table.answer
-    >>> answer.runs, answer.runs_met == sum(table["requirement"] == "met")
+    >>> answer.runs, answer.runs_met == int((table["requirement"] == "met").sum())
     (20, True)
     """
 
