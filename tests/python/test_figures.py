@@ -83,7 +83,7 @@ def test_axes_are_the_users_own_and_hold_si(run: Result) -> None:
     assert axes.get_title() == ""
     below = plot.draw(run, "envelope", panel=0)
     assert below.get_xlabel() == "time (s)"
-    assert [text.get_text() for text in below.get_xticklabels()][:3] == ["0", "1000", "2000"]
+    assert [text.get_text() for text in below.get_xticklabels()][:3] == ["0", "500", "1000"]
     assert below.get_title().startswith("Relay adaptive: envelope")
     with pytest.raises(ValueError, match="figure 'angle' has panels 0 to 0, got 1"):
         plot.draw(run, "angle", panel=1)
@@ -144,7 +144,7 @@ def test_sweeps_have_curves_and_maps() -> None:
     fixed = shipped("relay-fixed").with_("duration", 1500.0)
     curve = flexsc.sweep(fixed, "law.relay.k_t", np.linspace(0.3, 0.36, 7))
     assert plot.figures(curve) == ["curve"]
-    assert plot.draw(curve, "curve").get_ylabel().endswith("rad)")
+    assert plot.draw(curve, "curve").get_ylabel().endswith("arcsec)")
     both = flexsc.sweep(
         fixed, {"law.relay.k_t": np.linspace(0.3, 0.36, 5), "law.relay.weak": [8e-7, 1e-6, 2e-6]}
     )

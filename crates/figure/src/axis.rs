@@ -371,7 +371,7 @@ mod tests {
         );
         let propellant = |most: f64| FigureAxis::exact("propellant", "kg", 0.0..most);
         assert_eq!(propellant(0.09).label(), "propellant (g)");
-        assert_eq!(texts(&propellant(0.09), 4), ["0", "50"]);
+        assert_eq!(texts(&propellant(0.09), 4), ["0", "20", "40", "60", "80"]);
         assert_eq!(propellant(3.7).label(), "propellant (kg)");
         assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
         // Two ticks at least.
