@@ -128,11 +128,15 @@ fn a_requirement_is_drawn_with_the_runs_that_meet_it() {
     let names = dir.names("figures");
     assert!(names.contains(&"half-turn-distribution-pointing_rms_rad.svg".to_owned()), "{names:?}");
     assert_eq!(table(&dir, "out/runs.csv").iter().filter(|row| row["requirement"] == "met").count(), 13);
-    let reported = "requirement, met by 13 of 20 runs (65 %)";
-    for figure in ["distribution", "scatter"] {
-        let drawing = Drawing::read(&dir, &format!("half-turn-{figure}-pointing_rms_rad"));
-        drawing.shows(&[reported]);
-    }
+    let drawing = |figure: &str| Drawing::read(&dir, &format!("half-turn-{figure}-pointing_rms_rad"));
+    // scipy.stats.binomtest(13, 20).proportion_ci(0.95, "wilson"): 0.4329 to 0.8188.
+    drawing("distribution").shows(&["13 of 20 runs meet the limit: 65 % (43 to 82 %)"]);
+    let limit = drawing("scatter")
+        .texts()
+        .into_iter()
+        .find_map(|text| text.strip_prefix("at most ")?.strip_suffix(" arcsec")?.parse::<f64>().ok());
+    let limit = limit.expect("a limit") * std::f64::consts::PI / 648_000.0;
+    assert!((limit / most - 1.0).abs() < 1e-2, "{limit} {most}");
 }
 
 /// A legend names no mark that lies outside the picture.

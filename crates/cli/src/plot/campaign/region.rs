@@ -32,6 +32,8 @@ const DECADES: f64 = 4.0;
 const MOST_DECADES: f64 = 12.0;
 /// Range of values, relative to their size, that is a rounding error.
 const NARROW: f64 = 1e-9;
+/// Largest number of points of a grid that have dots, which hide the levels of a fine one.
+const MOST_DOTS: usize = 400;
 /// Values of the best region, relative to the least one.
 const BEST: f64 = 1.1;
 
@@ -55,8 +57,10 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
     let fill =
         |(class, points): (usize, Vec<Point>)| Layer::new("", colour(class), LayerShape::Area(1.0), points);
     let mut layers: Vec<Layer> = field.areas(&edges).into_iter().map(fill).collect();
-    let grid = field.x.iter().flat_map(|x| field.y.iter().map(move |y| (*x, *y))).collect();
-    layers.push(Layer::new("", colour::GREY, LayerShape::Dot, grid));
+    if field.values.len() <= MOST_DOTS {
+        let grid = field.x.iter().flat_map(|x| field.y.iter().map(move |y| (*x, *y))).collect();
+        layers.push(Layer::new("", colour::GREY, LayerShape::Dot, grid));
+    }
     layers.push(Layer::new("no value", colour::BLACK, LayerShape::Cross, nothing));
     if least > 0.0 && BEST * least < largest {
         let name = format!("within 10 % of the least, {}", quantity(&unit, least));
