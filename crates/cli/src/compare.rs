@@ -89,10 +89,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     if args.json {
         return print_lines(&[json!(comparison)]);
     }
-    say!(
-        "{}",
-        comparison.screen(args.screen())
-    );
+    say!("{}", comparison.screen(args.screen()));
     Ok(())
 }
 
@@ -114,7 +111,8 @@ fn campaigns(sides: [&Path; 2], args: &CompareArgs) -> Result<(), CliError> {
     let answers = [answered(&directories[0])?, answered(&directories[1])?];
     let scenarios = directories.each_ref().map(|directory| directory.work().campaign.scenario());
     let keys = KeyDifference::between(scenarios, units);
-    let comparison = CampaignComparison { names: sides.map(|path| path.display().to_string()), keys, answers };
+    let comparison =
+        CampaignComparison { names: sides.map(|path| path.display().to_string()), keys, answers };
     if args.json {
         return print_lines(&[json!(comparison)]);
     }

@@ -38,7 +38,7 @@ const FAR_BELOW: f64 = 1e-4;
 const NOTHING: f64 = 1e-7;
 
 fn norms(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let errors = cycles.errors(norm);
+    let errors = with_target(story, cycles.errors(norm));
     let start = acquisition_end(story, &errors);
     let shown = story.shown.clone().unwrap_or(start..story.end);
     let mut panel = error_panel(story, &errors, shown);
@@ -91,24 +91,38 @@ fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     sizes
 }
 
-/// Returns the time at which the acquisition ends (s): the error has fallen below ten times its median, after the start of
-/// the first mode with a target. 0 if there is none, or if too much of the run would be left out.
-fn acquisition_end(story: &RunEvents, errors: &[Point]) -> f64 {
+/// Returns errors with gaps while a mode of operation without a target acts.
+pub fn with_target(story: &RunEvents, mut errors: Vec<Point>) -> Vec<Point> {
     let scenario = &story.scenario;
-    let has_target = |index: usize| scenario.mode.get(index).is_some_and(|mode| mode.target.is_some());
-    let targeted = story.modes.iter().find(|start| scenario.has_mode_targets() && has_target(start.index));
-    let first = targeted.map_or(0.0, |start| start.time);
-    let pursued = || errors.iter().filter(|(time, size)| *time >= first && size.is_finite());
+    if !scenario.has_mode_targets() {
+        return errors;
+    }
+    let has_target = |index: usize| scenario.mode.get(index).is_none_or(|mode| mode.target.is_some());
+    for (time, size) in &mut errors {
+        let mode = story.modes.iter().rev().find(|start| start.time <= *time);
+        if mode.is_some_and(|start| !has_target(start.index)) {
+            *size = f64::NAN;
+        }
+    }
+    errors
+}
+
+/// Returns the time at which the acquisition ends (s): the error has fallen below ten times its median, after the start of
+/// the first mode with a target. That start if too much of the rest would be left out.
+fn acquisition_end(story: &RunEvents, errors: &[Point]) -> f64 {
+    let pursued = || errors.iter().filter(|point| point.1.is_finite());
+    let begins = errors.iter().position(|point| point.1.is_finite()).unwrap_or(0);
+    let first = if begins == 0 { 0.0 } else { errors[begins].0 };
     let mut sizes: Vec<f64> = pursued().map(|point| point.1).collect();
     sizes.sort_by(f64::total_cmp);
-    let Some(median) = sizes.get(sizes.len() / 2) else { return 0.0 };
+    let Some(median) = sizes.get(sizes.len() / 2) else { return first };
     let below = pursued().skip_while(|point| point.1 >= ACQUIRED * median);
     // It may still fall.
     let low = below.clone().zip(below.skip(1)).find(|(now, next)| next.1 >= now.1);
     let acquired = low.map_or(first, |(now, _)| now.0);
     let is_large = pursued().next().is_some_and(|point| point.1 >= ACQUIRED * median);
-    let is_cut = (is_large || first > 0.0) && acquired <= MOST_LEFT_OUT * story.end;
-    if is_cut { acquired } else { 0.0 }
+    let is_cut = is_large && acquired - first <= MOST_LEFT_OUT * (story.end - first);
+    if is_cut { acquired } else { first }
 }
 
 /// Returns the figure of the error about each axis.

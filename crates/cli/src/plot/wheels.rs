@@ -66,7 +66,11 @@ pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {
         last.x = last.x.unnamed();
     }
     let shown = story.shown.clone().unwrap_or(0.0..story.end);
-    figure.panels.push(pointing::error_panel(story, &cycles.errors(pointing::norm), shown));
+    figure.panels.push(pointing::error_panel(
+        story,
+        &pointing::with_target(story, cycles.errors(pointing::norm)),
+        shown,
+    ));
     figure
 }
 

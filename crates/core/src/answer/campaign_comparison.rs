@@ -27,11 +27,8 @@ impl CampaignComparison {
             .answers
             .each_ref()
             .map(|answer| format!("{}   {}", answer.verdict_text, counted(answer.runs, "run")));
-        let blocks = [
-            heads(&self.names, &verdicts),
-            key_lines(&self.keys, options.all),
-            self.requirement_lines(),
-        ];
+        let blocks =
+            [heads(&self.names, &verdicts), key_lines(&self.keys, options.all), self.requirement_lines()];
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
     }
