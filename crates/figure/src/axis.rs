@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, grouped, known_unit};
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, known_unit};
+
+use crate::ticks::{Form, Ticks};
 
 /// Axis of a panel.
 #[derive(Clone, Debug)]
@@ -30,27 +32,6 @@ pub enum Scale {
     Linear,
     /// Proportional to the logarithm: only positive values have a place.
     Logarithmic,
-}
-
-/// Ticks of an axis.
-#[derive(Clone, Debug)]
-pub struct Ticks {
-    /// Values of the ticks, in the axis' SI unit.
-    pub at: Vec<f64>,
-    /// Size of the unit of the numbers.
-    factor: f64,
-    form: Form,
-}
-
-/// Format of the ticks.
-#[derive(Copy, Clone, Debug)]
-enum Form {
-    /// Numbers with a count of decimals.
-    Decimal(usize),
-    /// Numbers with the decimals that each needs.
-    Short,
-    /// Powers of ten.
-    Power,
 }
 
 /// Maximum number of decades of a logarithmic axis: values far below the largest are rounding errors.
@@ -294,31 +275,6 @@ impl FigureAxis {
     }
 }
 
-impl Ticks {
-    /// Returns the text of a tick.
-    pub fn text(&self, value: f64) -> String {
-        let value = value / self.factor;
-        let text = match self.form {
-            Form::Power => return format!("10{}", superscript(value.log10().round() as i32)),
-            // Rounding in the conversion of the unit is left out.
-            Form::Short => format!("{}", (value * 1e6).round() / 1e6),
-            Form::Decimal(decimals) if decimals <= 6 && value.abs() < 1e7 => format!("{value:.decimals$}"),
-            Form::Decimal(_) => format!("{value:.1e}"),
-        };
-        let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
-        if zero { "0".to_owned() } else { grouped(&text).replace('-', "−") }
-    }
-}
-
-/// Formats an integer as a superscript.
-fn superscript(number: i32) -> String {
-    let raised = |character: char| match character {
-        '-' => '⁻',
-        digit => ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'][digit.to_digit(10).unwrap_or(0) as usize],
-    };
-    number.to_string().chars().map(raised).collect()
-}
-
 /// Returns the name and the unit of the axis of a quantity: a unit that readers see as it is becomes part of the name.
 pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
     match known_unit(unit) {
@@ -371,7 +327,7 @@ mod tests {
         );
         let propellant = |most: f64| FigureAxis::exact("propellant", "kg", 0.0..most);
         assert_eq!(propellant(0.09).label(), "propellant (g)");
-        assert_eq!(texts(&propellant(0.09), 4), ["0", "50"]);
+        assert_eq!(texts(&propellant(0.09), 4), ["0", "20", "40", "60", "80"]);
         assert_eq!(propellant(3.7).label(), "propellant (kg)");
         assert_eq!(texts(&propellant(3.7), 4), ["0", "1", "2", "3"]);
         // Two ticks at least.

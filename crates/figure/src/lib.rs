@@ -20,9 +20,10 @@ mod strip;
 mod style;
 mod svg;
 mod text_width;
+mod ticks;
 
 pub use area::band;
-pub use axis::{FigureAxis, Scale, Ticks, name_and_unit, round_to_nice};
+pub use axis::{FigureAxis, Scale, name_and_unit, round_to_nice};
 pub use bar::Bar;
 pub use contour::{Ring, ScalarField};
 #[cfg(feature = "png")]
@@ -35,6 +36,7 @@ pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use strip::{Strip, StripSpan};
 pub use style::Style;
+pub use ticks::Ticks;
 
 /// Colours that are distinguishable with colour blindness (Okabe and Ito).
 pub mod colour {

@@ -33,8 +33,9 @@ const ACQUIRED: f64 = 10.0;
 const MOST_LEFT_OUT: f64 = 1.0 / 3.0;
 /// Part of the errors that may lie below the axis.
 const BELOW: f64 = 0.02;
-/// Part of the largest error below which errors are below the axis.
+/// Part of the largest error, and size (rad), below both of which errors are below the axis.
 const FAR_BELOW: f64 = 1e-4;
+const NOTHING: f64 = 1e-7;
 
 fn norms(story: &RunEvents, cycles: &CycleData) -> Figure {
     let errors = cycles.errors(norm);
@@ -84,7 +85,7 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
 fn usual(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut sizes: Vec<f64> = values.into_iter().filter(|size| *size > 0.0 && size.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
-    let least = FAR_BELOW * sizes.last().copied().unwrap_or(0.0);
+    let least = NOTHING.min(FAR_BELOW * sizes.last().copied().unwrap_or(0.0));
     sizes.drain(..(BELOW * sizes.len() as f64) as usize);
     sizes.retain(|size| *size >= least);
     sizes
