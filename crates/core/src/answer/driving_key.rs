@@ -187,9 +187,7 @@ mod tests {
         assert!((first.met_within.unwrap_or(0.0) - 0.04).abs() < 1e-12, "{first:?}");
         assert!((first.none_beyond.unwrap_or(0.0) - 0.04).abs() < 1e-12, "{first:?}");
         assert!(
-            first
-                .text
-                .starts_with("mass: met in every run within ±4 % of its value, in none beyond ±4 %"),
+            first.text.starts_with("mass: met in every run within ±4 % of its value, in none beyond ±4 %"),
             "{}",
             first.text
         );
