@@ -102,7 +102,7 @@ fn part_lines(scenario: &Scenario) -> Vec<(String, String)> {
         add("wheels", format!("{} × {}", wheels.count(), parts.join(", ")));
     }
     if let Some((torquers, _)) = scenario.actuator.magnetorquers() {
-        add("magnetorquers", units.quantity(torquers.largest_moment(), "A m²"));
+        add("magnetic torquers", units.quantity(torquers.largest_moment(), "A m²"));
     }
     if let Some((jets, _)) = scenario.actuator.jets() {
         add("thrusters", jets.thrusters.len().to_string());
