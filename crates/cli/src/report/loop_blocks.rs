@@ -138,10 +138,10 @@ fn each_mode<T>(
     Ok((found, refused))
 }
 
-/// Returns the kinds of the sensors that have a linear model, each once.
+/// Returns the kinds of the sensors of attitude and rates, which have a linear model, each once.
 fn linear_sensors(study: &Study) -> Vec<&'static str> {
     let mut kinds = Vec::new();
-    for own in study.scenario.sensor.iter().filter(|own| own.linear_measurement().is_some()) {
+    for own in study.scenario.sensor.iter().filter(|own| own.measures_motion() && !own.measures_vector()) {
         if !kinds.contains(&own.kind()) {
             kinds.push(own.kind());
         }
