@@ -72,9 +72,36 @@ pub fn run(args: &BoundArgs) -> Result<(), CliError> {
 }
 
 impl OutputBounds {
-    /// Returns the claims with their ranges.
-    pub fn bounds(&self) -> &[OutputBound] {
-        &self.bounds
+    /// Returns the number of claims that are violated or undecided.
+    pub fn failed(&self) -> usize {
+        self.bounds.iter().filter(|bound| bound.fails()).count()
+    }
+
+    /// Returns the texts of each claim: output, guaranteed range, limits, end, and verdict; and whether it fails.
+    pub fn texts(&self) -> Vec<([String; 5], bool)> {
+        let texts = |bound: &OutputBound| {
+            let values: Vec<f64> = bound.range.iter().chain(bound.limits.iter().flatten()).copied().collect();
+            let (factor, unit) = self.units.common(&values, &bound.output.unit);
+            let ends = |[low, high]: [f64; 2]| {
+                format!("{low} to {high} {unit}", low = digits(low * factor), high = digits(high * factor))
+            };
+            let [low, high] = bound.range.map(|value| value * factor);
+            let range = format!(
+                "{} to {} {unit}",
+                outward_digits(low, DIGITS, false),
+                outward_digits(high, DIGITS, true)
+            );
+            let verdict = match bound.verdict {
+                Verdict::Proved => "proved",
+                Verdict::Violated => "violated",
+                Verdict::Undecided => "undecided",
+                Verdict::Unlimited => "no limit",
+            };
+            let limits = bound.limits.map_or_else(String::new, ends);
+            let end = format!("{} s", digits(bound.until_s));
+            ([bound.output.name.clone(), range, limits, end, verdict.to_owned()], bound.fails())
+        };
+        self.bounds.iter().map(texts).collect()
     }
 
     /// Returns the claims with their ranges as JSON.
@@ -91,7 +118,7 @@ impl OutputBounds {
 
     /// Fails if a claim is violated or undecided.
     pub fn require_proved(&self) -> Result<(), CliError> {
-        let failed = self.bounds.iter().filter(|bound| bound.fails()).count();
+        let failed = self.failed();
         if failed > 0 {
             return Err(CliError::Claims { failed, claims: self.bounds.len() });
         }

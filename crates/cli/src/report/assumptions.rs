@@ -1,7 +1,6 @@
 //! Assumptions of a study: what its scenario leaves out, and the keys that were set.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::sensor::SensorKind;
 
 use super::study::Study;
 
@@ -36,7 +35,7 @@ fn actuators(scenario: &Scenario) -> Option<String> {
 
 /// Returns which sensors are ideal, if one is.
 fn sensors(scenario: &Scenario) -> Option<String> {
-    let is_ideal = scenario.sensor.iter().any(|own| matches!(own, SensorKind::Continuous));
+    let is_ideal = scenario.sensor.iter().any(|own| own.is_continuous());
     is_ideal.then(|| "The true angle is known at every instant, without a sensor.".to_owned())
 }
 

@@ -4,7 +4,6 @@ use flexsc_core::Scenario;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
-use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_view::drawing::spacecraft_svg;
@@ -103,25 +102,18 @@ fn part_lines(scenario: &Scenario) -> Vec<(String, String)> {
         add("wheels", format!("{} × {}", wheels.count(), parts.join(", ")));
     }
     if let Some((torquers, _)) = scenario.actuator.magnetorquers() {
-        add("magnetorquers", units.quantity(torquers.largest_moment(), "A m²"));
+        add("magnetic torquers", units.quantity(torquers.largest_moment(), "A m²"));
     }
     if let Some((jets, _)) = scenario.actuator.jets() {
         add("thrusters", jets.thrusters.len().to_string());
     }
     for sensor in scenario.sensor.iter() {
-        if matches!(sensor, SensorKind::Continuous) {
+        if sensor.is_continuous() {
             continue;
         }
         let own = sensor.period(scenario.study.law_period);
         let rate = own.map_or_else(String::new, |period| format!("{} Hz", number(1.0 / period.seconds())));
-        let noise = match sensor {
-            SensorKind::StarTracker(tracker) => {
-                let noise: Vec<f64> = tracker.noise.iter().map(|own| own.get()).collect();
-                format!(", {}", units.list(&noise, ", ", "rad"))
-            }
-            _ => String::new(),
-        };
-        add(&sensor.kind().replace('_', " "), format!("{rate}{noise}"));
+        add(&sensor.kind().replace('_', " "), rate);
     }
     if let Some(orbit) = scenario.orbit_environment().orbit() {
         let radius = orbit.at(0.0).position.norm();

@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use flexsc_core::analysis::margins::SignalMargins;
 use flexsc_core::analysis::noise::OutputNoise;
 use flexsc_core::analysis::open_loop::LoopBreak;
-use flexsc_core::analysis::scenario_margins::ScenarioMargins;
-use flexsc_core::control::sensor::SensorKind;
+use flexsc_core::analysis::settling_time::SettlingTime;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 use flexsc_core::worst_case::{MarginKind, MarginSearch};
 
@@ -47,7 +46,7 @@ pub struct LoopBlocks {
 struct Analysed<T> {
     /// Name of the mode; empty without modes.
     mode: String,
-    /// Options of the command, and whether the sensors are gyro and tracker at rest.
+    /// Options of the command, and whether it is at rest with the sensors that have a linear model.
     options: String,
     is_at_rest: bool,
     results: T,
@@ -91,7 +90,7 @@ pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
     Ok(made)
 }
 
-/// Analyses each mode of operation, or the scenario without modes: as it is, or else at rest with gyro and star tracker.
+/// Analyses each mode of operation, or the scenario without modes: as it is, or else at rest with the sensors that have a linear model.
 fn each_mode<T>(
     study: &Study,
     verb: &str,
@@ -139,19 +138,28 @@ fn each_mode<T>(
     Ok((found, refused))
 }
 
-/// Returns the keys that put the scenario at rest with gyro and star tracker alone; none without these sensors.
+/// Returns the kinds of the sensors of attitude and rates, which have a linear model, each once.
+fn linear_sensors(study: &Study) -> Vec<&'static str> {
+    let mut kinds = Vec::new();
+    for own in study.scenario.sensor.iter().filter(|own| own.measures_motion() && !own.measures_vector()) {
+        if !kinds.contains(&own.kind()) {
+            kinds.push(own.kind());
+        }
+    }
+    kinds
+}
+
+/// Returns the keys that put the scenario at rest with the sensors that have a linear model; none without a spacecraft or
+/// such sensors.
 fn at_rest(study: &Study, mode: usize) -> Vec<String> {
-    let scenario = &study.scenario;
-    let has = |kind: fn(&SensorKind) -> bool| scenario.sensor.iter().any(kind);
-    let is_complete = has(|own| matches!(own, SensorKind::Gyro(_)))
-        && has(|own| matches!(own, SensorKind::StarTracker(_)))
-        && scenario.spacecraft.is_some();
-    if !is_complete {
+    let kinds = linear_sensors(study);
+    if study.scenario.spacecraft.is_none() || kinds.is_empty() {
         return Vec::new();
     }
     let mut set = vec!["spacecraft.rate=[0, 0, 0]".to_owned()];
-    if !scenario.mode.is_empty() {
-        set.insert(0, format!("mode[{mode}].sensors=[\"gyro\", \"star_tracker\"]"));
+    if !study.scenario.mode.is_empty() {
+        let kinds: Vec<String> = kinds.iter().map(|kind| format!("\"{kind}\"")).collect();
+        set.insert(0, format!("mode[{mode}].sensors=[{}]", kinds.join(", ")));
     }
     set
 }
@@ -176,13 +184,14 @@ fn reasons(refused: &[Refused], what: &str) -> String {
 }
 
 /// Returns the sentence on sensors that were replaced, if any were.
-fn replaced<T>(found: &[Analysed<T>]) -> String {
+fn replaced<T>(study: &Study, found: &[Analysed<T>]) -> String {
     let names: Vec<&str> = found.iter().filter(|own| own.is_at_rest).map(|own| own.mode.as_str()).collect();
     match &names[..] {
         [] => String::new(),
         [""] => paragraph("At rest: the motion at the start has no linear model."),
         names => paragraph(&format!(
-            "At rest, with gyro and star tracker: a sensor of {} has no linear model.",
+            "At rest, with {} alone: another sensor of {} has no linear model.",
+            linear_sensors(study).join(" and ").replace('_', " "),
             names.join(", ")
         )),
     }
@@ -193,7 +202,7 @@ fn name_of_loop(own: &SignalMargins) -> String {
     own.signal.trim_start_matches("command_").to_owned()
 }
 
-fn least(all: &[SignalMargins], margins: &ScenarioMargins) -> LeastMargins {
+fn least(all: &[SignalMargins], settling: &[SettlingTime]) -> LeastMargins {
     let decibel = |factor: f64| 20.0 * factor.log10().abs();
     let fold = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
     let gains = all.iter().flat_map(|own| {
@@ -202,7 +211,7 @@ fn least(all: &[SignalMargins], margins: &ScenarioMargins) -> LeastMargins {
     });
     let crossings = all.iter().flat_map(|own| own.crossings.gain.iter().map(|at| at.frequency_rad_s));
     let signals: Vec<&str> = all.iter().map(|own| own.signal.as_str()).collect();
-    let settling = margins.settling.iter().filter(|own| all.len() > 1 || signals[0].contains(own.step));
+    let settling = settling.iter().filter(|own| all.len() > 1 || signals[0].contains(own.step));
     LeastMargins {
         crossover_rad_s: crossings.fold(0.0, f64::max),
         gain_db: fold(&mut gains.into_iter()),
@@ -245,10 +254,11 @@ fn margins_html(
         let all = own.results.margins();
         let loops = &all.stability.loops;
         if has_modes {
-            rows.push((own.mode.clone(), least(loops, all), place));
+            rows.push((own.mode.clone(), least(loops, &all.settling), place));
         } else {
-            let each =
-                loops.iter().map(|one| (name_of_loop(one), least(std::slice::from_ref(one), all), place));
+            let each = loops
+                .iter()
+                .map(|one| (name_of_loop(one), least(std::slice::from_ref(one), &all.settling), place));
             rows.extend(each);
         }
     }
@@ -293,7 +303,7 @@ fn margins_html(
             &format!("Nichols diagram of the loops{of}, cut open at the command, with the others closed."),
         );
     }
-    html += &replaced(found);
+    html += &replaced(study, found);
     html += &reasons(refused, "the loop");
     html += &command(&study.command("margins", &own.options));
     if searches {
@@ -407,7 +417,7 @@ fn noise_html(
             html +=
                 &picture(&svg, &format!("Noise by frequency{mode}: density, and rms up to each frequency."));
         }
-        html += &replaced(found);
+        html += &replaced(study, found);
         html += &reasons(refused, "the loop");
         html += &command(&study.command("spectrum", &own.options));
     }

@@ -103,7 +103,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     let runs_verdict =
         campaign.as_ref().map(|own| &own.answer).filter(|own| own.verdict == RunVerdict::Missed);
     unmet.extend(runs_verdict.map(|own| own.verdict_text.clone()));
-    let refuted = bounds.as_ref().map_or(0, |own| own.bounds().iter().filter(|bound| bound.fails()).count());
+    let refuted = bounds.as_ref().map_or(0, bound::OutputBounds::failed);
     if refuted > 0 {
         unmet.push(format!("{refuted} of the claims not proved"));
     }

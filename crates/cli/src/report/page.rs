@@ -2,9 +2,8 @@
 
 use std::fmt::Write;
 
-use flexsc_core::analysis::bound::{OutputBound, Verdict};
 use flexsc_core::answer::EventKind;
-use flexsc_core::formats::reader_units::{ReaderUnits, time};
+use flexsc_core::formats::reader_units::time;
 
 use super::html::{HtmlRow, HtmlTable, cell, command, escaped, head, list, number_head, numbered, picture};
 use super::loop_blocks::LoopBlocks;
@@ -221,26 +220,10 @@ fn further_figures(review: &Review<'_>, mut room: usize) -> String {
 }
 
 fn ranges(study: &Study, bounds: &bound::OutputBounds) -> String {
-    let units = ReaderUnits::default();
-    let row = |own: &OutputBound| {
-        let values: Vec<f64> = own.range.iter().chain(own.limits.iter().flatten()).copied().collect();
-        let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        let unit = units.fitting(largest, &own.output.unit);
-        let range = |ends: &[f64]| format!("{} to {}", unit.number(ends[0]), unit.quantity(ends[1]));
-        let verdict = match own.verdict {
-            Verdict::Proved => "proved",
-            Verdict::Violated => "violated",
-            Verdict::Undecided => "undecided",
-            Verdict::Unlimited => "no limit",
-        };
-        let cells = vec![
-            cell(&own.output.name),
-            cell(&range(&own.range)),
-            own.limits.map_or_else(|| cell("-"), |limits| cell(&range(&limits))),
-            cell(&time(own.until_s)),
-            cell(verdict).hot(own.fails()),
-        ];
-        HtmlRow { cells, is_missed: own.fails() }
+    let row = |(texts, fails): ([String; 5], bool)| {
+        let mut cells: Vec<_> = texts.iter().map(|text| cell(text)).collect();
+        cells[4] = cells[4].clone().hot(fails);
+        HtmlRow { cells, is_missed: fails }
     };
     let heads = vec![
         head("Output"),
@@ -250,7 +233,7 @@ fn ranges(study: &Study, bounds: &bound::OutputBounds) -> String {
         head("Claim"),
     ];
     let mut html =
-        HtmlTable { heads, rows: bounds.bounds().iter().map(row).collect(), is_cards: false }.html();
+        HtmlTable { heads, rows: bounds.texts().into_iter().map(row).collect(), is_cards: false }.html();
     for (_, drawn) in bounds.figures() {
         if let Ok(svg) = drawn.svg() {
             html += &picture(

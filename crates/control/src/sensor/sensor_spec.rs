@@ -87,6 +87,11 @@ pub trait SensorSpec: Send + Sync {
         None
     }
 
+    /// Returns the direction in which the sensor looks, a unit vector in the body's axes, if there is one.
+    fn boresight(&self) -> Option<Vector> {
+        self.field_of_view().map(|field| field.boresight)
+    }
+
     /// Returns the standard deviation of the measured angle (rad), including quantisation.
     fn angle_noise(&self) -> f64 {
         0.0

@@ -78,6 +78,10 @@ impl SensorSpec for StarTracker {
         self.point.as_deref()
     }
 
+    fn boresight(&self) -> Option<Vector> {
+        Some(self.body_direction(2))
+    }
+
     fn faults(&self) -> &[SensorFailure] {
         &self.faults
     }

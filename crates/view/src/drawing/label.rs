@@ -30,14 +30,19 @@ impl Label {
     }
 }
 
-/// Returns labels with their leaders: on each side the upper half of them above, the rest below, sorted by height.
+/// Returns labels with their leaders: on each side the upper half of them above, the rest below.
 pub fn drawn(labels: &[Label], view: &Projection) -> String {
     let mut svg = String::new();
     for right in [false, true] {
         let is_right = |label: &&Label| (view.place(&label.at)[0] > SIZE[0] / 2.0 - 4.0) == right;
         let mut own: Vec<&Label> = labels.iter().filter(is_right).collect();
         own.sort_by(|a, b| view.place(&a.at)[1].total_cmp(&view.place(&b.at)[1]));
-        let (upper, lower) = own.split_at(own.len().div_ceil(2));
+        let half = own.len().div_ceil(2);
+        // A leader begins at the inner end of its text: those to the middle have the outer places, and cross no other text.
+        let from_middle = |label: &Label| (view.place(&label.at)[0] - SIZE[0] / 2.0).abs();
+        own[..half].sort_by(|a, b| from_middle(a).total_cmp(&from_middle(b)));
+        own[half..].sort_by(|a, b| from_middle(b).total_cmp(&from_middle(a)));
+        let (upper, lower) = own.split_at(half);
         let bottom = SIZE[1] - BOTTOM[usize::from(right)] - STEP * (lower.len().max(1) - 1) as f64;
         for (labels, from) in [(upper, TOP), (lower, bottom)] {
             for (place, label) in labels.iter().enumerate() {

@@ -13,7 +13,7 @@ use std::fmt::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::Wheels;
-use flexsc_core::control::sensor::{SensorKind, StarTracker};
+use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 use flexsc_core::numerics::attitude::{Vector, tensor, vector};
 use flexsc_core::spacecraft::body::craft::{Appendage, Spacecraft};
@@ -55,8 +55,12 @@ pub fn spacecraft_svg(scenario: &Scenario) -> Option<String> {
     let mut solids = panels.clone();
     solids.push(hub.clone());
     let reach = 0.5 * hub.size.norm();
-    let boresights: Vec<Boresight> =
-        scenario.sensor.iter().filter_map(|own| boresight(scenario, craft, own)).collect();
+    let boresights: Vec<Boresight> = scenario
+        .sensor
+        .iter()
+        .enumerate()
+        .filter_map(|(index, own)| boresight(scenario, craft, index, own))
+        .collect();
     let ends: Vec<[Vector; 2]> = boresights
         .iter()
         .map(|own| {
@@ -128,40 +132,39 @@ fn named(scenario: &Scenario, own: &Appendage, solid: &Solid) -> Label {
 }
 
 /// Returns the boresight of a sensor that has one.
-fn boresight(scenario: &Scenario, craft: &Spacecraft, sensor: &SensorKind) -> Option<Boresight> {
+fn boresight(
+    scenario: &Scenario,
+    craft: &Spacecraft,
+    index: usize,
+    sensor: &SensorKind,
+) -> Option<Boresight> {
+    let direction = sensor.boresight()?;
     let point = sensor.point().and_then(|name| {
         let points = craft.points.iter();
         points.filter(|point| point.name == name).map(|point| vector(&point.position)).next()
     });
     let from = point.filter(|point| *point != Vector::zeros());
+    let excluded = scenario.sensor.exclusions().find(|(place, ..)| *place == index);
+    let limits: Vec<(&str, f64)> = excluded
+        .iter()
+        .flat_map(|(.., own)| own.limits().map(|(body, angle)| (body.name(), angle)))
+        .collect();
+    let narrowest = limits.iter().map(|(_, angle)| *angle).fold(f64::INFINITY, f64::min);
+    let (half_angle, second) = match sensor.field_of_view() {
+        Some(field) => {
+            let text = format!("sees {} about {}", degrees(field.half_angle), axis_text(&direction));
+            (field.half_angle.min(WIDEST), text)
+        }
+        None if limits.is_empty() => (CONE, format!("boresight {}", axis_text(&direction))),
+        None => {
+            let each: Vec<String> =
+                limits.iter().map(|(body, angle)| format!("{body} {}", degrees(*angle))).collect();
+            let half_angle = if narrowest < WIDEST { narrowest } else { CONE };
+            (half_angle, format!("excludes {}", each.join(", ")))
+        }
+    };
     let name = sensor.kind().replace('_', " ");
-    if let SensorKind::StarTracker(tracker) = sensor {
-        let direction = tracker.body_direction(2);
-        let narrowest = limits(tracker).map(|(_, angle)| angle).fold(f64::INFINITY, f64::min);
-        let half_angle = if narrowest < WIDEST { narrowest } else { CONE };
-        let each: Vec<String> =
-            limits(tracker).map(|(body, angle)| format!("{body} {}", degrees(angle))).collect();
-        let second = if each.is_empty() {
-            format!("boresight {}", axis_text(&direction))
-        } else {
-            format!("excludes {}", each.join(", "))
-        };
-        return Some(Boresight {
-            direction,
-            half_angle,
-            label: [numbered(scenario, sensor, &name), second],
-            from,
-        });
-    }
-    let field = sensor.field_of_view()?;
-    let half_angle = field.half_angle.min(WIDEST);
-    let second = format!("sees {} about {}", degrees(field.half_angle), axis_text(&field.boresight));
-    Some(Boresight {
-        direction: field.boresight,
-        half_angle,
-        label: [numbered(scenario, sensor, &name), second],
-        from,
-    })
+    Some(Boresight { direction, half_angle, label: [numbered(scenario, sensor, &name), second], from })
 }
 
 /// Returns the name of a sensor with its place among those of its kind, if there are several.
@@ -171,10 +174,6 @@ fn numbered(scenario: &Scenario, sensor: &SensorKind, name: &str) -> String {
         Some(place) if alike.len() > 1 => format!("{name} {}", place + 1),
         _ => name.to_owned(),
     }
-}
-
-fn limits(tracker: &StarTracker) -> impl Iterator<Item = (&'static str, f64)> {
-    tracker.exclusion.iter().flat_map(|own| own.limits().map(|(body, angle)| (body.name(), angle)))
 }
 
 /// Returns a direction as a body axis, or by its components.
