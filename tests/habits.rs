@@ -183,8 +183,8 @@ fn force_and_units_are_in_every_verb_that_can_have_them() {
     let with: BTreeSet<&str> =
         command.get_subcommands().filter(|verb| has(verb, "units")).map(clap::Command::get_name).collect();
     let all = [
-        "bound", "budget", "cycle", "damping", "identify", "map", "margins", "modes", "observer", "plan",
-        "serve", "simulate", "spectrum", "sweep", "tune", "worst",
+        "bound", "budget", "compare", "cycle", "damping", "identify", "map", "margins", "modes", "observer",
+        "plan", "serve", "simulate", "spectrum", "sweep", "tune", "worst",
     ];
     assert_eq!(with, BTreeSet::from(all));
 }

@@ -17,9 +17,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::answer::{Answer, CampaignRuns, Observed};
+use flexsc_core::answer::{Answer, Observed};
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
+    Campaign, CampaignRun, CampaignRuns, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows,
+    Sampling,
 };
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};

@@ -198,7 +198,7 @@ impl Cubesat {
             ("dipole", plain(2e-3 * f64::from(self.units))),
             ("sail", plain(cells)),
             ("front", plain(y * z)),
-            ("b_dot", format!("{:.1e}", 4.0 * rate * least / (FIELD * FIELD))),
+            ("brake_gain", format!("{:.1e}", 4.0 * rate * least / (FIELD * FIELD))),
             ("rotor", format!("{:.2e}", self.momentum / WHEEL_SPEED)),
             ("wheel_torque", plain(1e3 * self.torque)),
             ("wheel_momentum", plain(1e3 * self.momentum)),

@@ -2,6 +2,7 @@
 
 mod at_points;
 #[cfg(feature = "parquet")]
+mod campaign_runs;
 mod checksum;
 mod command_log;
 #[cfg(feature = "parquet")]
@@ -35,6 +36,8 @@ use crate::metrics::{self, Metrics, MetricsCollector, Selection};
 use flexsc_scenario::{Cost, MOST_RUNS, Scenario};
 use flexsc_sim::{Simulation, SimulationError};
 
+pub use campaign_runs::CampaignRuns;
+pub(crate) use campaign_runs::UncertainValues;
 pub use command_log::CommandLog;
 pub use design::{Design, DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS};
 pub use directory::{Directory, MANIFEST, STATISTICS};

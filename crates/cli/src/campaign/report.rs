@@ -4,7 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::answer::{CampaignAnswer, CampaignRuns};
+use flexsc_core::answer::CampaignAnswer;
+use flexsc_core::campaign::CampaignRuns;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{ReaderUnits, rough_time};
 use flexsc_core::formats::text_columns::columns;

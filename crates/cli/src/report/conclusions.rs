@@ -2,7 +2,6 @@
 
 use flexsc_core::answer::{Answer, CampaignAnswer, RunVerdict};
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{number, percent};
 
 use super::html::{escaped, list};
 use super::loop_blocks::LoopSummary;
@@ -71,11 +70,6 @@ fn met_sentence(answer: &Answer) -> Option<String> {
     } else {
         format!("{} {}: {} of {}, {}.", rest.trim_start(), least.name, text.value, text.limit, text.margin)
     })
-}
-
-/// Returns a share of a variance in whole per cent.
-pub fn share(part: f64) -> String {
-    if part > 0.1 { percent(part) } else { format!("{} %", number(100.0 * part)) }
 }
 
 #[cfg(test)]

@@ -6,10 +6,9 @@ use flexsc_core::analysis::margins::SignalMargins;
 use flexsc_core::analysis::noise::OutputNoise;
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::settling_time::SettlingTime;
-use flexsc_core::formats::reader_units::{ReaderUnits, number};
+use flexsc_core::formats::reader_units::{ReaderUnits, number, percent};
 use flexsc_core::worst_case::{MarginKind, MarginSearch};
 
-use super::conclusions::share;
 use super::html::{
     HtmlCell, HtmlRow, HtmlTable, cell, command, escaped, head, number_head, paragraph, picture,
 };
@@ -433,6 +432,11 @@ fn largest_sources<'a>(output: &OutputNoise, sources: &'a [String]) -> Vec<(&'a 
     parts.retain(|(_, part)| part.is_finite() && *part >= 5e-4);
     parts.sort_by(|a, b| b.1.total_cmp(&a.1));
     parts
+}
+
+/// Returns a share of a variance in whole per cent.
+fn share(part: f64) -> String {
+    if part > 0.1 { percent(part) } else { format!("{} %", number(100.0 * part)) }
 }
 
 #[cfg(test)]

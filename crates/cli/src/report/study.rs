@@ -109,6 +109,9 @@ impl Study {
         if budgets.is_none() {
             // No budget, or a run that fails: the campaign goes on without it.
             let made = maker.make_rows(0..runs, 0, stop_flag());
+            if stop::stop_requested() {
+                return Err(CliError::Interrupted(String::new()));
+            }
             rows = made.map_err(|error| CliError::Arguments(error.to_string()))?;
         }
         if stop::stop_requested() {

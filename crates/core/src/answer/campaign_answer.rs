@@ -6,10 +6,10 @@ use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, percent};
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
-use super::campaign_runs::CampaignRuns;
 use super::driving_key::{DrivingKey, driving_keys};
 use super::requirement_answer::{margin_text, requirement_id};
 use super::{Answer, RunVerdict, SCHEMA};
+use crate::campaign::CampaignRuns;
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 use crate::statistics::{quantile, wilson};
 

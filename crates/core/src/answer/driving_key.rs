@@ -3,7 +3,7 @@
 use flexsc_formats::reader_units::{ReaderUnits, number, percent};
 use serde::Serialize;
 
-use super::campaign_runs::UncertainValues;
+use crate::campaign::UncertainValues;
 
 /// Least size of a correlation, and multiple of its standard deviation without one, from which on a key is named.
 const LEAST: [f64; 2] = [0.25, 3.3];

@@ -4,7 +4,6 @@
 
 mod campaign_answer;
 mod campaign_comparison;
-mod campaign_runs;
 mod campaign_screen;
 mod driving_key;
 mod error_statistics;
@@ -33,7 +32,6 @@ pub use campaign_answer::{
     CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
 };
 pub use campaign_comparison::CampaignComparison;
-pub use campaign_runs::CampaignRuns;
 pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};

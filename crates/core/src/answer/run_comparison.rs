@@ -94,13 +94,11 @@ impl RunComparison {
             let unit = units.fitting(errors.into_iter().flatten().fold(0.0, f64::max), "rad");
             let cell = |side: usize| {
                 let own = both[side].as_ref()?;
-                let mut text = time(own.time_s);
-                if let Some(error) = errors[side] {
-                    text += &format!(", 95 % {}", unit.quantity(error));
-                }
-                if let Some(limit) = own.at_limit_s.filter(|limit| *limit > 0.0) {
-                    text += &format!(", {} at a limit", time(limit));
-                }
+                let error = errors[side].map(|error| format!("95 % {}", unit.quantity(error)));
+                let limit = own.at_limit_s.filter(|limit| *limit > 0.0);
+                let limit = limit.map(|limit| format!("{} at a limit", time(limit)));
+                let parts = [Some(time(own.time_s)), error, limit].into_iter().flatten();
+                let text = parts.collect::<Vec<_>>().join(", ");
                 Some(text)
             };
             let cells = [0, 1].map(|side| cell(side).unwrap_or_else(|| "not entered".to_owned()));

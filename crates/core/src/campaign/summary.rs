@@ -1,10 +1,10 @@
 //! Summary of a campaign's rows: failures, and the statistics of every numeric metric.
 
+use super::campaign_runs::CampaignRuns;
 use super::directory::Directory;
 use super::error::DirectoryError;
 use super::row_maker::RowMaker;
 use super::rows::{ColumnCells, ColumnKind, ERROR, RUN};
-use crate::answer::CampaignRuns;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
 

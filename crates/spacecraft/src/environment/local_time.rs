@@ -62,7 +62,7 @@ impl fmt::Display for LocalTime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let whole = self.0.round() as u32;
         write!(f, "{:02}:{:02}", whole / 3600, whole / 60 % 60)?;
-        if whole % 60 == 0 { Ok(()) } else { write!(f, ":{:02}", whole % 60) }
+        if whole.is_multiple_of(60) { Ok(()) } else { write!(f, ":{:02}", whole % 60) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use crate::campaign::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
+use super::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
 use crate::metrics::{MetricValue, Metrics, goal};
 use crate::requirement_verdict::{RequirementRuns, RequirementVerdict};
 
@@ -12,21 +12,21 @@ const GOAL: &str = goal::NAMES[0];
 /// Values of runs, as they are collected.
 #[derive(Clone, Debug)]
 pub struct CampaignRuns {
-    pub(super) requirements: RequirementRuns,
+    pub(crate) requirements: RequirementRuns,
     /// Uncertain keys, each with its value in the scenario and in every run.
-    pub(super) keys: Vec<UncertainValues>,
+    pub(crate) keys: Vec<UncertainValues>,
     /// Number of runs that meet the goal, and of those that have one.
-    pub(super) goals: [u64; 2],
+    pub(crate) goals: [u64; 2],
     /// Number of runs, and of those that failed.
-    pub(super) runs: u64,
-    pub(super) failed: u64,
+    pub(crate) runs: u64,
+    pub(crate) failed: u64,
     /// Number of varied keys before the uncertain ones.
     designed: usize,
 }
 
 /// Values of an uncertain key.
 #[derive(Clone, Debug)]
-pub(super) struct UncertainValues {
+pub(crate) struct UncertainValues {
     pub key: String,
     pub design: f64,
     pub values: Vec<f64>,
