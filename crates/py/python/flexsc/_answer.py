@@ -108,7 +108,8 @@ class Answer(_Fields):
     ()
     """
     events: tuple[dict[str, Any], ...]
-    """Stays in modes, actuators at limits, losses of the target, eclipses, blinding and failures: `kind`, `part`, `from_s`, `to_s`.
+    """Stays in modes, actuators at limits, losses of the target, eclipses, blinding and failures: `kind`,
+    `part`, `from_s`, `to_s`.
 
     >>> answer.events
     ()

@@ -725,8 +725,8 @@ class Scenario:
     def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:
         """Write a page for a design review, and return whether all its verdicts are good: `flexsc report`.
 
-        The page has the conclusions, requirements, the spacecraft, a time line, margins and noise of each mode,
-        claims, budgets and a campaign with their figures, and the command that repeats each.
+        The page has the conclusions, requirements, the spacecraft, a time line, margins and noise of each
+        mode, claims, budgets and a campaign with their figures, and the command that repeats each.
 
         Args:
             path: The page, `FILE.html`.

@@ -37,6 +37,7 @@ __all__ = [
     "AdaptationKind",
     "Adaptive",
     "Added",
+    "AltitudeOrbit",
     "Appendage",
     "AppendageDrive",
     "Assigned",
@@ -379,6 +380,59 @@ class Added(Part):
     """
     sines: Sequence[Sine] | None = None
     """Sine torques."""
+
+
+class AltitudeOrbit(Part):
+    """An orbit by its altitude. Inertial axes are those of the planet's equator: z along its axis of
+    rotation.
+
+    Args:
+        altitude: Altitude above the planet's radius at the equator (m); of an ellipse, the semi-major axis
+            less the radius.
+        ltan: Mean local time of the ascending node: `"10:30"`, `"6 h"`, or seconds since midnight; with the
+            inclination left out, the orbit is Sun-synchronous. It needs the scenario's `epoch`.
+        eccentricity: Eccentricity. Default: 0.0.
+        inclination: Inclination to the equator (rad); default: with `ltan`, that of a Sun-synchronous
+            orbit, else 0.
+        node: Angle from the inertial x to the ascending node (rad), in place of `ltan`; default: 0.
+        perigee: Angle from the node to the perigee (rad). Default: 0.0.
+        anomaly: Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default:
+            0.0.
+        gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
+            398600441800000.0.
+        planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
+            Default: 6378137.0.
+        j2: Coefficient J2 of the planet's oblateness, as of Kepler elements; default: with `ltan` that of
+            the Earth, else a sphere.
+    """
+
+    altitude: float
+    """Altitude above the planet's radius at the equator (m); of an ellipse, the semi-major axis less the
+    radius.
+    """
+    ltan: str | float | None = None
+    """Mean local time of the ascending node: `"10:30"`, `"6 h"`, or seconds since midnight; with the
+    inclination left out, the orbit is Sun-synchronous. It needs the scenario's `epoch`.
+    """
+    eccentricity: float | None = None
+    """Eccentricity. Default: 0.0."""
+    inclination: float | None = None
+    """Inclination to the equator (rad); default: with `ltan`, that of a Sun-synchronous orbit, else 0."""
+    node: float | None = None
+    """Angle from the inertial x to the ascending node (rad), in place of `ltan`; default: 0."""
+    perigee: float | None = None
+    """Angle from the node to the perigee (rad). Default: 0.0."""
+    anomaly: float | None = None
+    """Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default: 0.0."""
+    gravity: float | None = None
+    """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
+    planet_radius: float | None = None
+    """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
+    """
+    j2: bool | float | None = None
+    """Coefficient J2 of the planet's oblateness, as of Kepler elements; default: with `ltan` that of the
+    Earth, else a sphere.
+    """
 
 
 class Appendage(Part):
@@ -1439,7 +1493,7 @@ class Environment(Part):
         torque: A torque that is constant in inertial axes (N m).
     """
 
-    orbit: Kepler | TwoLineOrbit | EphemerisOrbit | None = None
+    orbit: Kepler | AltitudeOrbit | TwoLineOrbit | EphemerisOrbit | None = None
     """Orbit of the body; default: none, or the one given with a torque below."""
     magnetic_field: MagneticField | None = None
     """The magnetic field of the orbit's planet."""
@@ -3839,6 +3893,8 @@ class StarTracker(Part):
             boresight, z about it.
         axes: Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that
             transforms vectors from its axes to the body's; default: the identity.
+        boresight: Direction of the boresight, its z axis, in the body, of any length, in place of `axes`: x
+            and y are those of the body, turned by the smallest angle that takes z to the boresight.
         latency: Time from the middle of an exposure to its output (s). Default: 0.0.
         exposure: Exposure time (s), at most `period` and twice `latency`: a reading is the mean attitude
             over the exposure; default: 0, the attitude at an instant.
@@ -3863,6 +3919,10 @@ class StarTracker(Part):
     axes: Vector | None = None
     """Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that transforms
     vectors from its axes to the body's; default: the identity.
+    """
+    boresight: Vector | None = None
+    """Direction of the boresight, its z axis, in the body, of any length, in place of `axes`: x and y are
+    those of the body, turned by the smallest angle that takes z to the boresight.
     """
     latency: float | None = None
     """Time from the middle of an exposure to its output (s). Default: 0.0."""
@@ -4566,6 +4626,8 @@ class Wheels(Part):
             accelerate it; no limit by default.
         speed_limit: Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no
             limit by default.
+        delay: Time from a command of the law to the torques of the motors (s), as computation and data bus
+            take it.
         speeds: Speed of each wheel at the start, relative to the body (rad/s); default: 0.
         friction: Friction of the bearings; none by default.
         compensation: Friction that the drives assume and compensate within `torque`, from the true or
@@ -4603,6 +4665,9 @@ class Wheels(Part):
     speed_limit: float | None = None
     """Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no limit by
     default.
+    """
+    delay: float | None = None
+    """Time from a command of the law to the torques of the motors (s), as computation and data bus take it.
     """
     speeds: Vector | None = None
     """Speed of each wheel at the start, relative to the body (rad/s); default: 0."""
