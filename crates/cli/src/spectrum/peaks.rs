@@ -34,7 +34,8 @@ pub fn print(all: &[OutputWaterfall<'_>], units: Units) {
     let window = all.iter().find_map(OutputWaterfall::window);
     let within = window.map_or_else(String::new, |window| format!(", and within windows of {window} s"));
     say!("  largest peaks over the speed, rms of all frequencies{within}");
-    print_rows(&rows, &PEAKS, units);
+    let columns = if window.is_some() { &PEAKS[..] } else { &PEAKS[..PEAKS.len() - 1] };
+    print_rows(&rows, columns, units);
 }
 
 /// Returns the peaks of an output, in the order of their speeds.

@@ -123,7 +123,9 @@ fn bars(sorted: &[f64], limit: Option<f64>) -> Vec<((f64, f64), usize)> {
     for value in sorted {
         counts[((place(*value) - first) as usize).min(count - 1)] += 1;
     }
-    let end = |index: usize| start + (first + index as f64) * width;
+    // A quantity without negative values has no bar below 0.
+    let least = if low >= 0.0 { 0.0 } else { f64::NEG_INFINITY };
+    let end = |index: usize| (start + (first + index as f64) * width).max(least);
     counts.into_iter().enumerate().map(|(index, count)| ((end(index), end(index + 1)), count)).collect()
 }
 
