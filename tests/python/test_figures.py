@@ -153,8 +153,8 @@ def test_sweeps_have_curves_and_maps() -> None:
     drawn = plot.figure(both, name)
     # The map, and the bar of its colours.
     assert len(drawn.axes) == 2
-    assert drawn.axes[1].get_xlabel() == "envelope late mean (µrad)" or drawn.axes[1].get_ylabel() != ""
-    assert drawn.axes[0].get_ylabel() == "law.relay.weak (rad/s²)"
+    assert drawn.axes[1].get_xlabel() == "envelope late mean (arcsec)" or drawn.axes[1].get_ylabel() != ""
+    assert drawn.axes[0].get_ylabel() == "law.relay.weak (arcsec/s²)"
 
 
 def test_a_notebook_shows_a_figure_once(run: Result, monkeypatch: pytest.MonkeyPatch) -> None:

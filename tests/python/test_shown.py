@@ -34,17 +34,21 @@ def test_metrics_know_their_units(fixed: Scenario) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "title"),
-    [("relay-fixed", "Relay fixed"), ("rotation-sine", "Rotation sine"), ("iss-manoeuvre", "ISS manoeuvre")],
+    ("name", "axis"),
+    [
+        ("relay-fixed", "angle x (arcsec)"),
+        ("rotation-sine", "angle of the hub"),
+        ("iss-manoeuvre", "pointing error (deg)"),
+    ],
 )
-def test_runs_are_shown_with_a_figure(name: str, title: str) -> None:
+def test_runs_are_shown_with_a_figure(name: str, axis: str) -> None:
     scenario = shipped(name)
     run = scenario.with_("duration", min(scenario.duration, 300.0)).simulate()
     html = run._repr_html_()
     [figure] = figures(html)
     assert "width:560px" in figure.get("style", "")
     text = " ".join(element.text or "" for element in figure.iter() if element.tag.endswith("text"))
-    assert title in text
+    assert axis in text
     # The whole is well-formed, and has a row for each metric and each topic.
     whole = ElementTree.fromstring(f"<div>{html}</div>")
     first = [row[0].text for table in whole.iter("table") for row in table.iter("tr")]
@@ -56,7 +60,7 @@ def test_runs_are_shown_with_a_figure(name: str, title: str) -> None:
 
 def test_scenarios_and_tables_are_shown(sampled: Scenario) -> None:
     [figure] = figures(sampled._repr_html_())
-    assert "elastic modes" in "".join(figure.itertext())
+    assert "natural frequency (Hz)" in "".join(figure.itertext())
     assert "&lt;b&gt;" in sampled.with_("about", "<b>")._repr_html_()
     rigid = shipped("relay-fixed").with_("body.planar.modes", [])
     assert figures(rigid._repr_html_()) == []

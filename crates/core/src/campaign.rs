@@ -1,8 +1,8 @@
 //! Campaigns: many runs of one scenario.
 
 mod at_points;
-#[cfg(feature = "parquet")]
 mod campaign_runs;
+#[cfg(feature = "parquet")]
 mod checksum;
 mod command_log;
 #[cfg(feature = "parquet")]

@@ -9,7 +9,7 @@
     ['phase-plane', 'torque', 'angle', 'envelope', 'modes']
     >>> axes = flexsc.plot.draw(run, "angle")
     >>> axes.get_ylabel()
-    'angle x (µrad)'
+    'angle x (arcsec)'
     >>> figure = flexsc.plot.figure(run, "envelope")
     >>> len(figure.axes)
     2
@@ -295,9 +295,10 @@ def _strips(ax: Axes, strips: list[Any], x: dict[str, Any], has_legend: bool) ->
     from matplotlib.transforms import offset_copy
 
     low, high = x["low"], x["high"]
+    figure: Any = ax.figure
     for row, (name, spans) in enumerate(reversed(strips)):
         up = ((28 if has_legend else 10) + 14 * row) * POINT
-        place = offset_copy(ax.get_xaxis_transform(), fig=ax.figure, y=up, units="points")
+        place = offset_copy(ax.get_xaxis_transform(), fig=figure, y=up, units="points")
         shown = [span for span in spans if span[0] < high and span[1] > low]
         bars = LineCollection(
             [[(max(start, low), 1.0), (min(end, high), 1.0)] for start, end, _, _ in shown],
