@@ -16,7 +16,7 @@ use super::limits::ActuatorLimits;
 const GROWTH: f64 = 3.0;
 /// Error that rounding alone may leave (rad).
 const ROUNDING: f64 = 1e-9;
-/// Longest gap between two times at a limit that are one stay (s); here, at least [`GAP_CYCLES`] control cycles.
+/// Longest gap between two times at a limit that are one stay (s); here, at least ten control cycles.
 pub const SATURATION_GAP: f64 = 15.0;
 const GAP_CYCLES: f64 = 10.0;
 
