@@ -47,7 +47,9 @@ fn body_lines(scenario: &Scenario) -> Vec<(String, String)> {
     if let Some(craft) = scenario.model.spacecraft() {
         let modes = SpacecraftModes::from_scenario(scenario, craft);
         add("mass", units.quantity(modes.mass_kg, "kg"));
-        add("centre of mass", units.list(&modes.centre_m, ", ", "m"));
+        // Rounding leaves less than a micrometre.
+        let centre = modes.centre_m.map(|place| if place.abs() < 1e-6 { 0.0 } else { place });
+        add("centre of mass", units.list(&centre, ", ", "m"));
         let inertia = modes.inertia_kg_m2;
         add("inertia", format!("{} kg m²", [0, 1, 2].map(|axis| number(inertia[axis][axis])).join(", ")));
         let clamped: Vec<f64> = modes.clamped.iter().map(|own| own.frequency_rad_s).collect();
@@ -102,7 +104,14 @@ fn part_lines(scenario: &Scenario) -> Vec<(String, String)> {
         add("wheels", format!("{} × {}", wheels.count(), parts.join(", ")));
     }
     if let Some((torquers, _)) = scenario.actuator.magnetorquers() {
-        add("magnetic torquers", units.quantity(torquers.largest_moment(), "A m²"));
+        let moments = [0, 1, 2].map(|axis| torquers.moment.about(axis).get());
+        let each = units.fitting(moments.into_iter().fold(0.0, f64::max), "A m²");
+        let text = if moments.iter().all(|moment| *moment == moments[0]) {
+            format!("3 × {}", each.quantity(moments[0]))
+        } else {
+            each.list(&moments, ", ")
+        };
+        add("magnetic torquers", text);
     }
     if let Some((jets, _)) = scenario.actuator.jets() {
         add("thrusters", jets.thrusters.len().to_string());

@@ -405,7 +405,7 @@ fn noise_html(
         {
             let mode = if has_modes { format!(" in mode {}", own.mode) } else { String::new() };
             summary.accuracy = Some(format!(
-                "The noise of {}{mode} is {} rms, {} of its variance from {source}.",
+                "Noise alone, without disturbances, leaves {}{mode} {} rms, {} of its variance from {source}.",
                 output.output,
                 units.quantity(output.rms, &output.unit),
                 share(part)

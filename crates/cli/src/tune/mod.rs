@@ -34,9 +34,9 @@ pub struct TuneArgs {
     structured: structured::StructuredArgs,
     #[command(flatten)]
     single_axis: SingleAxisArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Text and figures")]
     units: UnitsArgs,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Text and figures")]
     drawing: FigureOutput,
 }
 

@@ -89,7 +89,10 @@ impl RunData<'_> {
             format!("error {rms} rms, 95 % {p95}, largest {largest} at {}", time(errors.at_s))
         };
         let knowledge = self.known("attitude_estimate_error_rms_rad").map_or_else(String::new, |error| {
-            format!("; knowledge {} rms", self.units.quantity(error, "rad"))
+            let end = self.scenario.duration.seconds();
+            let [from, to] = self.scenario.estimator.as_ref().map_or([0.0, end], |filter| filter.assess());
+            let span = format!("{} to {}", number(from), time(to.min(end)));
+            format!("; knowledge {} rms, {span}", self.units.quantity(error, "rad"))
         });
         let mut add = |head: &str, text: String| {
             if has_modes { lines.other(head, text) } else { lines.main(head, text) }
