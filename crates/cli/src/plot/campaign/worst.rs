@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::campaign::Design;
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::goal;
 use serde_json::json;
 
 use super::metric_column::MetricColumn;
 use super::table::{CampaignRuns, ScenarioSource};
-use crate::number::short;
 
 /// Metrics whose larger values are better.
 const MORE: [&str; 4] =
@@ -40,6 +40,8 @@ fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
 struct WorstRun<'a> {
     /// Name of the metric, or `error`.
     what: &'a str,
+    /// Name of the metric in words, and unit of its value.
+    label: (String, &'static str),
     run: u64,
     /// Value of the metric, or the error of the run.
     value: String,
@@ -53,17 +55,18 @@ fn worst<'a>(
     most: usize,
 ) -> Vec<WorstRun<'a>> {
     let ran = |index: &usize| runs.errors[*index].is_empty();
-    let reported = |what, index: usize, value| {
+    let reported = |what, label, index: usize, value| {
         let command = runs.scenario.as_ref().map(|(_, source)| match source {
             ScenarioSource::File(path) => command(runs, directory, path, index),
             ScenarioSource::Directory(path) => command_from(path, runs.numbers[index]),
         });
-        WorstRun { what, run: runs.numbers[index], value, command }
+        WorstRun { what, label, run: runs.numbers[index], value, command }
     };
     let all = 0..runs.numbers.len();
     let failed = all.clone().filter(|index| !ran(index)).take(most);
-    let mut worst: Vec<WorstRun<'a>> =
-        failed.map(|index| reported("error", index, runs.errors[index].clone())).collect();
+    let mut worst: Vec<WorstRun<'a>> = failed
+        .map(|index| reported("error", Default::default(), index, runs.errors[index].clone()))
+        .collect();
     for metric in metrics {
         let bad = all.clone().filter(ran).filter_map(|index| Some((badness(metric, index)?, index)));
         let mut bad: Vec<(f64, usize)> = bad.collect();
@@ -71,7 +74,7 @@ fn worst<'a>(
         for (_, index) in bad.into_iter().take(most) {
             let text = metric.text(index);
             let value = if text.is_empty() { "never".to_owned() } else { text };
-            worst.push(reported(metric.title(), index, value));
+            worst.push(reported(metric.title(), metric.label(), index, value));
         }
     }
     worst
@@ -123,12 +126,14 @@ pub fn table(runs: &CampaignRuns, directory: &Path, metrics: &[&MetricColumn], m
     let mut before = "";
     for found in &worst {
         if found.what != before {
-            let _ = writeln!(text, "  {}", if found.what == "error" { "failed" } else { found.what });
+            let _ = writeln!(text, "  {}", if found.what == "error" { "failed" } else { &found.label.0 });
             before = found.what;
         }
         let why = match found.value.parse() {
             // Counts are printed unchanged.
-            Ok(number) if found.value.contains(['.', 'e']) => short(number),
+            Ok(number) if found.value.contains(['.', 'e']) => {
+                ReaderUnits::Engineering.quantity(number, found.label.1)
+            }
             _ => found.value.lines().next().unwrap_or_default().to_owned(),
         };
         let _ = writeln!(text, "    run {:<8}{why}", found.run);
