@@ -22,6 +22,15 @@ fn keys_that_differ_and_both_answers() {
     let rows: Vec<&str> = ran.err.lines().map(str::trim).filter(|line| line.starts_with("law.")).collect();
     let words: Vec<&str> = rows[0].split_whitespace().collect();
     assert_eq!(words, ["law.per_axis.roll.pd.k_p", "36", "N", "m/rad", "30", "N", "m/rad"]);
+    // A file's values are shown as they stand there, so that they can be copied.
+    dir.write(
+        "wide.toml",
+        "name = \"wide\"\n".to_owned()
+            + &dir.text("softer.toml").replacen("yaw = 0.05", "yaw = \"3 deg\"", 1),
+    );
+    let other = dir.run("compare softer.toml wide.toml").exits(0);
+    let row = other.err.lines().find(|line| line.contains("target[0].yaw")).expect("a key");
+    assert_eq!(row.split_whitespace().collect::<Vec<_>>(), ["target[0].yaw", "0.05", "rad", "3", "deg"]);
     assert_eq!(rows.len(), 1, "{}", ran.err);
     // Each side is answered as `simulate` answers.
     for (side, line) in [

@@ -9,6 +9,7 @@ use flexsc_core::answer::{
     Answer, CampaignAnswer, CampaignComparison, KeyDifference, RunComparison, RunObserver, ScreenOptions,
 };
 use flexsc_core::campaign::Directory;
+use flexsc_core::formats::document::key;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::record::{Detail, Log};
 use serde_json::json;
@@ -83,7 +84,10 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         args.drawing.save(|| named.collect())?;
     }
     let scenarios = runs.each_ref().map(|run| &run.scenario);
-    let keys = KeyDifference::between(scenarios, args.units.units.into());
+    let mut keys = KeyDifference::between(scenarios, args.units.units.into());
+    for (side, path) in [first, second].into_iter().enumerate() {
+        write_as_in_file(&mut keys, side, path, &args.set)?;
+    }
     let names = [first, second].map(|path| path.display().to_string());
     let comparison = RunComparison { names, keys, answers: runs.map(|run| run.answer) };
     if args.json {
@@ -124,6 +128,32 @@ impl CompareArgs {
     fn screen(&self) -> ScreenOptions {
         AnswerArgs { all: self.all, ..AnswerArgs::from_units(self.units) }.screen()
     }
+}
+
+/// Shows the keys that a scenario file contains as they are written there.
+fn write_as_in_file(
+    keys: &mut [KeyDifference],
+    side: usize,
+    path: &Path,
+    set: &[String],
+) -> Result<(), CliError> {
+    if is_log(path) || path == Path::new("-") {
+        return Ok(());
+    }
+    let mut document = scenario::document(path)?;
+    for (key, value) in set.iter().filter_map(|pair| pair.split_once('=')) {
+        document.set_text(key.trim(), value.trim())?;
+    }
+    for own in keys {
+        let unit = own.unit.unwrap_or_default();
+        let Some(value) = key::get(document.table(), &own.key) else { continue };
+        if let Some(text) = value.as_str() {
+            own.texts[side] = text.to_owned();
+        } else if value.is_float() || value.is_integer() {
+            own.texts[side] = format!("{value} {unit}").trim_end().to_owned();
+        }
+    }
+    Ok(())
 }
 
 /// Run that is to be compared, read and not yet made.

@@ -17,7 +17,7 @@ pub struct KeyDifference {
     pub unit: Option<&'static str>,
     /// Value in each scenario, in SI; null in a scenario that lacks the key.
     pub values: [Option<Value>; 2],
-    /// Values in the reader's units; empty in a scenario that lacks the key.
+    /// Values as they are written, or in the reader's units; empty in a scenario that lacks the key.
     pub texts: [String; 2],
 }
 
