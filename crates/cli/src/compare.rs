@@ -148,9 +148,9 @@ fn write_as_in_file(
         let unit = own.unit.unwrap_or_default();
         let Some(value) = key::get(document.table(), &own.key) else { continue };
         if let Some(text) = value.as_str() {
-            own.texts[side] = text.to_owned();
+            text.clone_into(&mut own.texts[side]);
         } else if value.is_float() || value.is_integer() {
-            own.texts[side] = format!("{value} {unit}").trim_end().to_owned();
+            format!("{value} {unit}").trim_end().clone_into(&mut own.texts[side]);
         }
     }
     Ok(())
