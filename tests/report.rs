@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value as Json;
 
-use crate::util::Dir;
+use crate::util::{Dir, FLEXSC};
 
 /// Returns the texts of an answer's requirements.
 fn texts(answer: &Json) -> Vec<String> {
@@ -59,7 +59,7 @@ fn a_page_for_a_review() {
     for command in [
         "flexsc simulate half-turn.toml",
         "flexsc modes half-turn.toml",
-        "flexsc margins half-turn.toml",
+        "flexsc margins half-turn.toml --mask '6 dB, 30 deg'",
         "flexsc worst half-turn.toml --margin modulus --points 100",
         "flexsc simulate half-turn.toml --runs 40 -o campaign",
     ] {
@@ -102,6 +102,33 @@ fn margins_are_those_of_the_command() {
     assert!(
         page.contains("--set 'duration=20'") && page.contains("Keys set on the command line: duration=20.")
     );
+}
+
+/// The verdict on each loop is that of the command, whose mask is stricter than two margins.
+#[test]
+fn verdicts_on_loops_are_those_of_the_command() {
+    let dir = Dir::with(&["earth-observer"]);
+    for (bandwidth, missed) in [("0.1", 0), ("0.3", 1)] {
+        let set = format!("--set law.attitude.bandwidth={bandwidth}");
+        dir.run(&format!("report earth-observer.toml --runs 0 {set} -o {bandwidth}.html")).exits(0);
+        let line = format!("margins earth-observer.toml --mask 6dB,30deg --json {set}");
+        let found = dir.run(&line).exits(if missed > 0 { 3 } else { 0 }).json();
+        let loops = found["mask"]["loops"].as_array().expect("loops");
+        assert_eq!(loops.iter().filter(|own| !own["violated_at_hz"].is_null()).count(), missed);
+        let page = dir.text(&format!("{bandwidth}.html"));
+        let (_, table) = page.split_once("Mask 6 dB, 30 deg</th>").expect("a table");
+        let (table, _) = table.split_once("</table>").expect("its end");
+        let count = |verdict: &str| table.matches(&format!("class=\"v {verdict}\"")).count();
+        assert_eq!((count("missed"), count("met")), (missed, 3 - missed));
+        assert!(page.contains("mask 6 dB, 30 deg"), "the Nichols diagram has the mask");
+    }
+    // A scenario from stdin has the same blocks.
+    let mut command = std::process::Command::new(FLEXSC);
+    command.args(["report", "-", "--runs", "0", "-o", "stdin.html"]).current_dir(dir.path("."));
+    command.stdin(std::fs::File::open(dir.path("earth-observer.toml")).expect("a file"));
+    assert!(command.output().expect("it starts").status.success());
+    let page = dir.text("stdin.html");
+    assert!(page.contains("Mask 6 dB, 30 deg</th>") && page.contains("[[appendage]]"), "{page}");
 }
 
 #[test]

@@ -59,6 +59,7 @@ const SLOW: &[&str] = &[
     "tune wheel-fast-mode.toml --frequency 0.05:0.5:10000 --gain=-3:3:6001 --json",
     "worst rotation-robust.toml --metric residual_energy_j --points 1000000 --set duration=1000",
     "report wheel-ekf.toml -o q.html --runs 50000",
+    "compare rotation-nonlinear.toml rotation-sine.toml --set duration=1e6",
     "plot p/relay-adaptive.mcap -o p",
     "plot p/relay-adaptive.mcap -o p/all.png",
     "export p/relay-adaptive.mcap --topic /attitude -o p/attitude.csv",

@@ -1,5 +1,4 @@
-//! Command-line options whose values are the variants of an enum of the engine, with the words and the help that the enum
-//! declares.
+//! Command-line options that accept the names of an enum's variants.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use schemars::{JsonSchema, schema_for};

@@ -8,7 +8,7 @@ use flexsc_core::Scenario;
 use flexsc_core::answer::{
     Answer, CampaignAnswer, CampaignComparison, KeyDifference, RunComparison, RunObserver, ScreenOptions,
 };
-use flexsc_core::campaign::Directory;
+use flexsc_core::campaign::{Campaign, Directory};
 use flexsc_core::formats::document::key;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::record::{Detail, Log};
@@ -21,7 +21,8 @@ use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::human::UnitsArgs;
 use crate::results::print_lines;
-use crate::{memory_log, plot, say, scenario};
+use crate::stop::stop_flag;
+use crate::{memory_log, plot, say, scenario, simulate};
 
 #[derive(clap::Args)]
 pub struct CompareArgs {
@@ -50,7 +51,7 @@ struct ComparedRun {
     scenario: Scenario,
     answer: Answer,
     /// Log for the figures, if they are drawn.
-    log: Log,
+    log: Option<Log>,
 }
 
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
@@ -76,9 +77,10 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     let sources = [source(first, args)?, source(second, args)?];
     let [first_run, second_run] = sources;
     let runs = [first_run.compared(args)?, second_run.compared(args)?];
-    if args.drawing.figures.is_some() {
-        let logs = [(first, &runs[0].log), (second, &runs[1].log)];
-        let figures = plot::overlaid_logs(logs.map(|(path, log)| (path.as_path(), log)))?;
+    if let ([Some(a), Some(b)], true) =
+        (runs.each_ref().map(|run| run.log.as_ref()), args.drawing.figures.is_some())
+    {
+        let figures = plot::overlaid_logs([(first, a), (second, b)])?;
         let [a, b] = [first, second].map(|path| path.file_stem().unwrap_or_default().to_string_lossy());
         let named = figures.into_iter().map(|(kind, figure)| (format!("{a}-{b}-{kind}"), figure));
         args.drawing.save(|| named.collect())?;
@@ -182,8 +184,17 @@ impl ComparedSource {
         match self {
             Self::Scenario(path, scenario) => {
                 let mut observer = RunObserver::new(&scenario);
-                let detail = if args.drawing.figures.is_some() { Detail::Full } else { Detail::Events };
-                let (log, metrics) = memory_log::observed(*scenario.clone(), &path, detail, &mut observer)?;
+                let (metrics, log) = if args.drawing.figures.is_some() {
+                    let record = &mut observer;
+                    let (log, metrics) =
+                        memory_log::observed(*scenario.clone(), &path, Detail::Full, record)?;
+                    (metrics, Some(log))
+                } else {
+                    let campaign = Campaign::new(*scenario.clone(), &path.to_string_lossy(), None)?;
+                    let run = simulate::scenario_run(&campaign);
+                    let metrics = Campaign::simulate(&run, (stop_flag(), &mut observer));
+                    (metrics.map_err(|source| CliError::run(&scenario.name, source))?, None)
+                };
                 let answer = Answer::new(&scenario, &metrics, Some(&observer.finish()), units);
                 Ok(ComparedRun { scenario: *scenario, answer, log })
             }
@@ -192,7 +203,7 @@ impl ComparedSource {
                 let mut observer = RunObserver::new(&story.scenario);
                 let metrics = story.repeat(&log, &path, "an answer", &mut observer)?;
                 let answer = Answer::new(&story.scenario, &metrics, Some(&observer.finish()), units);
-                Ok(ComparedRun { scenario: story.scenario, answer, log: *log })
+                Ok(ComparedRun { scenario: story.scenario, answer, log: Some(*log) })
             }
         }
     }

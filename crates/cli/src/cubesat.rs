@@ -7,7 +7,7 @@ use std::ops::RangeInclusive;
 
 use flexsc_core::Scenario;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
-use flexsc_core::spacecraft::environment::LocalTime;
+use flexsc_core::spacecraft::environment::{LocalTime, earth_gravity, earth_radius};
 
 use crate::error::CliError;
 use crate::quantity::in_unit;
@@ -39,8 +39,6 @@ const FIELD: f64 = 4e-5;
 const LOW_ORBIT: RangeInclusive<f64> = 150e3..=2000e3;
 /// Local time of the node by default (s).
 const LTAN: f64 = 10.5 * 3600.0;
-/// Gravitational parameter (m³/s²) and radius of the Earth (m).
-const EARTH: [f64; 2] = [3.986_004_418e14, 6_378_137.0];
 
 /// Size, mass, wheels and orbit of `flexsc new --cubesat`.
 #[derive(clap::Args)]
@@ -165,8 +163,8 @@ impl Cubesat {
         let hub = self.mass - wing.as_ref().map_or(0.0, |wing| 2.0 * wing.mass);
         let box_inertia = |a: f64, b: f64| hub * (a * a + b * b) / 12.0;
         let [jx, jy, jz] = [box_inertia(y, z), box_inertia(x, z), box_inertia(x, y)];
-        let semi_major_axis = EARTH[1] + self.altitude;
-        let rate = f64::sqrt(EARTH[0] / semi_major_axis) / semi_major_axis;
+        let semi_major_axis = earth_radius().get() + self.altitude;
+        let rate = f64::sqrt(earth_gravity().get() / semi_major_axis) / semi_major_axis;
         let orbit = 2.0 * PI / rate;
         let least = jx.min(jy).min(jz);
         let wings = wing.as_ref().map_or_else(String::new, |wing| wing.tables(y));

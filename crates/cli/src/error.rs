@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anstyle::{AnsiColor, Style};
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
-use flexsc_core::record::LogError;
 use flexsc_core::record::atomic_file::is_busy;
+use flexsc_core::record::{LogError, RecordError};
 use flexsc_core::worst_case::WorstCaseFault;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
@@ -108,6 +108,14 @@ impl From<NotReplaced> for io::Error {
 }
 
 impl CliError {
+    /// Returns the error of a run with this name: that it was interrupted, or why it failed.
+    pub fn run(name: &str, source: SimulationError) -> Self {
+        match source {
+            SimulationError::Record(RecordError::Interrupted) => Self::Interrupted(String::new()),
+            source => Self::Run { name: name.to_owned(), source },
+        }
+    }
+
     /// Returns the error of a search for the worst case of a scenario.
     pub fn worst_case(scenario: &str, fault: WorstCaseFault) -> Self {
         match fault {

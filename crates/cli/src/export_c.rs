@@ -140,7 +140,7 @@ fn refused(path: &Path, error: ExportError) -> CliError {
             Err(error) => error,
         },
         ExportError::Vectors(VectorError::Simulation(source)) => {
-            CliError::Run { name: path.display().to_string(), source }
+            CliError::run(&path.display().to_string(), source)
         }
         error => CliError::Arguments(format!("{}: {error}", path.display())),
     }

@@ -1,24 +1,16 @@
 //! Axes of figures along keys of a scenario, in the units in which people read them.
 
 use flexsc_core::Scenario;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_figure::{FigureAxis, name_and_unit};
-
-/// Ends of the names of keys that are angular frequencies, and of those that are speeds of rotors.
-const FREQUENCIES: [&str; 3] = ["frequency", "bandwidth", "corner"];
-const SPEEDS: [&str; 3] = ["speed", "speeds", "speed_limit"];
 
 /// Returns an axis around values of a key.
 pub fn key_axis(scenario: Option<&Scenario>, key: &str, values: impl IntoIterator<Item = f64>) -> FigureAxis {
     let unit = scenario.and_then(|scenario| scenario.unit_of(key)).unwrap_or_default();
-    let (name, unit) = name_and_unit(key, unit);
-    let axis = FigureAxis::around(&name, unit, values);
-    let own = key.rsplit('.').next().unwrap_or_default();
-    let own = own.split('[').next().unwrap_or_default();
-    if SPEEDS.contains(&own) {
-        axis.in_rpm()
-    } else if FREQUENCIES.contains(&own) {
-        axis.in_hertz()
-    } else {
-        axis
-    }
+    let values: Vec<f64> = values.into_iter().collect();
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let reader_unit = ReaderUnits::Engineering.of_key(key, largest, unit);
+    let (name, own) = name_and_unit(key, unit);
+    let axis = FigureAxis::around(&name, own, values);
+    if unit == "rad/s" { axis.in_unit(reader_unit) } else { axis }
 }

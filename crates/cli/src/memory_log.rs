@@ -53,7 +53,7 @@ fn recorded(
         let metrics = commanded.simulate(run, until, (&mut log, (stop_flag(), record)))?;
         Ok((log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?, metrics))
     };
-    let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
+    let failed = |source| CliError::run(&run.scenario.name, source);
     let (bytes, metrics) = simulated().map_err(failed)?;
     Ok((Log::read(path, bytes)?, metrics))
 }

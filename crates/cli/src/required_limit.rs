@@ -8,7 +8,7 @@ use flexsc_figure::{FigureAxis, Layer, LayerShape, Point, colour};
 pub struct RequiredLimit {
     /// Largest allowed value.
     pub limit: f64,
-    /// The limit as it was written.
+    /// The limit as it was written, with its unit.
     pub text: String,
     /// Unit of the limit.
     pub unit: ReaderUnit,
@@ -19,8 +19,13 @@ impl RequiredLimit {
     pub fn new(requirement: &AssessedRequirement) -> Self {
         let written = requirement.written_limit.as_deref();
         let unit = ReaderUnits::Engineering.as_written(written, requirement.limit, requirement.unit);
-        let text = format!("at most {}", unit.limit(requirement.limit, written));
+        let text = unit.limit(requirement.limit, written);
         Self { limit: requirement.limit, text, unit }
+    }
+
+    /// Returns the limit in words.
+    pub fn words(&self) -> String {
+        format!("at most {}", self.text)
     }
 
     /// Returns an axis with its numbers in the unit of a limit, if there is one.
@@ -38,6 +43,6 @@ impl RequiredLimit {
 
     /// Returns a line of the limit.
     pub fn line(&self, points: Vec<Point>) -> Layer {
-        Layer::new(&self.text, colour::RED, LayerShape::Line(1.6), points)
+        Layer::new(&self.words(), colour::RED, LayerShape::Line(1.6), points)
     }
 }

@@ -186,7 +186,7 @@ impl Panel {
 
     /// Returns the panel to the right of the one before it.
     #[must_use]
-    pub fn beside(self) -> Self {
+    pub fn right_of_last(self) -> Self {
         Self { is_beside: true, ..self }
     }
 

@@ -70,6 +70,10 @@ const PREFIXES: [(&str, f64, f64); 6] = [
     ("n", 1e-9, 0.0),
 ];
 
+/// Names of keys that are angular frequencies, and of those that are speeds of rotors.
+const FREQUENCIES: [&str; 3] = ["frequency", "frequencies", "bandwidth"];
+const SPEEDS: [&str; 3] = ["speed", "speeds", "speed_limit"];
+
 impl ReaderUnits {
     /// Returns the unit that fits the largest of some values of an SI unit.
     pub fn fitting(self, largest: f64, unit: &str) -> ReaderUnit {
@@ -104,6 +108,18 @@ impl ReaderUnits {
         match self {
             Self::Engineering => ReaderUnit { name: "Hz".into(), size: 2.0 * PI, is_si: false },
             Self::Si => self.fitting(1.0, "rad/s"),
+        }
+    }
+
+    /// Returns the unit of values of a scenario's key, the largest of which is given: Hz of angular frequencies, rpm of speeds of
+    /// rotors, else one that fits.
+    pub fn of_key(self, key: &str, largest: f64, unit: &str) -> ReaderUnit {
+        let last = key.rsplit('.').next().unwrap_or_default();
+        let name = last.split('[').next().unwrap_or_default();
+        match unit {
+            "rad/s" if FREQUENCIES.contains(&name) => self.frequency(),
+            "rad/s" if SPEEDS.contains(&name) => self.rotor_speed(),
+            _ => self.fitting(largest, unit),
         }
     }
 
@@ -428,6 +444,20 @@ mod tests {
         for text in [None, Some("4e-4"), Some("2 kg"), Some("4e-4 rad")] {
             assert_eq!(ReaderUnits::Engineering.as_written(text, 4e-4, "rad").name, "arcsec");
         }
+    }
+
+    #[test]
+    fn keys_have_the_units_of_their_kind() {
+        let units = ReaderUnits::Engineering;
+        for (key, value, unit, text) in [
+            ("law.attitude.bandwidth", 2.0 * PI, "rad/s", "1 Hz"),
+            ("actuator.wheels.speeds[2]", PI, "rad/s", "30 rpm"),
+            ("spacecraft.rate[0]", DEGREE, "rad/s", "1 deg/s"),
+            ("sensor.gyro.frequency", 2.0, "N m", "2 N m"),
+        ] {
+            assert_eq!(units.of_key(key, value, unit).quantity(value), text, "{key}");
+        }
+        assert_eq!(ReaderUnits::Si.of_key("law.attitude.bandwidth", 1.0, "rad/s").quantity(1.0), "1 rad/s");
     }
 
     #[test]

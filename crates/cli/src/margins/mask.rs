@@ -28,18 +28,13 @@ impl FromStr for NicholsMask {
         let form = || format!("must be a gain in dB and a phase, such as `6 dB, 30 deg`, got `{text}`");
         let (gain, phase) = text.split_once(',').ok_or_else(form)?;
         let gain_db = gain.trim().strip_suffix("dB").and_then(|gain| gain.trim().parse().ok());
-        let phase = number_in(phase.trim(), "rad").map_err(|_| form())?;
-        // A number alone would be in rad, where deg are meant.
-        let has_unit = phase_unit(text);
-        let mask = Self { gain_db: gain_db.ok_or_else(form)?, phase_deg: phase.to_degrees() };
+        let phase_deg = number_in(phase.trim(), "deg").map_err(|_| form())?;
+        // A phase without a unit may be meant in rad.
+        let has_unit = text.trim_end().ends_with(char::is_alphabetic);
+        let mask = Self { gain_db: gain_db.ok_or_else(form)?, phase_deg };
         let is_positive = mask.gain_db > 0.0 && mask.gain_db.is_finite() && mask.phase_deg > 0.0;
         if has_unit && is_positive && mask.phase_deg < 180.0 { Ok(mask) } else { Err(form()) }
     }
-}
-
-/// Returns true if a text ends in letters.
-fn phase_unit(text: &str) -> bool {
-    text.trim_end().ends_with(char::is_alphabetic)
 }
 
 impl NicholsMask {
@@ -90,7 +85,7 @@ mod tests {
     #[test]
     fn a_mask_is_a_gain_and_a_phase_with_units() {
         let mask: NicholsMask = "6 dB, 30 deg".parse().expect("a mask");
-        assert!((mask.gain_db - 6.0).abs() < 1e-12 && (mask.phase_deg - 30.0).abs() < 1e-12);
+        assert!((mask.gain_db, mask.phase_deg) == (6.0, 30.0));
         assert_eq!(mask.text(), "6 dB, 30 deg");
         for text in ["6, 30", "6 dB", "6 dB, 30", "-6 dB, 30 deg", "6 dB, 200 deg", "30 deg, 6 dB", ""] {
             assert!(text.parse::<NicholsMask>().is_err_and(|why| why.contains("`6 dB, 30 deg`")), "{text}");

@@ -28,7 +28,7 @@ use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
 use crate::stop::stop_requested;
 use crate::{say, scenario};
-use mask::NicholsMask;
+pub use mask::NicholsMask;
 
 /// Number of loops of each search for the least margin.
 const WORST_POINTS: usize = 100;
@@ -203,9 +203,14 @@ impl LoopMargins {
         violation.map_or_else(|| "kept".to_owned(), at)
     }
 
+    /// Returns the frequency (Hz) at which each loop is first within the mask; empty without a mask.
+    pub fn mask_violations(&self) -> &[Option<f64>] {
+        self.masked.as_ref().map_or(&[], |(_, all)| all)
+    }
+
     /// Returns the number of loops within the mask.
     fn violations(&self) -> usize {
-        self.masked.as_ref().map_or(0, |(_, all)| all.iter().filter(|one| one.is_some()).count())
+        self.mask_violations().iter().flatten().count()
     }
 
     /// Returns the settling time after a step about each axis: the longest of all angles.

@@ -142,7 +142,7 @@ fn panel(locus: &RootLocus, view: &PlaneView) -> Panel {
     let x = FigureAxis::exact("real part", "Hz", -left..right);
     let panel = Panel::new(x, FigureAxis::exact(up, "Hz", 0.0..high), layers);
     let panel = panel.headed(view.head).noted(notes).plain();
-    if view.is_second { panel.beside() } else { panel }
+    if view.is_second { panel.right_of_last() } else { panel }
 }
 
 /// Returns the ends of the rays of equal damping, each with its damping ratio: those that are apart from the axes.

@@ -9,7 +9,7 @@ const LEVEL: usize = 6;
 const ROUNDING: f64 = 1e-9;
 
 /// Returns a figure without its empty panels; `None` if all are.
-pub fn left_out(mut figure: Figure) -> Option<Figure> {
+pub fn without_empty(mut figure: Figure) -> Option<Figure> {
     let (first, last) = (figure.panels.first()?, figure.panels.last()?);
     let (names, axis) = (first.layers.clone(), last.x.clone());
     let sizes: Vec<f64> = figure.panels.iter().map(size).collect();
@@ -81,13 +81,13 @@ mod tests {
             panel("time", std::slice::from_ref(&zeros)),
         ];
         let figure = Figure { title: String::new(), panels, panel_height: 100 };
-        let left = left_out(figure).expect("one panel");
+        let left = without_empty(figure).expect("one panel");
         assert_eq!((left.panels.len(), left.panels[0].x.name.as_str()), (1, "time"));
         let empty = Figure { title: String::new(), panels: vec![panel("time", &[zeros])], panel_height: 100 };
-        assert!(left_out(empty).is_none());
+        assert!(without_empty(empty).is_none());
         // A constant that is not zero is a value.
         let constant =
             Figure { title: String::new(), panels: vec![panel("time", &[limit])], panel_height: 9 };
-        assert!(left_out(constant).is_some());
+        assert!(without_empty(constant).is_some());
     }
 }

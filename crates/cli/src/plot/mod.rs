@@ -298,7 +298,7 @@ fn drawn_over(
     };
     let run = RunData { story: &story, motion: &motion, cycles: &cycles };
     let drawn = chosen.into_iter().filter_map(|spec| {
-        let figure = empty_panels::left_out((spec.draw)(&run))?;
+        let figure = empty_panels::without_empty((spec.draw)(&run))?;
         let figure = story.shown.iter().fold(figure, time_range::crop);
         Some((spec.name.to_owned(), strips::add(figure, &run)))
     });

@@ -56,10 +56,10 @@ pub fn error_panel(story: &RunEvents, errors: &[Point], shown: Range<f64>) -> Pa
     // A goal is not shown beside a requirement.
     let goal = story.scenario.reference.band.map(Positive::get);
     let goal = goal.filter(|_| story.scenario.has_goal() && limits.is_empty());
-    let lines = limits.iter().map(|own| own.limit).chain(goal);
+    let lines = limits.iter().map(|own| own.required.limit).chain(goal);
     let values = usual(inside.iter().map(|point| point.1)).into_iter().chain(lines);
     let y = FigureAxis::decades("pointing error", "rad", values);
-    let y = limits.first().map_or(y.clone(), |own| y.in_unit(own.unit.clone()));
+    let y = limits.first().map_or(y.clone(), |own| y.in_unit(own.required.unit.clone()));
     let unit = y.reader_unit();
     let line = Layer::new("", colour::BLUE, LayerShape::Line(1.0), inside.clone());
     let mut panel = Panel::new(time(shown.clone()), y, vec![line]);
@@ -141,7 +141,7 @@ fn by_axis(story: &RunEvents, cycles: &CycleData) -> Figure {
             requirement_lines::limits(story, |own| *own == SampledQuantity::PointingError, Some(about));
         let [goal, zone] = bands(story, axis);
         let largest = largest_error(panel);
-        let required = limits.iter().map(|own| own.limit);
+        let required = limits.iter().map(|own| own.required.limit);
         let shown = [goal, zone]
             .into_iter()
             .flatten()
@@ -153,7 +153,7 @@ fn by_axis(story: &RunEvents, cycles: &CycleData) -> Figure {
             panel.y = FigureAxis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
         }
         if let Some(own) = limits.first() {
-            panel.y = panel.y.clone().in_unit(own.unit.clone());
+            panel.y = panel.y.clone().in_unit(own.required.unit.clone());
         }
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let wide =

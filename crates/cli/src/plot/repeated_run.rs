@@ -79,7 +79,7 @@ impl RunEvents {
         let mut repeated = RepeatedEvents::default();
         let metrics = commands
             .simulate(&run, Instant::START + end, (recorder, &mut repeated))
-            .map_err(|source| CliError::Run { name: self.scenario.name.clone(), source })?;
+            .map_err(|source| CliError::run(&self.scenario.name, source))?;
         match self.difference(log, commands, &repeated, &metrics)? {
             None => Ok(metrics),
             Some(differs) => {

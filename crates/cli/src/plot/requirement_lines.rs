@@ -1,6 +1,7 @@
 //! Limits of requirements as lines over the time in which they count, with their values as they were written.
 
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, percent};
+use flexsc_core::answer::requirement_id;
+use flexsc_core::formats::reader_units::percent;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::scenario::{
     AssessedRequirement, ErrorAxis, IndexWindow, Interpretation, RequirementSource, SampledQuantity,
@@ -8,18 +9,17 @@ use flexsc_core::scenario::{
 use flexsc_figure::{Layer, LayerShape, Note, Panel, colour};
 
 use super::run_events::RunEvents;
+use crate::required_limit::RequiredLimit;
 
 /// Part of the time of a figure from which on a limit is seen as a line.
 const SEEN: f64 = 0.01;
 
-/// Limit of a requirement.
-pub struct RequiredLimit {
+/// Limit of a requirement over the time in which it counts.
+pub struct LimitOverTime {
+    /// Limit.
+    pub required: RequiredLimit,
     /// Intervals in which it counts (s).
     windows: Vec<[f64; 2]>,
-    /// Limit (SI).
-    pub limit: f64,
-    /// Unit in which it was written.
-    pub unit: ReaderUnit,
     /// Identifier, limit and level in words.
     words: String,
 }
@@ -29,15 +29,14 @@ pub fn limits(
     story: &RunEvents,
     is_quantity: impl Fn(&SampledQuantity) -> bool,
     axis: Option<ErrorAxis>,
-) -> Vec<RequiredLimit> {
+) -> Vec<LimitOverTime> {
     let limit = |(index, own): (usize, &AssessedRequirement)| {
         let RequirementSource::Error(error) = &own.source else { return None };
         if error.index != IndexWindow::Absolute || error.axis != axis || !is_quantity(&error.quantity) {
             return None;
         }
         let [from, to] = [error.from, error.to].map(Instant::seconds);
-        let written = own.written_limit.as_deref();
-        let unit = ReaderUnits::Engineering.as_written(written, own.limit, own.unit);
+        let required = RequiredLimit::new(own);
         let level = match own.interpretation {
             _ if own.level >= 1.0 => String::new(),
             Interpretation::Ensemble => format!(", {} of runs", percent(own.level)),
@@ -45,15 +44,15 @@ pub fn limits(
                 format!(", {} of the time", percent(own.level))
             }
         };
-        let words = format!("R{}: {}{level}", index + 1, unit.limit(own.limit, written));
+        let words = format!("{}: {}{level}", requirement_id(index), required.text);
         let windows = vec![[from, if from > to { story.end } else { to.min(story.end) }]];
-        Some(RequiredLimit { windows, limit: own.limit, unit, words })
+        Some(LimitOverTime { required, windows, words })
     };
     story.scenario.study.requirements.iter().enumerate().filter_map(limit).collect()
 }
 
 /// Adds limits to a panel over time: a line over each window, or a mark where it is short, and the words once.
-pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
+pub fn add(panel: &mut Panel, limits: &[LimitOverTime], is_mirrored: bool) {
     let shown = panel.x.range.clone();
     for own in limits {
         let inside = |[from, to]: &[f64; 2]| [from.max(shown.start), to.min(shown.end)];
@@ -61,7 +60,7 @@ pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
         let windows: Vec<[f64; 2]> = windows.collect();
         let signs: &[f64] = if is_mirrored { &[1.0, -1.0] } else { &[1.0] };
         for sign in signs {
-            let height = sign * own.limit;
+            let height = sign * own.required.limit;
             let (mut line, mut marks) = (Vec::new(), Vec::new());
             for [from, to] in &windows {
                 line.extend([(*from, height), (*to, height), (f64::NAN, f64::NAN)]);
@@ -74,7 +73,7 @@ pub fn add(panel: &mut Panel, limits: &[RequiredLimit], is_mirrored: bool) {
         }
         let longest = windows.iter().max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
         panel.notes.extend(longest.map(|[from, to]| {
-            Note::new(own.words.clone(), (f64::midpoint(*from, *to), own.limit), colour::RED)
+            Note::new(own.words.clone(), (f64::midpoint(*from, *to), own.required.limit), colour::RED)
         }));
     }
 }

@@ -1,5 +1,6 @@
 //! Strips above figures over time: modes of operation, eclipses, blinded star trackers, filters, actuators at limits, failures.
 
+use flexsc_core::control::actuator::SATURATION_GAP;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{self, Light, Orbit};
 use flexsc_figure::{Figure, RGBColor, Strip, StripSpan, colour, palette};
@@ -19,8 +20,7 @@ const ECLIPSE: RGBColor = RGBColor(70, 80, 90);
 const BLINDED: RGBColor = RGBColor(142, 90, 160);
 /// Share of a limit from which on an actuator is at it.
 const AT_LIMIT: f64 = 0.999;
-/// Longest gap between times at a limit that is closed (s), also as a part of the run.
-const GAP: f64 = 15.0;
+/// Part of the run up to which a gap between times at a limit is closed.
 const GAP_SHARE: f64 = 2e-3;
 
 /// Interval of time (s).
@@ -49,8 +49,8 @@ fn all(run: &RunData<'_>) -> Vec<Strip> {
         modes(story),
         uniform("eclipse", ECLIPSE, &eclipses(run.cycles, story.end)),
         uniform("tracker blinded", BLINDED, &story.blinded),
-        uniform("filter gated", colour::GREY, &of_filter(run, |estimate| estimate.gated)),
-        uniform("lock lost", colour::VERMILLION, &of_filter(run, |estimate| estimate.lost)),
+        uniform("filter gated", colour::GREY, &filter_intervals(run, |estimate| estimate.gated)),
+        uniform("lock lost", colour::VERMILLION, &filter_intervals(run, |estimate| estimate.lost)),
         uniform("wheel at limit", colour::RED, &speed),
         uniform("torque at limit", colour::RED, &torque),
         failures(story),
@@ -83,7 +83,7 @@ fn kind_of_part(key: &str) -> String {
 }
 
 /// Returns the intervals in which a filter of one axis says something of itself (s).
-fn of_filter(run: &RunData<'_>, is_so: fn(&DominantModeEstimate) -> bool) -> Vec<Interval> {
+fn filter_intervals(run: &RunData<'_>, is_so: fn(&DominantModeEstimate) -> bool) -> Vec<Interval> {
     let estimates = run.motion.estimates.iter();
     intervals(estimates.map(|estimate| (estimate.time, is_so(estimate))), run.story.end, 0.0)
 }
@@ -96,7 +96,7 @@ fn eclipses(cycles: &CycleData, end: f64) -> Vec<Interval> {
 /// Returns the intervals in which a wheel is at the limit of its speed, and at that of its torque (s).
 fn at_limits(run: &RunData<'_>) -> [Vec<Interval>; 2] {
     let RunData { story, motion, cycles } = run;
-    let gap = GAP.min(GAP_SHARE * story.end);
+    let gap = SATURATION_GAP.min(GAP_SHARE * story.end);
     let is_at = |value: f64, limit: Option<f64>| limit.is_some_and(|limit| value.abs() >= AT_LIMIT * limit);
     if let Some(limit) = flywheel::speed_limit(story) {
         let speeds = motion.time.iter().zip(&motion.wheel[0]);

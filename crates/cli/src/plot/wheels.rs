@@ -28,11 +28,7 @@ pub fn wheels(story: &RunEvents) -> Option<&Wheels> {
 
 /// Returns the largest speed (rad/s) and torque (N m) of a wheel, each if it is limited.
 pub fn limits(story: &RunEvents) -> [Option<f64>; 2] {
-    wheels(story).map_or([None; 2], |wheels| {
-        let by_momentum = wheels.momentum.map(|momentum| momentum.get() / wheels.inertia.get());
-        let speeds = [wheels.speed_limit.map(Positive::get), by_momentum];
-        [speeds.into_iter().flatten().reduce(f64::min), wheels.torque.map(Positive::get)]
-    })
+    wheels(story).map_or([None; 2], |wheels| [wheels.speed_bound(), wheels.torque.map(Positive::get)])
 }
 
 pub fn figure(RunData { story, cycles, .. }: &RunData<'_>) -> Figure {

@@ -24,7 +24,7 @@ pub fn block(answer: &Answer, campaign: Option<&CampaignAnswer>, loops: &LoopSum
     sentences.extend(
         campaign.and_then(|own| campaign_sentence(own, is_missed && answer.verdict != RunVerdict::Missed)),
     );
-    sentences.extend(met_sentence(answer));
+    sentences.extend(least_margin_sentence(answer));
     sentences.extend(loops.margins.clone());
     sentences.extend(loops.accuracy.clone());
     sentences.truncate(MOST[0]);
@@ -54,7 +54,7 @@ fn campaign_sentence(campaign: &CampaignAnswer, is_verdict: bool) -> Option<Stri
 }
 
 /// Returns which requirements are met, and by how much at least.
-fn met_sentence(answer: &Answer) -> Option<String> {
+fn least_margin_sentence(answer: &Answer) -> Option<String> {
     let met: Vec<_> = answer.requirements.iter().filter(|own| own.met).collect();
     let least =
         met.iter().filter(|own| own.margin.is_finite()).min_by(|a, b| a.margin.total_cmp(&b.margin))?;

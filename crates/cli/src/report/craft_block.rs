@@ -6,7 +6,7 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 use flexsc_core::spacecraft::body::BodyAxes;
-use flexsc_view::drawing::spacecraft_svg;
+use flexsc_view::drawing::{spacecraft_svg, wheel_limits};
 
 use super::html::{HtmlRow, HtmlTable, cell, command, head, number_head, picture};
 use super::study::Study;
@@ -95,13 +95,7 @@ fn part_lines(scenario: &Scenario) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> = Vec::new();
     let mut add = |name: &str, text: String| lines.push((name.to_owned(), text));
     if let Some((wheels, _)) = scenario.actuator.wheels() {
-        let parts = [
-            wheels.momentum.map(|own| units.quantity(own.get(), "N m s")),
-            wheels.speed_limit.map(|own| units.rotor_speed().quantity(own.get())),
-            wheels.torque.map(|own| units.quantity(own.get(), "N m")),
-        ];
-        let parts: Vec<String> = parts.into_iter().flatten().collect();
-        add("wheels", format!("{} × {}", wheels.count(), parts.join(", ")));
+        add("wheels", format!("{} × {}", wheels.count(), wheel_limits(wheels)));
     }
     if let Some((torquers, _)) = scenario.actuator.magnetorquers() {
         let moments = [0, 1, 2].map(|axis| torquers.moment.about(axis).get());
@@ -125,8 +119,8 @@ fn part_lines(scenario: &Scenario) -> Vec<(String, String)> {
         add(&sensor.kind().replace('_', " "), rate);
     }
     if let Some(orbit) = scenario.orbit_environment().orbit() {
-        let radius = orbit.at(0.0).position.norm();
-        add("orbit", format!("{} km from the centre at the start", number(1e-3 * radius)));
+        let altitude = orbit.at(0.0).position.norm() - orbit.planet_radius();
+        add("orbit", format!("altitude {} km at the start", number(1e-3 * altitude)));
     }
     lines
 }

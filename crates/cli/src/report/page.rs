@@ -18,7 +18,7 @@ use crate::results::Results;
 const STYLE: &str = include_str!("page.css");
 /// Figures of a log that a page shows at once, the first of each that there are, and the largest number of them.
 const SHOWN: [&str; 9] =
-    ["pointing", "line-of-sight", "wheels", "angle", "envelope", "gain", "gimbals", "hinges", "tip"];
+    ["pointing", "line-of-sight", "wheel", "angle", "envelope", "gain", "gimbals", "hinges", "deflection"];
 const MOST_SHOWN: usize = 3;
 /// Largest size of the page up to which further figures are added (bytes).
 const MOST_BYTES: usize = 1_400_000;
@@ -246,7 +246,7 @@ fn ranges(study: &Study, bounds: &bound::OutputBounds) -> String {
 }
 
 fn scenario_text(study: &Study, number: usize) -> String {
-    let text = study.text.trim_end();
+    let text = study.text().trim_end();
     format!(
         "<section class=\"appendix\"><h2 id=\"file\"><span>{number}</span>Scenario</h2>\n\
          <details open><summary>{}, {} lines</summary><pre>{}</pre></details></section>\n</main>\n</body>\n</html>\n",
@@ -254,4 +254,17 @@ fn scenario_text(study: &Study, number: usize) -> String {
         text.lines().count(),
         escaped(text)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SHOWN;
+    use crate::plot::FigureName;
+
+    #[test]
+    fn figures_that_are_shown_at_once_exist() {
+        for name in SHOWN {
+            assert!(FigureName::parse(name).is_ok(), "{name}");
+        }
+    }
 }

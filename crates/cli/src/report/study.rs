@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use flexsc_core::answer::{Answer, CampaignAnswer, RunObserver};
-use flexsc_core::campaign::{Campaign, CampaignRun, ColumnCells, RowMaker, RunRows};
+use flexsc_core::campaign::{Campaign, ColumnCells, RowMaker, RunRows};
 use flexsc_core::formats::reader_units::ReaderUnits;
-use flexsc_core::metrics::{Metrics, Selection};
-use flexsc_core::record::{Detail, Log, LogBytes, RecordError, RunEnd};
-use flexsc_core::{Scenario, SimulationError};
+use flexsc_core::metrics::Selection;
+use flexsc_core::record::{Detail, Log};
+use flexsc_core::{Document, Scenario};
 use flexsc_figure::Named;
 
 use crate::error::CliError;
 use crate::stop::{self, stop_flag};
-use crate::{Cli, Verb, budget, plot, scenario, simulate};
+use crate::{Cli, Verb, budget, memory_log, plot, scenario};
 
 /// Figures of requirements that a campaign draws.
 const DISTRIBUTION: &str = "distribution";
@@ -23,8 +23,7 @@ pub struct Study {
     pub path: PathBuf,
     pub set: Vec<String>,
     pub scenario: Scenario,
-    /// Text of the scenario's file.
-    pub text: String,
+    document: Document,
 }
 
 /// One run of the scenario as it is.
@@ -47,9 +46,14 @@ pub struct StudyCampaign {
 impl Study {
     /// Reads the scenario of a report.
     pub fn load(path: &Path, set: &[String]) -> Result<Self, CliError> {
-        let scenario = scenario::load(path, set, None)?;
-        let text = std::fs::read_to_string(path).unwrap_or_default();
-        Ok(Self { path: path.to_owned(), set: set.to_owned(), scenario, text })
+        let document = scenario::document(path)?;
+        let scenario = scenario::with(document.clone(), set, None)?;
+        Ok(Self { path: path.to_owned(), set: set.to_owned(), scenario, document })
+    }
+
+    /// Returns the text of the scenario's file.
+    pub fn text(&self) -> &str {
+        self.document.source_text().unwrap_or_default()
     }
 
     /// Returns the name of the scenario's file.
@@ -64,29 +68,24 @@ impl Study {
         words.chain((!options.is_empty()).then(|| options.to_owned())).collect::<Vec<_>>().join(" ")
     }
 
-    /// Parses an analysis of the scenario: a verb with options, and further keys that are set.
-    pub fn verb(&self, words: &[&str], set: &[String]) -> Result<Verb, CliError> {
+    /// Parses an analysis, a verb with options, and returns it with the scenario with further keys set.
+    pub fn analysis(&self, words: &[&str], set: &[String]) -> Result<(Verb, Scenario), CliError> {
         let path = self.path.to_string_lossy();
         let mut all = vec!["flexsc", words[0], &path];
         all.extend(&words[1..]);
-        all.extend(self.set.iter().chain(set).flat_map(|pair| ["--set", pair.as_str()]));
         let failed = |error: clap::Error| CliError::Arguments(error.to_string());
-        Ok(Cli::try_parse_from(all).map_err(failed)?.verb)
+        let verb = Cli::try_parse_from(all).map_err(failed)?.verb;
+        let set = [&self.set, set].concat();
+        Ok((verb, scenario::with(self.document.clone(), &set, None)?))
     }
 
     /// Simulates the scenario as it is, with a full log in memory.
     pub fn run(&self) -> Result<StudyRun, CliError> {
-        let campaign = Campaign::new(self.scenario.clone(), &self.path.to_string_lossy(), None)?;
-        let run = simulate::scenario_run(&campaign);
-        let failed = |source| match source {
-            SimulationError::Record(RecordError::Interrupted) => CliError::Interrupted(String::new()),
-            source => CliError::Run { name: run.scenario.name.clone(), source },
-        };
-        let mut observer = RunObserver::new(&run.scenario);
-        let (metrics, bytes) = logged(&run, &mut observer).map_err(failed)?;
+        let mut observer = RunObserver::new(&self.scenario);
+        let path = PathBuf::from(format!("{}.mcap", self.scenario.name));
+        let (log, metrics) = memory_log::observed(self.scenario.clone(), &path, Detail::Full, &mut observer)?;
         let observed = observer.finish();
-        let answer = Answer::new(&run.scenario, &metrics, Some(&observed), ReaderUnits::default());
-        let log = Log::read(Path::new(&format!("{}.mcap", run.scenario.name)), bytes)?;
+        let answer = Answer::new(&self.scenario, &metrics, Some(&observed), ReaderUnits::default());
         Ok(StudyRun { answer, log })
     }
 
@@ -129,14 +128,6 @@ impl Study {
 
 fn column(rows: &RunRows, name: &str) -> Option<ColumnCells> {
     rows.column(name).map(std::borrow::Cow::into_owned)
-}
-
-/// Returns the metrics and the log of a run.
-fn logged(run: &CampaignRun, observer: &mut RunObserver) -> Result<(Metrics, Vec<u8>), SimulationError> {
-    let mut log = LogBytes::new(&Campaign::provenance(run), Detail::Full)?;
-    let metrics = Campaign::simulate(run, (observer, (&mut log, stop_flag())))?;
-    let bytes = log.finish(&metrics, RunEnd::Complete)?;
-    Ok((metrics, bytes))
 }
 
 /// Returns the figure of each requirement that varies from run to run, or of the main metrics without a requirement.

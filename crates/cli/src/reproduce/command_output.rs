@@ -65,7 +65,7 @@ impl PageCommand {
 /// Returns the metrics of the scenario itself.
 fn single(campaign: &Campaign) -> Result<Json, CliError> {
     let run = simulate::scenario_run(campaign);
-    let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
+    let failed = |source| CliError::run(&run.scenario.name, source);
     let metrics = Campaign::simulate(&run, stop_flag()).map_err(failed)?;
     Ok(campaign::object(campaign, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
 }

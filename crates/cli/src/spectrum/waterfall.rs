@@ -155,7 +155,7 @@ impl<'a> OutputWaterfall<'a> {
         if let Some(RequiredIndex { name, required, .. }) = self.required {
             let line = required.across(&x);
             layers.push(Layer { name: String::new(), ..line });
-            let text = format!("{name}: {}", required.text);
+            let text = format!("{name}: {}", required.words());
             notes.push(Note::new(text, (x.range.end, required.limit), colour::RED));
         }
         let y = FigureAxis::decades(&label, unit, values).in_unit(self.unit());
@@ -174,10 +174,10 @@ impl<'a> OutputWaterfall<'a> {
     fn places(&self, lines: &[(f64, Vec<(f64, f64)>)], modes: &[NamedMode]) -> Panel {
         let all = || lines.iter().flat_map(|(speed, own)| own.iter().map(move |line| (*speed, *line)));
         let orders = |place: usize| self.lines_at(place).map(|(order, _)| order);
-        let met = met(&all().map(|(_, line)| line).collect::<Vec<_>>(), modes);
+        let excited = excited_modes(&all().map(|(_, line)| line).collect::<Vec<_>>(), modes);
         let slowest = self.wheels.speed_rad_s.first().copied().unwrap_or(1.0);
         let direct = orders(0).fold(f64::INFINITY, f64::min) * slowest / TAU;
-        let lowest = met.iter().map(|mode| mode.frequency_rad_s / TAU).fold(direct, f64::min);
+        let lowest = excited.iter().map(|mode| mode.frequency_rad_s / TAU).fold(direct, f64::min);
         let fastest = orders(0).fold(f64::INFINITY, f64::min) * self.speed().range.end / TAU;
         let highest = all().map(|(_, line)| line.0).fold(0.0, f64::max);
         let frequency = FigureAxis::decades("frequency", "Hz", [LOWEST * lowest, highest]);
@@ -197,7 +197,7 @@ impl<'a> OutputWaterfall<'a> {
         let x = self.speed();
         let mut layers = Vec::new();
         let mut notes = Vec::new();
-        for (name, mut hertz) in labels(&met) {
+        for (name, mut hertz) in labels(&excited) {
             for height in &hertz {
                 let ends = vec![(0.0, *height), (x.range.end, *height)];
                 layers.push(Layer::new("", colour::GREEN, LayerShape::Dashes, ends));
@@ -264,9 +264,9 @@ fn readable(output: &str) -> String {
     }
 }
 
-/// Returns the modes that lines (Hz, amplitude) meet: where these are larger than beside them.
-fn met<'a>(lines: &[(f64, f64)], modes: &'a [NamedMode]) -> Vec<&'a NamedMode> {
-    let is_met = |mode: &&NamedMode| {
+/// Returns the modes that lines (Hz, amplitude) excite: at whose frequencies these are larger than beside them.
+fn excited_modes<'a>(lines: &[(f64, f64)], modes: &'a [NamedMode]) -> Vec<&'a NamedMode> {
+    let is_excited = |mode: &&NamedMode| {
         let off = |line: &&(f64, f64)| (TAU * line.0 / mode.frequency_rad_s - 1.0).abs();
         let largest = |range: std::ops::Range<f64>| {
             let own = lines.iter().filter(|line| range.contains(&off(line)));
@@ -274,7 +274,7 @@ fn met<'a>(lines: &[(f64, f64)], modes: &'a [NamedMode]) -> Vec<&'a NamedMode> {
         };
         largest(0.0..NEAR) > RISE * largest(BESIDE[0]..BESIDE[1])
     };
-    modes.iter().filter(is_met).collect()
+    modes.iter().filter(is_excited).collect()
 }
 
 /// Returns the labels of modes: a name, and the frequencies (Hz) that it stands for.

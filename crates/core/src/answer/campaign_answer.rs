@@ -198,7 +198,7 @@ impl CampaignAnswer {
             let has_goal = scenario.reference.band.is_some() && runs.goals[1] > 0;
             has_goal.then(|| MetShare::new(runs.goals[0], runs.runs))
         } else {
-            Some(MetShare::new(runs.met_all(&verdicts), runs.runs))
+            Some(MetShare::new(runs.count_meeting_all(&verdicts), runs.runs))
         };
         let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs);
         let repeat = directory.zip(requirements.first()).map(|(directory, first)| {
@@ -222,7 +222,7 @@ impl CampaignAnswer {
 
 impl CampaignRuns {
     /// Returns the number of runs that meet all requirements.
-    fn met_all(&self, verdicts: &[RequirementVerdict]) -> u64 {
+    fn count_meeting_all(&self, verdicts: &[RequirementVerdict]) -> u64 {
         let meets = |row: usize| {
             let own = |(index, verdict): (usize, &RequirementVerdict)| {
                 self.requirements.values(index)[row] <= verdict.requirement.limit

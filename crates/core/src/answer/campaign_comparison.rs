@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
 use super::key_difference::KeyDifference;
-use super::run_comparison::{SIDES, heads, key_lines};
+use super::run_comparison::{SIDES, heads, key_lines, paired};
 use super::screen::{ScreenOptions, indented};
 
 /// Two campaigns, and in what they differ.
@@ -35,17 +35,14 @@ impl CampaignComparison {
 
     /// Returns a table with a row for each requirement and side.
     fn requirement_lines(&self) -> Vec<String> {
-        let [first, second] = self.answers.each_ref().map(|answer| &answer.requirements);
-        let is_new = |own: &&CampaignRequirement| first.iter().all(|other| other.name != own.name);
-        let names = first.iter().chain(second.iter().filter(is_new)).map(|own| &own.name);
         let heads = ["requirement", "", "limit", "median", "95 %", "worst", "met"];
         let mut rows = vec![heads.map(str::to_owned).to_vec()];
-        for name in names {
-            for (side, all) in [first, second].into_iter().enumerate() {
-                let head = if side == 0 { name.clone() } else { String::new() };
-                let own = all.iter().find(|own| own.name == *name);
+        let all = self.answers.each_ref().map(|answer| &answer.requirements[..]);
+        for (name, both) in paired(all, |own| &own.name) {
+            for (side, own) in both.into_iter().enumerate() {
+                let head = if side == 0 { name } else { "" };
                 let cells = own.map_or_else(|| vec!["not required".to_owned()], cells);
-                rows.push([head, SIDES[side].to_owned()].into_iter().chain(cells).collect());
+                rows.push([head, SIDES[side]].map(str::to_owned).into_iter().chain(cells).collect());
             }
         }
         if rows.len() == 1 { Vec::new() } else { indented(columns(&rows, |_| true)) }

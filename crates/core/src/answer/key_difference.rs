@@ -41,7 +41,7 @@ impl KeyDifference {
         let difference = |key: &String| {
             let values = [&first, &second].map(|leaves| leaves.get(key).cloned());
             let unit = scenarios.iter().find_map(|scenario| scenario.unit_of(key));
-            Self { texts: texts(&values, unit, units), key: key.clone(), unit, values }
+            Self { texts: texts(key, &values, unit, units), key: key.clone(), unit, values }
         };
         keys.into_iter().map(difference).collect()
     }
@@ -67,10 +67,10 @@ fn collect(path: String, value: Value, leaves: &mut BTreeMap<String, Value>) {
 }
 
 /// Returns two values as texts, of numbers with as many digits as show that they differ.
-fn texts(values: &[Option<Value>; 2], unit: Option<&str>, units: ReaderUnits) -> [String; 2] {
+fn texts(key: &str, values: &[Option<Value>; 2], unit: Option<&str>, units: ReaderUnits) -> [String; 2] {
     let numbers = values.each_ref().map(|value| value.as_ref().and_then(number));
     let largest = numbers.iter().flatten().fold(0.0, |most: f64, number| most.max(number.abs()));
-    let fitting = units.fitting(largest, unit.unwrap_or(""));
+    let fitting = units.of_key(key, largest, unit.unwrap_or(""));
     [0, 1].map(|place| match (&values[place], numbers[place]) {
         (None, _) => String::new(),
         (Some(_), Some(number)) => {

@@ -125,7 +125,7 @@ impl RequirementAnswer {
 }
 
 /// Returns the identifier of the requirement at a place in the scenario.
-pub(super) fn requirement_id(index: usize) -> String {
+pub fn requirement_id(index: usize) -> String {
     format!("R{}", index + 1)
 }
 

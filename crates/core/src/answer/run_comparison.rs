@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::key_difference::KeyDifference;
 use super::mode_answer::ModeAnswer;
 use super::screen::{ScreenOptions, indented, wrapped};
-use super::{Answer, RequirementAnswer};
+use super::{Answer, Line, RequirementAnswer};
 
 /// Letters of the two sides.
 pub(super) const SIDES: [&str; 2] = ["A", "B"];
@@ -41,32 +41,29 @@ impl RunComparison {
     }
 
     fn requirement_lines(&self) -> Vec<String> {
-        let [first, second] = self.answers.each_ref().map(|answer| &answer.requirements);
-        let of = |all: &[RequirementAnswer], name: &str| all.iter().find(|own| own.name == name).cloned();
-        let names = first.iter().chain(second.iter().filter(|own| of(first, &own.name).is_none()));
-        let row = |own: &RequirementAnswer| {
-            let both = [of(first, &own.name), of(second, &own.name)];
-            let limits = both.each_ref().map(|own| own.as_ref().map(|own| own.text.limit.clone()));
+        let all = self.answers.each_ref().map(|answer| &answer.requirements[..]);
+        let row = |(name, both): (&str, [Option<&RequirementAnswer>; 2])| {
+            let limits = both.map(|own| own.map(|own| own.text.limit.clone()));
             let limit = match limits {
                 [Some(a), Some(b)] if a != b => format!("{a}, {b}"),
                 [Some(a), _] | [None, Some(a)] => a,
                 [None, None] => String::new(),
             };
-            let cell = |own: Option<RequirementAnswer>| {
+            let cell = |own: Option<&RequirementAnswer>| {
                 own.map_or_else(
                     || "not required".to_owned(),
                     |own| {
                         let mark = if own.met { "✓" } else { "✗" };
-                        let margin = Some(own.text.margin).filter(|text| !text.is_empty());
+                        let margin = Some(&own.text.margin).filter(|text| !text.is_empty());
                         let margin = margin.map_or_else(String::new, |margin| format!(" ({margin})"));
                         format!("{mark} {}{margin}", own.text.value)
                     },
                 )
             };
             let [a, b] = both.map(cell);
-            vec![format!("{} at most {limit}", own.name), a, b]
+            vec![format!("{name} at most {limit}"), a, b]
         };
-        table("requirement (margin)", names.map(row))
+        table("requirement (margin)", paired(all, |own| &own.name).into_iter().map(row))
     }
 
     fn warning_lines(&self, width: usize) -> Vec<String> {
@@ -84,52 +81,55 @@ impl RunComparison {
     }
 
     fn mode_lines(&self, units: ReaderUnits) -> Vec<String> {
-        let [first, second] = self.answers.each_ref().map(|answer| &answer.by_mode);
-        let of = |all: &[ModeAnswer], name: &str| all.iter().find(|own| own.mode == name).cloned();
-        let names = first.iter().chain(second.iter().filter(|own| of(first, &own.mode).is_none()));
-        let row = |own: &ModeAnswer| {
-            let both = [of(first, &own.mode), of(second, &own.mode)];
-            let error = |own: &Option<ModeAnswer>| own.as_ref()?.error_rad.as_ref().map(|error| error.p95);
-            let errors = both.each_ref().map(error);
+        let all = self.answers.each_ref().map(|answer| &answer.by_mode[..]);
+        let row = |(name, both): (&str, [Option<&ModeAnswer>; 2])| {
+            let errors = both.map(|own| own?.error_rad.as_ref().map(|error| error.p95));
             let unit = units.fitting(errors.into_iter().flatten().fold(0.0, f64::max), "rad");
             let cell = |side: usize| {
-                let own = both[side].as_ref()?;
+                let own = both[side]?;
                 let error = errors[side].map(|error| format!("95 % {}", unit.quantity(error)));
                 let limit = own.at_limit_s.filter(|limit| *limit > 0.0);
                 let limit = limit.map(|limit| format!("{} at a limit", time(limit)));
                 let parts = [Some(time(own.time_s)), error, limit].into_iter().flatten();
-                let text = parts.collect::<Vec<_>>().join(", ");
-                Some(text)
+                Some(parts.collect::<Vec<_>>().join(", "))
             };
-            let cells = [0, 1].map(|side| cell(side).unwrap_or_else(|| "not entered".to_owned()));
-            let [a, b] = cells;
-            vec![own.mode.clone(), a, b]
+            let [a, b] = [0, 1].map(|side| cell(side).unwrap_or_else(|| "not in this run".to_owned()));
+            vec![name.to_owned(), a, b]
         };
-        table("mode", names.map(row))
+        table("mode", paired(all, |own| &own.mode).into_iter().map(row))
     }
 
     /// Returns the lines on what else is known that differ.
     fn known_lines(&self, options: ScreenOptions) -> Vec<String> {
-        let [first, second] = self.answers.each_ref().map(|answer| &answer.lines);
-        let of = |all: &[super::Line], head: &str| all.iter().find(|own| own.head == head).cloned();
-        let heads = first.iter().chain(second.iter().filter(|own| of(first, &own.head).is_none()));
-        let heads: Vec<&super::Line> = heads.filter(|own| own.is_main || options.all).collect();
-        let widest = heads.iter().map(|own| own.head.chars().count()).max().unwrap_or(0);
+        let all = self.answers.each_ref().map(|answer| &answer.lines[..]);
+        let is_shown = |own: &Line| own.is_main || options.all;
+        let differs = |(_, both): &(&str, [Option<&Line>; 2])| {
+            both[0] != both[1] && both.iter().flatten().any(|own| is_shown(own))
+        };
+        let shown: Vec<_> = paired(all, |own| &own.head).into_iter().filter(differs).collect();
+        let widest = shown.iter().map(|(head, _)| head.chars().count()).max().unwrap_or(0);
         let mut lines = Vec::new();
-        for head in heads.into_iter().map(|own| &own.head) {
-            let texts = [first, second].map(|all| of(all, head).map(|own| own.text));
-            if texts[0] == texts[1] {
-                continue;
-            }
-            for (side, text) in texts.into_iter().enumerate() {
-                let head = if side == 0 { head.as_str() } else { "" };
-                let text = text.unwrap_or_else(|| "none".to_owned());
+        for (head, both) in shown {
+            for (side, own) in both.into_iter().enumerate() {
+                let head = if side == 0 { head } else { "" };
+                let text = own.map_or("none", |own| own.text.as_str());
                 let line = format!("  {head:<widest$}  {}  {text}", SIDES[side]);
                 lines.extend(wrapped(&line, options.width, widest + 7));
             }
         }
         lines
     }
+}
+
+/// Returns the items of both sides by their names, those of the first side in front.
+pub(super) fn paired<'a, T>(
+    [first, second]: [&'a [T]; 2],
+    name: fn(&T) -> &String,
+) -> Vec<(&'a str, [Option<&'a T>; 2])> {
+    let of = |all: &'a [T], wanted: &str| all.iter().find(|own| name(own) == wanted);
+    let new = second.iter().filter(|own| of(first, name(own)).is_none());
+    let all = first.iter().chain(new).map(|own| name(own).as_str());
+    all.map(|name| (name, [of(first, name), of(second, name)])).collect()
 }
 
 /// Returns a line for each side with its name and its verdict.

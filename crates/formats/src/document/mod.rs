@@ -157,6 +157,11 @@ impl Document {
         &self.origin
     }
 
+    /// Returns the text that the document was parsed from; `None` of a table.
+    pub fn source_text(&self) -> Option<&str> {
+        self.text.as_deref()
+    }
+
     /// Returns the table with all keys.
     pub fn table(&self) -> &Table {
         &self.table

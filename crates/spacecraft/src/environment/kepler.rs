@@ -55,12 +55,12 @@ pub struct Kepler {
 }
 
 /// Returns GM of the Earth (m³/s²), WGS 84.
-pub(super) fn earth_gravity() -> Positive {
+pub fn earth_gravity() -> Positive {
     Positive::new(3.986_004_418e14).unwrap_or(Positive::ONE)
 }
 
 /// Returns the radius of the Earth at its equator (m), WGS 84.
-pub(super) fn earth_radius() -> Positive {
+pub fn earth_radius() -> Positive {
     Positive::new(6_378_137.0).unwrap_or(Positive::ONE)
 }
 

@@ -66,7 +66,7 @@ pub use ephemeris_orbit::EphemerisOrbit;
 pub use field_model::FieldModel;
 pub use gravity_gradient::GravityGradient;
 pub use ground_site::GroundSite;
-pub use kepler::{Kepler, OrbitPosition};
+pub use kepler::{Kepler, OrbitPosition, earth_gravity, earth_radius};
 pub use local_time::LocalTime;
 pub use magnetic_field::MagneticField;
 pub use oblateness::Oblateness;

@@ -247,14 +247,19 @@ fn discs(labels: &mut Vec<Label>, wheels: &Wheels, hub: &Solid, view: &Projectio
         1 => "wheel".to_owned(),
         count => format!("{count} wheels"),
     };
+    labels.push(Label::new(end, name, wheel_limits(wheels)));
+    svg
+}
+
+/// Returns the largest momentum, speed and torque of a wheel in words, those that have limits.
+pub fn wheel_limits(wheels: &Wheels) -> String {
     let units = ReaderUnits::Engineering;
-    let parts = [
+    let limits = [
         wheels.momentum.map(|own| units.quantity(own.get(), "N m s")),
         wheels.speed_limit.map(|own| units.rotor_speed().quantity(own.get())),
         wheels.torque.map(|own| units.quantity(own.get(), "N m")),
     ];
-    labels.push(Label::new(end, name, parts.into_iter().flatten().collect::<Vec<_>>().join(", ")));
-    svg
+    limits.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the nozzles of the thrusters, and adds their label.

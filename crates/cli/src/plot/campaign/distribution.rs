@@ -68,12 +68,12 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
             notes.push(Note::new(text, (value, top), colour::BLACK).on(side));
         }
     }
-    if let Some(RequiredLimit { limit, text, .. }) = &required {
+    if let Some(own @ RequiredLimit { limit, .. }) = &required {
         let line = vec![(*limit, 0.0), (*limit, y.range.end)];
         layers.push(Layer::new("", colour::RED, LayerShape::Line(1.6), line));
         let is_left = *limit > f64::midpoint(x.range.start, x.range.end);
         let side = if is_left { NoteSide::Left } else { NoteSide::Right };
-        notes.push(Note::new(text, (*limit, 1.3 * highest), colour::RED).on(side));
+        notes.push(Note::new(own.words(), (*limit, 1.3 * highest), colour::RED).on(side));
     }
     let head = head(&sorted, limit, runs.numbers.len() - sorted.len());
     let panel = Panel::new(x, y, layers).noted(notes).headed(head);

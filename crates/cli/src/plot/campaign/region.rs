@@ -67,15 +67,15 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
         layers.push(Layer::new(&name, colour::GREEN, LayerShape::Dashes, field.lines(BEST * least)));
     }
     let mut notes = Vec::new();
-    if let Some(RequiredLimit { limit, text, .. }) = &required {
+    if let Some(own @ RequiredLimit { limit, .. }) = &required {
         let line = field.lines(*limit);
         let points: Vec<&Point> = line.iter().filter(|point| point.0.is_finite()).collect();
         if let Some(middle) = points.get(points.len() / 2) {
-            notes.push(Note::new(text, **middle, colour::RED));
+            notes.push(Note::new(own.words(), **middle, colour::RED));
         }
         layers.push(Layer::new("", colour::RED, LayerShape::Line(2.0), line));
     }
-    layers.push(Layer::new("as designed", colour::BLACK, LayerShape::Ring, runs.own_point(first, second)));
+    layers.push(Layer::new("as designed", colour::BLACK, LayerShape::Ring, runs.design_point(first, second)));
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
     let x = runs.key_axis(first).over(ends(&field.x));
     let y = runs.key_axis(second).over(ends(&field.y));

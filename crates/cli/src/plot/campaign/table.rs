@@ -260,7 +260,7 @@ impl CampaignRuns {
     }
 
     /// Returns the point of the scenario itself over two keys, if it has both.
-    pub fn own_point(&self, first: &CampaignKey, second: &CampaignKey) -> Vec<(f64, f64)> {
+    pub fn design_point(&self, first: &CampaignKey, second: &CampaignKey) -> Vec<(f64, f64)> {
         let own = |key: &CampaignKey| self.scenario.as_ref()?.0.number_at(&key.name);
         own(first).zip(own(second)).into_iter().collect()
     }
