@@ -8,7 +8,7 @@ use flexsc_core::campaign::Campaign;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::{Scenario, ScenarioError};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::human::{digits, seconds};
@@ -31,10 +31,11 @@ pub fn run(args: &CheckArgs) -> Result<(), CliError> {
     let mut all = true;
     for path in &args.scenarios {
         match scenario::load(path, &args.set, None) {
-            Ok(scenario) => accepted(path, &scenario, args.json)?,
+            Ok(scenario) if args.json => print_object(&accepted_object(path, &scenario))?,
+            Ok(scenario) => print_accepted(path, &scenario),
             Err(CliError::Scenario(error)) => {
                 if args.json {
-                    refused(path, &error)?;
+                    print_object(&refused_object(path, &error))?;
                 } else {
                     CliError::Scenario(error).print();
                 }
@@ -44,6 +45,10 @@ pub fn run(args: &CheckArgs) -> Result<(), CliError> {
         }
     }
     if all { Ok(()) } else { Err(CliError::Told) }
+}
+
+fn print_object(object: &Json) -> Result<(), CliError> {
+    print(format!("{object}\n").as_bytes())
 }
 
 /// Number of runs of a campaign whose draws are checked.
@@ -121,11 +126,9 @@ fn predicted_cycle(scenario: &Scenario) -> Option<ConfigError> {
     Some(ConfigError::new(key, why))
 }
 
-fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError> {
-    let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
-    let cost = scenario.cost(None, false);
-    let costly = cost.limit_exceeded();
-    let remarks: Vec<ConfigError> = scenario
+/// Returns the remarks on an accepted scenario.
+fn remarks(path: &Path, scenario: &Scenario) -> Vec<ConfigError> {
+    scenario
         .remarks()
         .into_iter()
         .chain(scenario.aliased_modes())
@@ -133,32 +136,40 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError
         .chain(cancelling_imbalance(scenario))
         .chain(predicted_cycle(scenario))
         .chain(refused_draws(path, scenario))
-        .collect();
-    if json {
-        let object = json!({
-            "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
-            "accepted": true, "estimate_s": cost.seconds, "needs_yes": costly.is_some(),
-            "remarks": remarks.iter().map(|of| json!({"key": of.key, "message": of.to_string()})).collect::<Vec<_>>(),
-        });
-        return print(format!("{object}\n").as_bytes());
-    }
+        .collect()
+}
+
+/// Returns an accepted scenario as `--json` prints it, with its remarks.
+pub fn accepted_object(path: &Path, scenario: &Scenario) -> Json {
+    let cost = scenario.cost(None, false);
+    let remark = |of: &ConfigError| json!({"key": of.key, "message": of.to_string()});
+    json!({
+        "file": path.display().to_string(), "scenario": scenario.name, "duration_s": scenario.duration.seconds(),
+        "modes": scenario.mode_count(), "accepted": true, "estimate_s": cost.seconds,
+        "needs_yes": cost.limit_exceeded().is_some(),
+        "remarks": remarks(path, scenario).iter().map(remark).collect::<Vec<_>>(),
+    })
+}
+
+fn print_accepted(path: &Path, scenario: &Scenario) {
+    let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
+    let cost = scenario.cost(None, false);
     let running_time = seconds(cost.seconds);
     say!(
         "{}: accepted: {duration} s, {}; a run takes about {running_time} on one core",
         path.display(),
         counted(modes, "mode")
     );
-    if let Some(why) = costly {
+    if let Some(why) = cost.limit_exceeded() {
         say!("  {why}");
     }
-    for remark in remarks {
+    for remark in remarks(path, scenario) {
         say!("  remark: {remark}");
     }
-    Ok(())
 }
 
-/// Prints each error with its position, in the format that editors and other programs parse.
-fn refused(path: &Path, error: &ScenarioError) -> Result<(), CliError> {
+/// Returns the errors of a scenario that is not accepted, each with its position, as `--json` prints them.
+pub fn refused_object(path: &Path, error: &ScenarioError) -> Json {
     let mistakes = error.mistakes().into_iter().map(|mistake| {
         json!({
             "line": mistake.place.as_ref().map(|place| place.line),
@@ -169,6 +180,5 @@ fn refused(path: &Path, error: &ScenarioError) -> Result<(), CliError> {
         })
     });
     let mistakes: Vec<_> = mistakes.collect();
-    let object = json!({"file": path.display().to_string(), "accepted": false, "mistakes": mistakes});
-    print(format!("{object}\n").as_bytes())
+    json!({"file": path.display().to_string(), "accepted": false, "mistakes": mistakes})
 }

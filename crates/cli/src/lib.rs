@@ -88,6 +88,7 @@ use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 pub use human::Units;
+pub use report::EditableStudy;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft
 #[derive(Parser)]

@@ -138,7 +138,11 @@ fn is_ignored(signal: libc::c_int) -> bool {
     }
 }
 
-#[cfg(not(unix))]
+// Elsewhere, as in a browser, nothing signals.
+#[cfg(not(any(unix, windows)))]
+fn handle() {}
+
+#[cfg(windows)]
 fn handle() {
     let _ = ctrlc::try_set_handler(|| {
         if STOP.request() {

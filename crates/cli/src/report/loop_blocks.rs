@@ -28,22 +28,38 @@ pub struct LoopBlocks {
 /// Computes both blocks; `searches` for the least margins over the uncertain keys too.
 pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
     let mut made = LoopBlocks::default();
+    let (margins, noise) = (margins(study, searches)?, noise(study)?);
+    made.refused.extend(margins.is_refused.then_some("Margins"));
+    made.refused.extend(noise.is_refused.then_some("Noise"));
+    (made.margins, made.summary.margins) = (margins.html, margins.sentence);
+    (made.noise, made.summary.accuracy) = (noise.html, noise.sentence);
+    Ok(made)
+}
+
+/// Block of one analysis of the loops.
+pub struct LoopBlock {
+    pub html: String,
+    sentence: Option<String>,
+    is_refused: bool,
+}
+
+/// Computes the block of the margins; `searches` for the least over the uncertain keys too.
+pub fn margins(study: &Study, searches: bool) -> Result<LoopBlock, CliError> {
     let words = ["margins", "--mask", margins_block::MASK];
     let (found, refused) = each_mode(study, &words, |verb, scenario| match verb {
         Verb::Margins(args) => margins::results(&args.scenario.in_mode(scenario)?, &args),
         _ => Err(CliError::Arguments(String::new())),
     })?;
-    (made.margins, made.summary.margins) = margins_block::html((study, searches), (&found, &refused))?;
-    if found.is_empty() {
-        made.refused.push("Margins");
-    }
+    let (html, sentence) = margins_block::html((study, searches), (&found, &refused))?;
+    Ok(LoopBlock { html, sentence, is_refused: found.is_empty() })
+}
+
+/// Computes the block of the noise.
+pub fn noise(study: &Study) -> Result<LoopBlock, CliError> {
     let (found, refused) = each_mode(study, &["spectrum"], |verb, scenario| match verb {
         Verb::Spectrum(args) => spectrum::results(&args.scenario.in_mode(scenario)?, &args),
         _ => Err(CliError::Arguments(String::new())),
     })?;
-    (made.noise, made.summary.accuracy) = noise_block::html(study, (&found, &refused));
-    if found.is_empty() {
-        made.refused.push("Noise");
-    }
-    Ok(made)
+    let (html, sentence) = noise_block::html(study, (&found, &refused));
+    Ok(LoopBlock { html, sentence, is_refused: found.is_empty() })
 }

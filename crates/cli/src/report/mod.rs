@@ -5,6 +5,7 @@ mod assumptions;
 mod campaign_block;
 mod conclusions;
 mod craft_block;
+mod editable_study;
 mod html;
 mod loop_blocks;
 mod margins_block;
@@ -21,6 +22,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::answer::RunVerdict;
+
+pub use editable_study::EditableStudy;
 
 use crate::error::CliError;
 use crate::human::Units;

@@ -15,7 +15,7 @@ use crate::bound;
 use crate::results::Results;
 
 /// Style of the page, on screens and on paper.
-const STYLE: &str = include_str!("page.css");
+pub const STYLE: &str = include_str!("page.css");
 /// Figures of a log that a page shows at once, the first of each that there are, and the largest number of them.
 const SHOWN: [&str; 9] =
     ["pointing", "line-of-sight", "wheel", "angle", "envelope", "gain", "gimbals", "hinges", "deflection"];

@@ -46,7 +46,11 @@ pub struct StudyCampaign {
 impl Study {
     /// Reads the scenario of a report.
     pub fn load(path: &Path, set: &[String]) -> Result<Self, CliError> {
-        let document = scenario::document(path)?;
+        Self::from_document(path, scenario::document(path)?, set)
+    }
+
+    /// Returns the study of a document, which commands call `path`.
+    pub fn from_document(path: &Path, document: Document, set: &[String]) -> Result<Self, CliError> {
         let scenario = scenario::with(document.clone(), set, None)?;
         Ok(Self { path: path.to_owned(), set: set.to_owned(), scenario, document })
     }

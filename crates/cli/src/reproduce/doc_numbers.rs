@@ -1,4 +1,4 @@
-//! Tests of README.md and the pages of the documentation: their numbers must be the results of the commands beside
+//! Tests of the pages of the documentation: their numbers must be the results of the commands beside
 //! them.
 //!
 //! A page names its commands and marks its numbers in comments, which are invisible to readers:
@@ -177,11 +177,6 @@ fn tested(path: &str) {
     );
     let faults = faults(&page).unwrap_or_else(|error| panic!("{path}: {error}"));
     assert!(faults.is_empty(), "{path}:\n{}", faults.join("\n"));
-}
-
-#[test]
-fn readme_has_the_numbers_of_its_commands() {
-    tested("README.md");
 }
 
 #[test]

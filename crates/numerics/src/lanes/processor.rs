@@ -58,15 +58,16 @@ impl Processor {
 
     /// Returns the number of lanes of the given number of registers.
     pub fn lanes(self, registers: usize) -> usize {
-        registers
-            * match self.0 {
-                #[cfg(all(target_arch = "x86_64", feature = "wide"))]
-                Instructions::Avx512(_) => V4::F64_LANES,
-                #[cfg(target_arch = "x86_64")]
-                Instructions::Avx2(_) => V3::F64_LANES,
-                #[cfg(target_arch = "aarch64")]
-                Instructions::Neon(_) => Neon::F64_LANES,
-            }
+        // Without an arm, on other processors, the match has no type of its own.
+        let lanes: usize = match self.0 {
+            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
+            Instructions::Avx512(_) => V4::F64_LANES,
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2(_) => V3::F64_LANES,
+            #[cfg(target_arch = "aarch64")]
+            Instructions::Neon(_) => Neon::F64_LANES,
+        };
+        registers * lanes
     }
 
     /// Runs a task on single numbers, compiled for the instruction set; AVX-512 is of no use for single numbers.

@@ -1,0 +1,161 @@
+//! Requests of a page: check a scenario, run it, and show what is known of it and of its run.
+
+use std::path::Path;
+
+use flexsc_cli::{EditableStudy, figures};
+use flexsc_core::answer::{Answer, RunObserver, ScreenOptions};
+use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::formats::reader_units::ReaderUnits;
+use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
+use flexsc_handover::{HandoverFormat, HandoverOptions, hand_over};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
+use serde::Deserialize;
+use serde_json::{Value as Json, json};
+
+use crate::page_progress::PageProgress;
+
+/// Request of a page. What it asks for is of the scenario that was read last.
+#[derive(Deserialize)]
+#[serde(tag = "ask", rename_all = "kebab-case", deny_unknown_fields)]
+enum Request {
+    /// Reads a scenario: what `flexsc check --json` prints, with the ranges of the uncertain keys.
+    Check { file: String, text: String },
+    /// Runs it: its answer, the names of its figures, and the size of its log.
+    Run,
+    /// Figure of the run as SVG.
+    Figure { name: String },
+    /// Block of the margins of a report.
+    Margins,
+    /// Block of the noise of a report.
+    Noise,
+    /// Block of the spacecraft of a report.
+    Spacecraft,
+    /// Style of the blocks.
+    Style,
+    /// Bytes of the log that `flexsc simulate` writes.
+    Log,
+    /// Motion of the spacecraft as a glTF model, from a run with its scene.
+    Model,
+    /// JSON Schema of scenarios.
+    Schema,
+    /// Names and texts of the example scenarios.
+    Examples,
+}
+
+/// What a page works on: a scenario, and its run.
+#[derive(Default)]
+pub struct Workbench {
+    study: Option<EditableStudy>,
+    run: Option<FinishedRun>,
+}
+
+/// Run of the scenario.
+struct FinishedRun {
+    /// Bytes of the log that `flexsc simulate` writes.
+    events: Vec<u8>,
+    /// Log from which figures are drawn.
+    full: Log,
+}
+
+/// Error of a request, in the words of the command.
+type Failure = String;
+
+impl Workbench {
+    /// Returns the result of a request: JSON, or bytes of a figure, a log or a model. `{"error": TEXT}` if it fails.
+    pub fn answer(&mut self, request: &[u8]) -> Vec<u8> {
+        let read = serde_json::from_slice(request).map_err(|error| error.to_string());
+        read.and_then(|request| self.result(request))
+            .unwrap_or_else(|why| json!({"error": why}).to_string().into_bytes())
+    }
+
+    fn result(&mut self, request: Request) -> Result<Vec<u8>, Failure> {
+        Ok(match request {
+            Request::Check { file, text } => self.check(&file, text).to_string().into_bytes(),
+            Request::Run => self.run()?.to_string().into_bytes(),
+            Request::Figure { name } => {
+                let figure = figures::log_figure(&self.finished()?.full, self.path()?, &name, None)?;
+                figure.svg()?.into_bytes()
+            }
+            Request::Margins => self.study()?.margins()?.into_bytes(),
+            Request::Noise => self.study()?.noise()?.into_bytes(),
+            Request::Spacecraft => self.study()?.spacecraft().into_bytes(),
+            Request::Style => EditableStudy::STYLE.as_bytes().to_vec(),
+            Request::Log => self.finished()?.events.clone(),
+            Request::Model => self.model()?,
+            Request::Schema => flexsc_core::Scenario::schema().to_string().into_bytes(),
+            Request::Examples => json!(flexsc_cli::EXAMPLES).to_string().into_bytes(),
+        })
+    }
+
+    fn study(&self) -> Result<&EditableStudy, Failure> {
+        self.study.as_ref().ok_or_else(|| "no scenario has been accepted".to_owned())
+    }
+
+    fn finished(&self) -> Result<&FinishedRun, Failure> {
+        self.run.as_ref().ok_or_else(|| "the scenario has not been run".to_owned())
+    }
+
+    fn path(&self) -> Result<&Path, Failure> {
+        Ok(self.study()?.path())
+    }
+
+    fn check(&mut self, file: &str, text: String) -> Json {
+        self.run = None;
+        match EditableStudy::read(file, text) {
+            Ok(study) => {
+                let checked = study.checked();
+                self.study = Some(study);
+                checked
+            }
+            Err(refused) => {
+                self.study = None;
+                refused
+            }
+        }
+    }
+
+    fn campaign_run(&self) -> Result<CampaignRun, Failure> {
+        let study = self.study()?;
+        let campaign = Campaign::new(study.scenario().clone(), &study.path().to_string_lossy(), None);
+        Ok(CampaignRun::new(campaign.map_err(|error| error.to_string())?.scenario().clone(), 0))
+    }
+
+    fn run(&mut self) -> Result<Json, Failure> {
+        let run = self.campaign_run()?;
+        let scenario = &run.scenario;
+        let log = |detail: Detail| {
+            let provenance = with_layout(Campaign::provenance(&run), scenario, detail);
+            LogBytes::new(&provenance, detail).map_err(|error| error.to_string())
+        };
+        let (mut events, mut full) = (log(Detail::Events)?, log(Detail::Full)?);
+        let mut observer = RunObserver::new(scenario);
+        let progress = PageProgress::new(scenario.duration.seconds());
+        let records = ((&mut events, &mut full), (&mut observer, progress));
+        let metrics = Campaign::simulate(&run, records).map_err(|error| error.to_string())?;
+        let finished = |log: LogBytes| log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string());
+        let (events, full) = (finished(events)?, finished(full)?);
+        let units = ReaderUnits::default();
+        let answer = Answer::new(scenario, &metrics, Some(&observer.finish()), units);
+        let screen = answer.screen(None, ScreenOptions { units, ..ScreenOptions::default() });
+        let full = Log::read(self.path()?, full).map_err(|error| error.to_string())?;
+        let result = json!({
+            "answer": answer, "screen": screen, "log_bytes": events.len(),
+            "figures": figures::names(&full, self.path()?, None)?,
+        });
+        self.run = Some(FinishedRun { events, full });
+        Ok(result)
+    }
+
+    fn model(&self) -> Result<Vec<u8>, Failure> {
+        let run = self.campaign_run()?;
+        let provenance = with_layout(Campaign::provenance(&run), &run.scenario, Detail::Scene);
+        let mut log = LogBytes::new(&provenance, Detail::Scene).map_err(|error| error.to_string())?;
+        let scene = Scene::for_detail(&run.scenario, Detail::Scene);
+        let progress = PageProgress::new(run.scenario.duration.seconds());
+        let metrics = Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
+        let bytes = log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string())?;
+        let log = Log::read(self.path()?, bytes).map_err(|error| error.to_string())?;
+        hand_over(&log, HandoverFormat::Glb, &HandoverOptions::default()).map_err(|error| error.to_string())
+    }
+}
