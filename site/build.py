@@ -1,6 +1,8 @@
 """Builds the documentation site into target/site: `python3 site/build.py`.
 
-It needs the wheel that `pip wheel --no-deps -w target/wheels .` makes, and makes it if there is none.
+It needs the wheel that `pip wheel --no-deps -w target/wheels .` makes, and makes it if there is none. With
+`--playground` it builds the engine for browsers first, and says so if it cannot; without, the site has the one that
+is in target/playground, if any.
 """
 
 import os
@@ -8,6 +10,9 @@ import subprocess
 import sys
 import venv
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+import playground
 
 ROOT = Path(__file__).resolve().parents[1]
 ENVIRONMENT = ROOT / "target" / "venv-site"
@@ -22,6 +27,8 @@ def run(*command: str | Path) -> None:
 
 
 def main() -> None:
+    if "--playground" in sys.argv[1:] and (reason := playground.build()):
+        print(f"the site has no playground: {reason}")
     if not ENVIRONMENT.exists():
         venv.create(ENVIRONMENT, with_pip=True)
     python = ENVIRONMENT / ("Scripts" if sys.platform == "win32" else "bin") / "python"

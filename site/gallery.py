@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import html
 import re
 import shlex
@@ -24,6 +25,8 @@ README = "images/cubesat.svg"
 COMMAND = shutil.which("flexsc", path=str(Path(sys.executable).parent)) or shutil.which("flexsc") or "flexsc"
 # Verbs that draw, and how they draw for a tile.
 DRAWING = ("plot", "margins", "spectrum", "worst", "budget", "map", "plan")
+# SHA-256 of the log of each scenario, once its pictures are drawn.
+SHA256: dict[str, str] = {}
 FOR_A_TILE = ("--width", "66", "--font", "6")
 # The drawing of the spacecraft, in a page of `flexsc report`.
 DRAWN = re.compile(r'<svg [^>]*aria-label="the spacecraft.*?</svg>', re.DOTALL)
@@ -176,7 +179,17 @@ def folder_pictures(scenario: str) -> dict[str, str]:
             subprocess.run([COMMAND, *plot.split()[1:]], cwd=folder, capture_output=True, check=True)
             wide = (folder / f"wide/{CUBESAT}-pointing.svg").read_text("utf-8")
             made[README] = side_by_side(made[f"gallery/{CUBESAT}-review.svg"], wide)
+        # The log of the command alone, which the playground compares with its own.
+        simulate = ("simulate", f"{scenario}.toml", "-o", "events")
+        subprocess.run([COMMAND, *simulate], cwd=folder, capture_output=True, check=False)
+        SHA256[scenario] = hashlib.sha256((folder / f"events/{scenario}.mcap").read_bytes()).hexdigest()
     return made
+
+
+def known() -> dict[str, dict[str, str]]:
+    """The title of each scenario of the gallery, and the SHA-256 of the log that the command writes of it."""
+    titles = {tile.scenario: tile.title for tile in reversed(TILES)}
+    return {name: {"title": titles[name], "sha256": SHA256[name]} for name in dict.fromkeys(t.scenario for t in TILES)}
 
 
 def pictures() -> dict[str, str]:
@@ -191,7 +204,7 @@ def page(playground: bool) -> str:
     made = []
     for tile in TILES:
         commands = html.escape("\n".join(tile.commands))
-        links = [f'<a href="reference/scenarios.html#{tile.scenario}">{tile.scenario}</a>']
+        links = [f'<a href="examples/{tile.scenario}.html">{tile.scenario}</a>']
         if playground:
             links.append(f'<a href="playground.html#{tile.scenario}">open</a>')
         path, _, anchor = tile.page.partition("#")

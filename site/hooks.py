@@ -1,4 +1,4 @@
-"""What MkDocs adds to docs/: references made from the engine, tutorials with their outputs, formulas."""
+"""What MkDocs adds to docs/: references made from the engine, tutorials with their outputs, formulas, the gallery and the playground."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from mkdocs.plugins import event_priority
 from mkdocs.structure.files import File, Files
 
 sys.path.insert(0, str(Path(__file__).parent))
+import examples
+import gallery
 import reference
+import search
 import tutorials
 from scenario_keys import Keys
 
@@ -24,12 +27,32 @@ MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', 
 # Comments that mark the numbers of a page for its test.
 MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
 KEYS = Keys(flexsc.schema())
+PLAYGROUND = ROOT / "target/playground"
 # Pages that end with what tests make and compare.
 WHOLE = {"combinations.md": "tests/frozen/combinations.md", "papers.md": "tests/frozen/papers.md"}
 
 
+def on_config(config: Any) -> Any:
+    """Adds the playground to the menu, where it has been built."""
+    if PLAYGROUND.is_dir():
+        config.nav.insert(1, {"Playground": "playground.md"})
+    return config
+
+
 def on_files(files: Files, config: Any) -> Files:
     """Adds the pages that are made."""
+    pictures = gallery.pictures()
+    readme = pictures.pop(gallery.README)
+    if (ROOT / "docs" / gallery.README).read_text("utf-8") != readme:
+        raise SystemExit(f"docs/{gallery.README} is not current: python3 site/gallery.py")
+    for path, svg in pictures.items():
+        files.append(File.generated(config, path, content=svg))
+    if PLAYGROUND.is_dir():
+        files.append(File.generated(config, "playground.md", content=examples.playground()))
+        for path in sorted(PLAYGROUND.iterdir()):
+            files.append(File.generated(config, f"playground/{path.name}", content=path.read_bytes()))
+        hashes = f"globalThis.FLEXSC_GALLERY={json.dumps(gallery.known())};"
+        files.append(File.generated(config, "playground/gallery.js", content=hashes))
     # Links of the changelog count from the repository.
     changelog = (
         (ROOT / "CHANGELOG.md")
@@ -37,7 +60,9 @@ def on_files(files: Files, config: Any) -> Files:
         .replace("](docs/", "](")
         .replace("](SECURITY.md", "](../SECURITY.md")
     )
-    for path, text in {**reference.pages(KEYS), "changelog.md": changelog}.items():
+    changelog = f"---\nsearch:\n  exclude: true\n---\n\n{changelog}"
+    made = {**reference.pages(KEYS), **examples.pages(), "changelog.md": changelog}
+    for path, text in made.items():
         files.append(File.generated(config, path, content=text))
     for source in sorted((ROOT / "docs/tutorials").glob("*.py")):
         for path, content in tutorials.made(source).items():
@@ -53,6 +78,14 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     if page.file.src_uri in WHOLE:
         made = (ROOT / WHOLE[page.file.src_uri]).read_text("utf-8")
         markdown += "\n" + made[re.search("^## ", made, re.MULTILINE).start() :]
+    if page.file.src_uri == "index.md":
+        buttons = "[Install](install.md){ .md-button }"
+        if PLAYGROUND.is_dir():
+            buttons = f"[Try it in the browser](playground.md){{ .md-button .md-button--primary }} {buttons}"
+        markdown = markdown.replace("<!-- start -->", buttons)
+        markdown = markdown.replace("<!-- gallery -->", gallery.page(PLAYGROUND.is_dir()))
+    if PLAYGROUND.is_dir() and not page.file.src_uri.startswith(("examples/", "reference/")):
+        markdown = examples.linked(markdown, "../" * page.file.src_uri.count("/"))
     above = "../" * (1 + page.file.src_uri.count("/"))
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
 
@@ -80,8 +113,9 @@ def on_page_content(content: str, **_: Any) -> str:
 # After the index is written, and before it becomes a script.
 @event_priority(-50)
 def on_post_build(config: Any, **_: Any) -> None:
-    """Adds each key of a scenario to the index of the search."""
+    """Adds each key of a scenario to the index of the search, and what readers call a page."""
     path = Path(config.site_dir) / "search/search_index.json"
     index = json.loads(path.read_text("utf-8"))
     index["docs"] += KEYS.entries()
+    search.add_synonyms(index["docs"])
     path.write_text(json.dumps(index, separators=(",", ":")), "utf-8")

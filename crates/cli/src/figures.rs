@@ -44,6 +44,19 @@ pub fn log_figure(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) 
     plot::figure_of(log, path, name, known).map_err(|failure| failure.to_string())
 }
 
+/// Returns a figure of a log by its name, from one instant (s) to another; `None` for the end that the figure chooses.
+///
+/// # Errors
+/// As [`log_figure`], or times beyond the run.
+pub fn log_figure_between(
+    log: &Log,
+    path: &Path,
+    name: &str,
+    times: [Option<f64>; 2],
+) -> Result<Figure, String> {
+    plot::figure_between(log, path, name, None, times).map_err(|failure| failure.to_string())
+}
+
 /// Returns named figures of a campaign from its columns: of the given kind, else the default ones; of the given
 /// metrics, else of the main ones that vary.
 ///

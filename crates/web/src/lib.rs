@@ -1,9 +1,8 @@
-//! flexsc for browsers: a request as JSON goes in, a result as bytes comes out, through the memory of WebAssembly.
-//!
-//! A page puts a request at the address that [`memory::flexsc_allocate`] returns and calls [`memory::flexsc_answer`].
-//! `docs/extending.md` has the requests; [`workbench::Workbench`] answers them, on any processor.
-
-pub mod memory;
-pub mod workbench;
+//! flexsc for browsers: a request as JSON goes in, a result as bytes comes out. The executable of this crate takes both
+//! through the memory of WebAssembly; [`Workbench`] answers on any processor.
 
 mod page_progress;
+mod workbench;
+
+pub use page_progress::ToldProgress;
+pub use workbench::Workbench;

@@ -1,11 +1,15 @@
-//! Progress of a run, told to the page.
+//! Progress of a run, told to a page.
 
 use flexsc_core::dynamics::MotionPiece;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Record, RecordError, Sample};
 
-/// Record that tells the page which part of a run is done.
+/// Function that is told which part of a run is done, from 0 to 1.
+pub type ToldProgress = fn(f64);
+
+/// Record that tells which part of a run is done.
 pub struct PageProgress {
+    told: ToldProgress,
     duration: f64,
     samples: u32,
 }
@@ -15,14 +19,14 @@ impl PageProgress {
     const EACH: u32 = 4096;
 
     /// Returns the progress of a run of this duration (s).
-    pub fn new(duration: f64) -> Self {
-        Self { duration, samples: 0 }
+    pub fn new(told: ToldProgress, duration: f64) -> Self {
+        Self { told, duration, samples: 0 }
     }
 
     fn update(&mut self, now: f64) {
         self.samples = self.samples.wrapping_add(1);
         if self.samples.is_multiple_of(Self::EACH) {
-            tell(now / self.duration);
+            (self.told)(now / self.duration);
         }
     }
 }
@@ -38,20 +42,3 @@ impl Record for PageProgress {
         Ok(())
     }
 }
-
-/// Tells the page the part of a run that is done, from 0 to 1.
-#[cfg(target_family = "wasm")]
-fn tell(part: f64) {
-    mod page {
-        #[expect(unsafe_code, reason = "a function of the page")]
-        #[link(wasm_import_module = "flexsc")]
-        unsafe extern "C" {
-            pub safe fn progress(part: f64);
-        }
-    }
-    page::progress(part);
-}
-
-/// Elsewhere there is no page.
-#[cfg(not(target_family = "wasm"))]
-fn tell(_: f64) {}

@@ -13,7 +13,7 @@ use flexsc_view::with_layout;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
-use crate::page_progress::PageProgress;
+use crate::page_progress::{PageProgress, ToldProgress};
 
 /// Request of a page. What it asks for is of the scenario that was read last.
 #[derive(Deserialize)]
@@ -23,8 +23,8 @@ enum Request {
     Check { file: String, text: String },
     /// Runs it: its answer, the names of its figures, and the size of its log.
     Run,
-    /// Figure of the run as SVG.
-    Figure { name: String },
+    /// Figure of the run as SVG, whole or between two times (s).
+    Figure { name: String, from: Option<f64>, to: Option<f64> },
     /// Block of the margins of a report.
     Margins,
     /// Block of the noise of a report.
@@ -44,8 +44,8 @@ enum Request {
 }
 
 /// What a page works on: a scenario, and its run.
-#[derive(Default)]
 pub struct Workbench {
+    told: ToldProgress,
     study: Option<EditableStudy>,
     run: Option<FinishedRun>,
 }
@@ -62,6 +62,11 @@ struct FinishedRun {
 type Failure = String;
 
 impl Workbench {
+    /// Returns a workbench without a scenario, which tells the progress of its runs.
+    pub fn new(told: ToldProgress) -> Self {
+        Self { told, study: None, run: None }
+    }
+
     /// Returns the result of a request: JSON, or bytes of a figure, a log or a model. `{"error": TEXT}` if it fails.
     pub fn answer(&mut self, request: &[u8]) -> Vec<u8> {
         let read = serde_json::from_slice(request).map_err(|error| error.to_string());
@@ -73,8 +78,9 @@ impl Workbench {
         Ok(match request {
             Request::Check { file, text } => self.check(&file, text).to_string().into_bytes(),
             Request::Run => self.run()?.to_string().into_bytes(),
-            Request::Figure { name } => {
-                let figure = figures::log_figure(&self.finished()?.full, self.path()?, &name, None)?;
+            Request::Figure { name, from, to } => {
+                let log = &self.finished()?.full;
+                let figure = figures::log_figure_between(log, self.path()?, &name, [from, to])?;
                 figure.svg()?.into_bytes()
             }
             Request::Margins => self.study()?.margins()?.into_bytes(),
@@ -130,7 +136,7 @@ impl Workbench {
         };
         let (mut events, mut full) = (log(Detail::Events)?, log(Detail::Full)?);
         let mut observer = RunObserver::new(scenario);
-        let progress = PageProgress::new(scenario.duration.seconds());
+        let progress = PageProgress::new(self.told, scenario.duration.seconds());
         let records = ((&mut events, &mut full), (&mut observer, progress));
         let metrics = Campaign::simulate(&run, records).map_err(|error| error.to_string())?;
         let finished = |log: LogBytes| log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string());
@@ -152,7 +158,7 @@ impl Workbench {
         let provenance = with_layout(Campaign::provenance(&run), &run.scenario, Detail::Scene);
         let mut log = LogBytes::new(&provenance, Detail::Scene).map_err(|error| error.to_string())?;
         let scene = Scene::for_detail(&run.scenario, Detail::Scene);
-        let progress = PageProgress::new(run.scenario.duration.seconds());
+        let progress = PageProgress::new(self.told, run.scenario.duration.seconds());
         let metrics = Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
         let bytes = log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string())?;
         let log = Log::read(self.path()?, bytes).map_err(|error| error.to_string())?;

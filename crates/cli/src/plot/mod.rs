@@ -199,9 +199,24 @@ struct RunSource<'a> {
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str, known: Option<&Scenario>) -> Result<Figure, CliError> {
+    figure_between(log, path, name, known, [None; 2])
+}
+
+/// Returns the figure of a log in memory by its name, from one instant (s) to another, as [`figure_of`] does.
+///
+/// # Errors
+/// As [`figure_of`], or times beyond the run.
+pub fn figure_between(
+    log: &Log,
+    path: &Path,
+    name: &str,
+    known: Option<&Scenario>,
+    [from, to]: [Option<f64>; 2],
+) -> Result<Figure, CliError> {
     let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
     let source = RunSource { known, is_noted: false };
-    let drawn = drawn_over(log, path, &[kind], ShownPart::default(), source)?.into_iter().next();
+    let part = ShownPart { from, to, is_by_axis: false };
+    let drawn = drawn_over(log, path, &[kind], part, source)?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }

@@ -1,0 +1,117 @@
+"""Builds the playground, the engine in a page of the site, into target/playground: `python3 site/playground.py`.
+
+It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of rustup
+with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library: `rustc-web`, `rust-web-src` and
+an LLD of the same LLVM. `wasm-opt` (binaryen) makes it a fifth smaller, if it is there.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = ROOT / "site/playground"
+MADE = ROOT / "target/playground"
+TARGET = "wasm32-unknown-unknown"
+# Node's packages, beside which esbuild runs.
+PACKAGES = ROOT / "target/playground-packages"
+DEBIAN = Path("/usr/bin/rustc")
+# Functions of the module.
+EXPORTED = ("flexsc_allocate", "flexsc_answer", "flexsc_result")
+MOST_BYTES = 4_000_000
+
+
+class Absent(Exception):
+    """Something that the playground is built with is not here."""
+
+
+def said(*command: str | Path) -> str:
+    """What a command prints."""
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
+
+
+def compiler() -> tuple[dict[str, str], list[str]]:
+    """The environment and the options of cargo with which it builds for WebAssembly.
+
+    Raises:
+        Absent: There is no such compiler.
+    """
+    library = Path(said("rustc", "--print", "sysroot").strip()) / "lib/rustlib" / TARGET
+    if library.is_dir():
+        return {}, []
+    why = f"no Rust library for {TARGET}: `rustup target add {TARGET}`, or Debian's rustc-web, rust-web-src and lld"
+    if not DEBIAN.exists():
+        raise Absent(why)
+    sources = Path(said(DEBIAN, "--print", "sysroot").strip()) / "lib/rustlib/src/rust/library"
+    linkers = sorted(Path("/usr/bin").glob("wasm-ld-*"), key=lambda path: int(path.name.rpartition("-")[2]))
+    if not sources.is_dir() or not linkers:
+        raise Absent(why)
+    environment = {
+        "RUSTC": str(DEBIAN),
+        # Its standard library is compiled from source, which stable compilers do for themselves alone.
+        "RUSTC_BOOTSTRAP": "1",
+        "CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER": str(linkers[-1]),
+    }
+    return environment, ["-Zbuild-std=std,panic_abort"]
+
+
+def engine() -> bytes:
+    """The engine as WebAssembly."""
+    own, options = compiler()
+    if shutil.which("clang") is None:
+        raise Absent("no clang, which compiles the C of zstd for WebAssembly")
+    folder = ROOT / "target/web"
+    words = ["cargo", "rustc", "--quiet", "--locked", "--profile", "web", "--target", TARGET, "-p", "flexsc-web", "--features", "page"]
+    exported = [word for name in EXPORTED for word in ("-C", f"link-arg=--export={name}")]
+    environment = {**os.environ, **own, "CARGO_TARGET_DIR": str(folder)}
+    subprocess.run([*words, "--bin", "flexsc-web", *options, "--", *exported], cwd=ROOT, env=environment, check=True)
+    built = folder / TARGET / "web/flexsc-web.wasm"
+    if (optimiser := shutil.which("wasm-opt")) is None:
+        return built.read_bytes()
+    small = built.with_suffix(".small.wasm")
+    features = ("--enable-bulk-memory", "--enable-sign-ext", "--enable-mutable-globals", "--enable-nontrapping-float-to-int")
+    subprocess.run([optimiser, "-O1", *features, built, "-o", small], check=True)
+    return small.read_bytes()
+
+
+def bundle() -> None:
+    """The scripts of the page."""
+    if shutil.which("npm") is None:
+        raise Absent("no npm")
+    shutil.copytree(SOURCE, PACKAGES, dirs_exist_ok=True)
+    npm = ["npm", "ci", "--no-audit", "--no-fund", "--silent", "--ignore-scripts"]
+    subprocess.run(npm, cwd=PACKAGES, check=True)
+    subprocess.run(["node", "bundle.mjs", MADE], cwd=PACKAGES, check=True)
+
+
+def build() -> str | None:
+    """Builds the playground; returns the reason if it cannot be built here."""
+    began = time.monotonic()
+    shutil.rmtree(MADE, ignore_errors=True)
+    MADE.mkdir(parents=True)
+    try:
+        packed = gzip.compress(engine(), 9, mtime=0)
+        bundle()
+    except Absent as absent:
+        shutil.rmtree(MADE)
+        return str(absent)
+    text = base64.b64encode(packed).decode("ascii")
+    (MADE / "engine.js").write_text(f'self.FLEXSC_ENGINE="{text}";\n', "ascii")
+    shutil.copyfile(SOURCE / "style.css", MADE / "style.css")
+    sizes = {path.name: path.stat().st_size for path in sorted(MADE.iterdir())}
+    if sum(sizes.values()) > MOST_BYTES:
+        raise SystemExit(f"the playground is above {MOST_BYTES} bytes: {sizes}")
+    print(f"the playground has {sum(sizes.values()) / 1e6:.2f} MB, built in {time.monotonic() - began:.0f} s: {sizes}")
+    return None
+
+
+if __name__ == "__main__":
+    if reason := build():
+        sys.exit(f"the playground cannot be built: {reason}")

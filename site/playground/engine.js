@@ -1,0 +1,71 @@
+// The engine in a worker: requests and results, stops, and a new start after a trap.
+
+import source from "worker:./worker.js";
+
+// gzip in base64, so that the page also works from a folder, where nothing may be fetched.
+async function compiled() {
+  const packed = Uint8Array.from(atob(self.FLEXSC_ENGINE), (letter) => letter.charCodeAt(0));
+  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  return WebAssembly.compile(await new Response(plain).arrayBuffer());
+}
+
+export class Stopped extends Error {}
+export class Trapped extends Error {}
+
+export class Engine {
+  constructor() {
+    this.waiting = new Map();
+    this.count = 0;
+    this.onprogress = () => {};
+    this.module = compiled();
+    this.start();
+  }
+
+  start() {
+    const address = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+    const worker = new Worker(address);
+    this.worker = worker;
+    worker.onmessage = ({ data }) => {
+      if (worker !== this.worker) return;
+      if (data.progress !== undefined) this.onprogress(data.progress);
+      else this.settle(data);
+    };
+    worker.onerror = (event) => this.restart(new Trapped(event.message));
+    this.ready = this.module.then((module) => worker.postMessage({ module }));
+  }
+
+  settle({ id, bytes, trap }) {
+    const asked = this.waiting.get(id);
+    this.waiting.delete(id);
+    if (trap !== undefined) {
+      asked?.reject(new Trapped(trap));
+      this.restart(new Trapped(trap));
+    } else {
+      asked?.resolve(bytes);
+    }
+  }
+
+  // Ends what runs: WebAssembly has no other way to stop.
+  restart(reason = new Stopped("stopped")) {
+    this.worker.terminate();
+    for (const asked of this.waiting.values()) asked.reject(reason);
+    this.waiting.clear();
+    this.start();
+  }
+
+  async bytes(request) {
+    await this.ready;
+    const id = (this.count += 1);
+    const asked = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+    this.worker.postMessage({ id, request });
+    return asked;
+  }
+
+  async text(request) {
+    return new TextDecoder().decode(await this.bytes(request));
+  }
+
+  async json(request) {
+    return JSON.parse(await this.text(request));
+  }
+}
