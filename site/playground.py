@@ -2,7 +2,7 @@
 
 It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of rustup
 with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library: `rustc-web`, `rust-web-src` and
-an LLD of the same LLVM. `wasm-opt` (binaryen) makes it a fifth smaller, if it is there.
+an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is there.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ TARGET = "wasm32-unknown-unknown"
 # Node's packages, beside which esbuild runs.
 PACKAGES = ROOT / "target/playground-packages"
 DEBIAN = Path("/usr/bin/rustc")
+# What takes little time: nothing that no export reaches, and equal functions once.
+LIGHT = ("--remove-unused-module-elements", "--duplicate-function-elimination", "--vacuum")
 # Functions of the module.
 EXPORTED = ("flexsc_allocate", "flexsc_answer", "flexsc_result")
 MOST_BYTES = 4_000_000
@@ -62,6 +64,48 @@ def compiler() -> tuple[dict[str, str], list[str]]:
     return environment, ["-Zbuild-std=std,panic_abort"]
 
 
+def number(code: bytes, at: int) -> tuple[int, int]:
+    """A number of WebAssembly (LEB128) at a place, and the place after it."""
+    value = shift = 0
+    while True:
+        byte = code[at]
+        value |= (byte & 0x7F) << shift
+        at, shift = at + 1, shift + 7
+        if byte < 0x80:
+            return value, at
+
+
+def coded(value: int) -> bytes:
+    """A number as WebAssembly has it."""
+    made = bytearray()
+    while True:
+        made.append(value & 0x7F | (0x80 if value > 0x7F else 0))
+        value >>= 7
+        if value == 0:
+            return bytes(made)
+
+
+def without_other_exports(code: bytes) -> bytes:
+    """A module with the memory and its own functions as exports alone: crates of its dependencies export thousands of stubs."""
+    at, made = 8, bytearray(code[:8])
+    while at < len(code):
+        kind, (length, start) = code[at], number(code, at + 1)
+        body = code[start : start + length]
+        if kind == 7:
+            count, place = number(body, 0)
+            kept = []
+            for _ in range(count):
+                size, name = number(body, place)
+                _, end = number(body, name + size + 1)
+                if body[name : name + size].decode() in (*EXPORTED, "memory"):
+                    kept.append(body[place:end])
+                place = end
+            body = coded(len(kept)) + b"".join(kept)
+        made += bytes([kind]) + coded(len(body)) + body
+        at = start + length
+    return bytes(made)
+
+
 def engine() -> bytes:
     """The engine as WebAssembly."""
     own, options = compiler()
@@ -71,13 +115,19 @@ def engine() -> bytes:
     words = ["cargo", "rustc", "--quiet", "--locked", "--profile", "web", "--target", TARGET, "-p", "flexsc-web", "--features", "page"]
     exported = [word for name in EXPORTED for word in ("-C", f"link-arg=--export={name}")]
     environment = {**os.environ, **own, "CARGO_TARGET_DIR": str(folder)}
-    subprocess.run([*words, "--bin", "flexsc-web", *options, "--", *exported], cwd=ROOT, env=environment, check=True)
+    command = [*words, "--bin", "flexsc-web", *options, "--", *exported]
+    # Warnings of another compiler and another processor are of no interest here.
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(done.stderr)
     built = folder / TARGET / "web/flexsc-web.wasm"
+    trimmed = built.with_suffix(".trimmed.wasm")
+    trimmed.write_bytes(without_other_exports(built.read_bytes()))
     if (optimiser := shutil.which("wasm-opt")) is None:
-        return built.read_bytes()
+        return trimmed.read_bytes()
     small = built.with_suffix(".small.wasm")
     features = ("--enable-bulk-memory", "--enable-sign-ext", "--enable-mutable-globals", "--enable-nontrapping-float-to-int")
-    subprocess.run([optimiser, "-O1", *features, built, "-o", small], check=True)
+    subprocess.run([optimiser, *LIGHT, *features, trimmed, "-o", small], check=True)
     return small.read_bytes()
 
 
@@ -96,16 +146,22 @@ def build() -> str | None:
     began = time.monotonic()
     shutil.rmtree(MADE, ignore_errors=True)
     MADE.mkdir(parents=True)
+    model = MADE / "model.js"
     try:
         packed = gzip.compress(engine(), 9, mtime=0)
         bundle()
     except Absent as absent:
         shutil.rmtree(MADE)
         return str(absent)
-    text = base64.b64encode(packed).decode("ascii")
-    (MADE / "engine.js").write_text(f'self.FLEXSC_ENGINE="{text}";\n', "ascii")
+    for name, packed in {"engine.wasm": packed, "model.js": gzip.compress(model.read_bytes(), 9, mtime=0)}.items():
+        (MADE / f"{name}.gz").write_bytes(packed)
+        text = base64.b64encode(packed).decode("ascii")
+        (MADE / f"{name}.gz.js").write_text(f'(self.FLEXSC_FILES ??= {{}})["{name}"]="{text}";\n', "ascii")
+    model.unlink()
     shutil.copyfile(SOURCE / "style.css", MADE / "style.css")
-    sizes = {path.name: path.stat().st_size for path in sorted(MADE.iterdir())}
+    # What is in base64 is for pages that are opened from a folder.
+    sent = (path for path in sorted(MADE.iterdir()) if not path.name.endswith(".gz.js"))
+    sizes = {path.name: path.stat().st_size for path in sent}
     if sum(sizes.values()) > MOST_BYTES:
         raise SystemExit(f"the playground is above {MOST_BYTES} bytes: {sizes}")
     print(f"the playground has {sum(sizes.values()) / 1e6:.2f} MB, built in {time.monotonic() - began:.0f} s: {sizes}")

@@ -6,7 +6,7 @@
 # does the spacecraft settle, when does that cycle excite the panels most, and which parameter can be tuned to keep them
 # quiet?
 #
-# You need `pip install flexsc matplotlib`. Everything below takes some seconds.
+# You need flexsc and Matplotlib. Everything below takes some seconds.
 
 # %%
 import flexsc

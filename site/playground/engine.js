@@ -1,13 +1,7 @@
 // The engine in a worker: requests and results, stops, and a new start after a trap.
 
 import source from "worker:./worker.js";
-
-// gzip in base64, so that the page also works from a folder, where nothing may be fetched.
-async function compiled() {
-  const packed = Uint8Array.from(atob(self.FLEXSC_ENGINE), (letter) => letter.charCodeAt(0));
-  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(plain).arrayBuffer());
-}
+import { unpackedFile } from "./packed.js";
 
 export class Stopped extends Error {}
 export class Trapped extends Error {}
@@ -17,7 +11,7 @@ export class Engine {
     this.waiting = new Map();
     this.count = 0;
     this.onprogress = () => {};
-    this.module = compiled();
+    this.module = unpackedFile("engine.wasm").then((bytes) => WebAssembly.compile(bytes));
     this.start();
   }
 

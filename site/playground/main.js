@@ -3,6 +3,7 @@
 import { answerHtml, escaped } from "./answer.js";
 import { Editor } from "./editor.js";
 import { Engine, Stopped, Trapped } from "./engine.js";
+import { unpackedScript } from "./packed.js";
 import { Schema } from "./schema.js";
 import { packed, sha256, unpacked } from "./share.js";
 import { Sliders } from "./sliders.js";
@@ -13,7 +14,6 @@ const PAUSE = 350;
 const FIRST = "earth-observer";
 
 const place = (name) => document.querySelector(`#playground [data-place="${name}"]`);
-const folder = document.currentScript.src.replace(/[^/]*$/, "");
 
 class Playground {
   constructor() {
@@ -30,6 +30,8 @@ class Playground {
     this.tab = "time";
     this.times = [null, null];
     this.generation = 0;
+    // A phone shows the answer first; its text opens at a touch.
+    place("text").open = innerWidth > 960;
     this.listen();
   }
 
@@ -274,7 +276,7 @@ class Playground {
     view.append(button);
     const start = async () => {
       button.disabled = true;
-      if (!globalThis.FLEXSC_MODEL) await script(`${folder}model.js`);
+      if (!globalThis.FLEXSC_MODEL) await unpackedScript("model.js");
       const bytes = await this.engine.bytes({ ask: "model" });
       if (!isCurrent()) return;
       if (bytes[0] === 0x7b) {
@@ -306,19 +308,12 @@ class Playground {
   }
 }
 
-function script(src) {
-  return new Promise((resolve, reject) => {
-    const element = document.createElement("script");
-    Object.assign(element, { src, onload: resolve, onerror: () => reject(new Error(`${src} cannot be read`)) });
-    document.head.append(element);
-  });
-}
-
 if (typeof WebAssembly === "undefined" || typeof DecompressionStream === "undefined") {
   place("status").textContent = "this browser has no WebAssembly or no DecompressionStream: Chrome 80, Firefox 113 and Safari 16.4 have both";
 } else {
-  script(`${folder}engine.js`)
-    .then(() => (globalThis.playground = new Playground()).open())
+  globalThis.playground = new Playground();
+  globalThis.playground
+    .open()
     .catch((error) => {
       place("status").textContent = `the engine cannot be loaded: ${error.message}`;
     });

@@ -139,7 +139,8 @@ impl Workbench {
         let progress = PageProgress::new(self.told, scenario.duration.seconds());
         let records = ((&mut events, &mut full), (&mut observer, progress));
         let metrics = Campaign::simulate(&run, records).map_err(|error| error.to_string())?;
-        let finished = |log: LogBytes| log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string());
+        let finished =
+            |log: LogBytes| log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string());
         let (events, full) = (finished(events)?, finished(full)?);
         let units = ReaderUnits::default();
         let answer = Answer::new(scenario, &metrics, Some(&observer.finish()), units);
@@ -159,9 +160,67 @@ impl Workbench {
         let mut log = LogBytes::new(&provenance, Detail::Scene).map_err(|error| error.to_string())?;
         let scene = Scene::for_detail(&run.scenario, Detail::Scene);
         let progress = PageProgress::new(self.told, run.scenario.duration.seconds());
-        let metrics = Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
+        let metrics =
+            Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
         let bytes = log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string())?;
         let log = Log::read(self.path()?, bytes).map_err(|error| error.to_string())?;
         hand_over(&log, HandoverFormat::Glb, &HandoverOptions::default()).map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn asked(workbench: &mut Workbench, request: &Json) -> Vec<u8> {
+        workbench.answer(request.to_string().as_bytes())
+    }
+
+    fn read(workbench: &mut Workbench, text: &str) -> Json {
+        let request = json!({"ask": "check", "file": "half-turn.toml", "text": text});
+        serde_json::from_slice(&asked(workbench, &request)).expect("JSON")
+    }
+
+    fn example(name: &str) -> &'static str {
+        flexsc_cli::EXAMPLES.iter().find(|(own, _)| *own == name).expect("an example").1
+    }
+
+    #[test]
+    fn a_run_has_the_log_of_the_command_and_its_figures() {
+        let mut workbench = Workbench::new(|_| ());
+        let checked = read(&mut workbench, example("half-turn"));
+        assert_eq!(checked["accepted"], true);
+        assert!(checked["uncertain"][0]["line"].is_u64(), "{checked}");
+        let result: Json =
+            serde_json::from_slice(&asked(&mut workbench, &json!({"ask": "run"}))).expect("JSON");
+        assert_eq!(result["answer"]["verdict"], "met");
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("half-turn.mcap");
+        let run = workbench.campaign_run().expect("a run");
+        flexsc_cli::simulate_to_log(&run, &path, (Detail::Events, false), ()).expect("a log");
+        assert_eq!(asked(&mut workbench, &json!({"ask": "log"})), std::fs::read(path).expect("a file"));
+        for name in result["figures"].as_array().expect("names") {
+            let request = json!({"ask": "figure", "name": name, "from": 20.0, "to": null});
+            assert!(asked(&mut workbench, &request).starts_with(b"<svg"), "{name}");
+        }
+        assert!(asked(&mut workbench, &json!({"ask": "model"})).starts_with(b"glTF"));
+        for block in ["margins", "noise", "spacecraft"] {
+            assert!(asked(&mut workbench, &json!({"ask": block})).starts_with(b"<"), "{block}");
+        }
+    }
+
+    #[test]
+    fn mistakes_have_lines_and_suggestions_and_end_the_last_run() {
+        let mut workbench = Workbench::new(|_| ());
+        read(&mut workbench, example("half-turn"));
+        asked(&mut workbench, &json!({"ask": "run"}));
+        let refused = read(&mut workbench, &example("half-turn").replacen("duration", "durration", 1));
+        assert_eq!(refused["accepted"], false);
+        let mistake = &refused["mistakes"][0];
+        assert!(mistake["line"].is_u64() && mistake["suggestion"] == "duration", "{mistake}");
+        let log = asked(&mut workbench, &json!({"ask": "log"}));
+        assert_eq!(log, br#"{"error":"the scenario has not been run"}"#);
+        let unknown = asked(&mut workbench, &json!({"ask": "nothing"}));
+        assert!(unknown.starts_with(br#"{"error":"unknown variant"#));
     }
 }

@@ -8,6 +8,7 @@ use super::source::NoiseSource;
 use crate::open_loop::LoopParts;
 use crate::open_loop::attitude_rows::{AttitudeRows, seconds, ticks};
 use crate::open_loop::multi_rate::common_multiple;
+use crate::open_loop::repeated_instants::repeated;
 
 /// Largest number of samples of the law in a period.
 const MOST_SAMPLES: i64 = 100;
@@ -87,7 +88,7 @@ impl Schedule {
 
     /// Returns the instants at which something happens, from 0 to the end of the period.
     pub fn instants(&self, filter: Option<&AttitudeRows>, sources: &[NoiseSource]) -> Vec<i64> {
-        let every = |first: i64, step: i64| (first..self.period).step_by(usize::try_from(step).unwrap_or(1));
+        let every = |first: i64, step: i64| repeated(first, step, self.period);
         let mut all: BTreeSet<i64> = filter.map_or_else(BTreeSet::new, |filter| filter.events(self.period));
         all.extend(every(0, self.step).chain(every(self.delay % self.step, self.step)).chain([self.period]));
         for source in sources {

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::DMatrix;
 
+use super::repeated_instants::repeated;
 use crate::linear_attitude_filter::{LinearAttitudeFilter, MountedSensor};
 
 /// Femtoseconds in a second: times are whole numbers of femtoseconds, as in a run.
@@ -134,13 +135,9 @@ impl AttitudeRows {
 
     /// Returns the times (fs) at which the filter acts, up to the end of a period that begins at 0.
     pub fn events(&self, whole: i64) -> BTreeSet<i64> {
-        let every = |first: i64, period: i64| {
-            std::iter::successors(Some(first), move |time| Some(time + period))
-                .take_while(move |time| *time < whole)
-        };
         let first = self.exposures.last().map_or(0, |oldest| oldest.time);
-        let exposures = || every(first, self.sensor.period);
-        every(0, self.gyro.period)
+        let exposures = || repeated(first, self.sensor.period, whole);
+        repeated(0, self.gyro.period, whole)
             .chain(exposures())
             .chain(exposures().map(|time| self.use_time(time)))
             .collect()

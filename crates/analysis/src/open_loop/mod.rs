@@ -9,6 +9,7 @@ pub(crate) mod attitude_rows;
 pub(crate) mod block_matrices;
 mod measurement;
 pub(crate) mod multi_rate;
+pub(crate) mod repeated_instants;
 pub mod sampling;
 mod transfer;
 pub(crate) mod uniform_rate;

@@ -11,6 +11,7 @@ use nalgebra::DMatrix;
 
 use super::attitude_rows::{AttitudeRows, SensorErrors, seconds, ticks};
 use super::block_matrices::stacked;
+use super::repeated_instants::repeated;
 use super::sampling::held;
 use super::{LoopBreak, LoopParts, OpenLoop, TransferMatrices, block_states};
 use crate::linear_model::Signal;
@@ -50,7 +51,7 @@ impl Schedule {
 
     /// Returns the instants at which something happens, from 0 to the end of the period.
     fn instants(&self, filter: &AttitudeRows) -> Vec<i64> {
-        let every = |first: i64| (first..self.whole).step_by(usize::try_from(self.step).unwrap_or(1));
+        let every = |first: i64| repeated(first, self.step, self.whole);
         let mut all: BTreeSet<i64> = filter.events(self.whole);
         all.extend(every(0).chain(every(self.delay % self.step)).chain([self.whole]));
         all.into_iter().filter(|instant| (0..=self.whole).contains(instant)).collect()
