@@ -9,6 +9,8 @@ that of the machine needs its standard library: `rustup target add TARGET`.
 import os
 import subprocess
 import sys
+import tarfile
+import tempfile
 import venv
 from pathlib import Path
 
@@ -29,6 +31,24 @@ def add_library(python: Path, target: str) -> None:
     subprocess.run([python, "-c", code, wheel, built, target], env=environment, check=True)
 
 
+def fit_lock(archive: Path) -> None:
+    """Takes the crates that a source distribution does not contain out of its lock file, so that it builds with `--locked`."""
+    with tempfile.TemporaryDirectory() as name:
+        with tarfile.open(archive) as packed:
+            members = packed.getmembers()
+            packed.extractall(name, filter="data")
+        (folder,) = Path(name).iterdir()
+        metadata = ["cargo", "metadata", "--format-version", "1", "--manifest-path", folder / "crates/py/Cargo.toml"]
+        subprocess.run([*metadata, "--offline"], stdout=subprocess.DEVNULL, check=True)
+        subprocess.run([*metadata, "--locked"], stdout=subprocess.DEVNULL, check=True)
+        with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:
+            for member in members:
+                if member.name == f"{folder.name}/Cargo.lock":
+                    member.size = (folder / "Cargo.lock").stat().st_size
+                with (Path(name) / member.name).open("rb") as data:
+                    packed.addfile(member, data)
+
+
 def main() -> None:
     if len(sys.argv) != 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
@@ -47,7 +67,9 @@ def main() -> None:
         if "linux" in target:
             command += ["--zig", "--compatibility", "musllinux_1_2" if "musl" in target else "manylinux_2_17"]
     subprocess.run([str(word) for word in command], cwd=ROOT, env=environment, check=True)
-    if target != "sdist":
+    if target == "sdist":
+        fit_lock(max((ROOT / "dist").glob("flexsc-*.tar.gz"), key=lambda path: path.stat().st_mtime))
+    else:
         add_library(scripts / "python", target)
     for made in sorted((ROOT / "dist").glob("flexsc-*")):
         print(f"{made.name}  {made.stat().st_size / 2**20:.1f} MiB")

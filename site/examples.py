@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import html
 import re
-import tomllib
 import zlib
 from pathlib import Path
 
@@ -16,11 +15,6 @@ ROOT = Path(__file__).resolve().parents[1]
 TOML = re.compile(r"^```toml\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 BLOCK = re.compile(r"(?:^ {4}\S.*\n(?:(?:^ {4}.*)?\n)*)|^```(?:sh|text|bash|python)\n.*?^```\n", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"scenarios/([\w-]+)\.toml|--like ([\w-]+)|Scenario\.example\(\"([\w-]+)\"\)")
-
-
-def about(text: str) -> str:
-    """What a scenario says of itself."""
-    return tomllib.loads(text).get("about", "")
 
 
 def opening(text: str) -> str:
@@ -38,14 +32,15 @@ def pages() -> dict[str, str]:
     index = "# Scenarios\n\nThe command has them built in: `flexsc new NAME --like SCENARIO` copies one.\n\n| scenario | shows |\n|---|---|\n"
     made = {}
     has_playground = (ROOT / "target/playground").is_dir()
-    for name, text in sorted(flexsc.examples().items()):
-        index += f"| [`{name}`]({name}.md) | {about(text)} |\n"
+    for name, about in sorted(flexsc.examples().items()):
+        text = (ROOT / f"scenarios/{name}.toml").read_text("utf-8")
+        index += f"| [`{name}`]({name}.md) | {about} |\n"
         there = f"[Open in the playground](../playground.md#{name}){{ .md-button }}\n\n" if has_playground else ""
         tiles = "".join(
             f"![{tile.title}](../gallery/{tile.name}.svg)\n\n" for tile in gallery.TILES if tile.scenario == name
         )
         made[f"examples/{name}.md"] = (
-            f"# {name}\n\n{about(text)}.\n\n{opening(text)}\n\n{there}{tiles}"
+            f"# {name}\n\n{about}.\n\n{opening(text)}\n\n{there}{tiles}"
             f"    flexsc new mine --like {name}\n\n<div data-search-exclude markdown>\n\n```toml\n{text.rstrip()}\n```\n\n</div>\n"
         )
     return {"examples/index.md": index} | made
