@@ -225,11 +225,13 @@ def extras() -> None:
     run(sys.executable, "tests/extras.py", built(), "", "plot")
 
 
-def site() -> None:
-    """The documentation: every tutorial runs, every link leads somewhere, and the search finds every key."""
+def site() -> str:
+    """The documentation: every tutorial runs, every link leads somewhere, the search finds every key, and the playground runs."""
     wait_for_wheel()
-    run(sys.executable, "site/build.py")
+    run(sys.executable, "site/build.py", "--playground")
     run(sys.executable, "tests/site_search.py")
+    printed = run(sys.executable, "tests/site_browser.py").strip().splitlines()
+    return f"the site in a browser: {printed[-1]}"
 
 
 def nastran() -> str:

@@ -346,3 +346,33 @@ fn requirements_are_drawn_first_under_their_names() {
     }
     dir.run("plot csv -o one --metric departure").exits(2).says(&["no metric `departure`", "arrival"]);
 }
+
+#[test]
+fn an_explorer_has_the_numbers_of_the_table_and_repeats_each_run() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    dir.run("simulate u.toml --runs 6 --table csv -o out").exits(0);
+    dir.run("plot out -o e.html").exits(0);
+    let page = dir.text("e.html");
+    assert!(!page.contains("http"), "a page that stands alone");
+    let data = page.split("const data = ").nth(1).expect("data").split(";\nconst").next().expect("an end");
+    let data: Json = serde_json::from_str(data).expect("an object");
+    let of = |name: &str| {
+        let columns = data["columns"].as_array().expect("columns");
+        columns.iter().find(|own| own["name"] == name).unwrap_or_else(|| panic!("{name}")).clone()
+    };
+    let late = of("envelope_late_mean_rad");
+    assert_eq!((late["isKey"].as_bool(), late["unit"].as_str()), (Some(false), Some("arcsec")));
+    for (shown, value) in late["values"].as_array().expect("values").iter().zip(column(
+        &dir,
+        "out/runs.csv",
+        "envelope_late_mean_rad",
+    )) {
+        let shown = shown.as_f64().expect("a number");
+        assert!((shown * ARCSEC / value - 1.0).abs() < 1e-12, "{shown} {value}");
+    }
+    let command = data["runs"][4]["command"].as_str().expect("a command").to_owned();
+    let words = command.strip_prefix("flexsc ").expect("a command of flexsc");
+    dir.run(words).exits(0);
+    let repeated = column(&dir, "out/run-4/runs.csv", "envelope_late_mean_rad");
+    assert_eq!(repeated, [column(&dir, "out/runs.csv", "envelope_late_mean_rad")[4]]);
+}

@@ -78,8 +78,8 @@ pub struct PlotArgs {
     /// More logs, overlaid on the first with one colour per log
     #[arg(value_name = "LOG")]
     others: Vec<PathBuf>,
-    /// Directory for the figures, created if missing, or one FILE.svg, .png or .pdf for all of them [default: beside the
-    /// log or in the campaign's directory]
+    /// Directory for the figures, created if missing, or one FILE.svg, .png or .pdf for all of them; of a campaign also FILE.html, a
+    /// page that explores it [default: beside the log or in the campaign's directory]
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Figures to draw [default: all of a log; the usual ones of a campaign]

@@ -2,6 +2,7 @@
 
 mod curve;
 mod distribution;
+mod explorer;
 mod fan;
 mod metric_column;
 mod parts;
@@ -24,7 +25,7 @@ use super::figure_name::FigureName;
 use crate::campaign::MAIN;
 use crate::error::CliError;
 use crate::figure_files::FigureTarget;
-use crate::{print, say};
+use crate::{out, print, say};
 use metric_column::MetricColumn;
 use table::CampaignRuns;
 
@@ -35,6 +36,9 @@ const WORST: usize = 3;
 
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let directory = args.path.as_path();
+    if let Some(out) = args.out.as_deref().filter(|out| out::ending(out) == Some("html")) {
+        return explore(args, out);
+    }
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
     let mut tables = table::read(directory, &files, &args.metric)?;
@@ -93,6 +97,22 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
         )));
     }
     target.save(&args.look.titled(figures), args.look.style()?, args.json)
+}
+
+/// Writes the explorer of the campaign in a directory.
+fn explore(args: &PlotArgs, out: &Path) -> Result<(), CliError> {
+    let directory = args.path.as_path();
+    let files = files(directory)?;
+    let mut tables = table::read(directory, &files, &args.metric)?;
+    tables.extend(parts::read(directory, &files, &args.metric)?);
+    let [runs] = &tables[..] else {
+        let why = format!("has {} campaigns, and an explorer shows one", tables.len());
+        return Err(CliError::Arguments(format!("{}: {why}", directory.display())));
+    };
+    let page = explorer::page(runs, directory)?;
+    crate::files::write(out, page.as_bytes(), args.force)?;
+    say!("{} ({:.0} kB)", out.display(), page.len() as f64 / 1e3);
+    Ok(())
 }
 
 /// Returns figures of a campaign from its columns: of one kind, or the default ones.

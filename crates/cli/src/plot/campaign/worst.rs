@@ -21,7 +21,7 @@ const ONE: [&str; 2] = ["nees_mean", "nis_mean"];
 const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_below_1pct_at_s"];
 
 /// Returns a measure of how bad a value is; `None` if the metric is neutral or has no value.
-fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
+pub fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
     let (name, value) = (metric.name.as_str(), metric.values[index]);
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
@@ -56,10 +56,7 @@ fn worst<'a>(
 ) -> Vec<WorstRun<'a>> {
     let ran = |index: &usize| runs.errors[*index].is_empty();
     let reported = |what, label, index: usize, value| {
-        let command = runs.scenario.as_ref().map(|(_, source)| match source {
-            ScenarioSource::File(path) => command(runs, directory, path, index),
-            ScenarioSource::Directory(path) => command_from(path, runs.numbers[index]),
-        });
+        let command = repeating_command(runs, directory, index);
         WorstRun { what, label, run: runs.numbers[index], value, command }
     };
     let all = 0..runs.numbers.len();
@@ -78,6 +75,15 @@ fn worst<'a>(
         }
     }
     worst
+}
+
+/// Returns the command that repeats a run with its log; `None` without the scenario.
+pub fn repeating_command(runs: &CampaignRuns, directory: &Path, index: usize) -> Option<String> {
+    let (_, source) = runs.scenario.as_ref()?;
+    Some(match source {
+        ScenarioSource::File(path) => command(runs, directory, path, index),
+        ScenarioSource::Directory(path) => command_from(path, runs.numbers[index]),
+    })
 }
 
 /// Returns the command that repeats a run, with its log and a table of its own.
