@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::axes_orientation::AxesOrientation;
 use super::clamped::{ClampedMode, antisymmetric_part};
 use super::drive::AppendageDrive;
-use super::fe_results::Units;
+use super::fe_units::FileUnits;
 use super::hinge::{Hinge, HingedBody};
 use super::mass::MassProperties;
 use super::plate::{Plate, PlateAxis, UniformPlate};
@@ -74,9 +74,11 @@ pub struct Appendage {
     /// Thermal bending in sunlight; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
-    /// Units of finite-element results, except for 42, whose files are in SI units; default: metres and kilograms.
+    /// Units of finite-element results, except for 42, whose files are in SI units: `m` (metres, kilograms), `mm` (millimetres,
+    /// tonnes), `in` (inches, pound-force seconds squared an inch), or `length` (`m`, `cm`, `mm`, `in`, `ft`) and `mass` (`kg`, `g`,
+    /// `t`, `lb`, `slug`, `slinch`); default: `m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub units: Option<Units>,
+    pub units: Option<FileUnits>,
 }
 
 impl Appendage {
