@@ -84,7 +84,8 @@ fn damaged_files_are_refused_with_their_lines() {
     refused(&rows(7), "at least 8 rows, got 7");
     refused("a,b,c\n", "line 1: must be a header `t,x,y,z`");
     refused("1,2,3\n", "line 1: must have 4 numbers, got 3");
-    refused(&rows(9).replace("180,", "120,"), "line 4: must have increasing times");
+    refused(&rows(9).replace("180,", "120,"), "line 4: must be at the position of line 3");
+    refused(&rows(9).replace("180,", "110,"), "line 4: must have increasing times");
     refused(&rows(9).replace("180,7e6", "180,x"), "line 4: must be a number, got `x`");
     refused(&rows(9).replace("180,7e6", "180,nan"), "line 4: must be a number, got `nan`");
     refused(&rows(9).replace("180,7e6", "180,1e300"), "line 4: must have times");

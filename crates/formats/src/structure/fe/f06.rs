@@ -185,7 +185,12 @@ impl Reader {
         let Some(row) = line.text.trim_start().strip_prefix('*').filter(|row| !row.starts_with('*')) else {
             return Ok(());
         };
-        let words: Vec<&str> = row.trim_end_matches('*').split_whitespace().collect();
+        // Stars alone are a line or a column of the frame.
+        let is_frame = |word: &&str| word.bytes().all(|byte| byte == b'*');
+        let words: Vec<&str> = row.split_whitespace().filter(|word| !is_frame(word)).collect();
+        if words.is_empty() {
+            return Ok(());
+        }
         let mut numbers = [0.0; 6];
         // Of a matrix without six columns, the first row has the mass.
         for (number, word) in numbers.iter_mut().zip(&words) {

@@ -15,6 +15,8 @@ use super::{FileMass, FileMode, FileResults, StructurePoint, lowest, tables::Par
 
 /// Tolerance of the normalisation and orthogonality of shapes in the mass of the structure.
 const NORMALISED: f64 = 1e-3;
+/// Displacement of a node at rest, of the largest: constraints of expanded beams leave rounding.
+const AT_REST: f64 = 1e-8;
 /// Distance of the centre of mass from where it should be, relative to the spread of the mass, up to which the origin is the root.
 const NEAR: f64 = 0.05;
 /// Tolerance by which a point of an element may be outside of it, relative to the element.
@@ -86,7 +88,10 @@ pub fn modes(
 
 /// Returns the least and greatest coordinates of the nodes that are at rest in all shapes.
 fn clamp(positions: &[Vector3<f64>], shapes: &[Vec<Vector3<f64>>]) -> Option<[Vector3<f64>; 2]> {
-    let at_rest = |node: &usize| shapes.iter().all(|shape| shape[*node] == Vector3::zeros());
+    let bounds: Vec<f64> =
+        shapes.iter().map(|shape| AT_REST * shape.iter().map(Vector3::amax).fold(0.0, f64::max)).collect();
+    let at_rest =
+        |node: &usize| shapes.iter().zip(&bounds).all(|(shape, bound)| shape[*node].amax() <= *bound);
     let held = (0..positions.len()).filter(at_rest).map(|node| positions[node]);
     held.map(|at| [at, at]).reduce(|[low, high], [at, _]| [low.inf(&at), high.sup(&at)])
 }

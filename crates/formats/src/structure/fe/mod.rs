@@ -3,6 +3,7 @@
 //! Modes are about the reference point of the file's participations, in its axes, and mass-normalised.
 
 mod calculix;
+mod craig_bampton;
 mod deck;
 mod element;
 mod f06;
@@ -21,6 +22,7 @@ use std::path::Path;
 
 use super::file::open_text_up_to;
 use super::mode_table::MOST_MODES;
+pub use craig_bampton::craig_bampton_modes;
 use tables::ParticipationTable;
 
 /// Largest size of a file (bytes): larger ones contain shapes or stresses of thousands of nodes, which are not used.

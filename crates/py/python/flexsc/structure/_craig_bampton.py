@@ -40,8 +40,8 @@ def appendage_from_craig_bampton(
         damping: Damping ratio of all modes, or one for each that is kept.
         positions: Where the nodes of the interface are, shape (nodes, 3).
         root: What `at` of the appendage places.
-        points: For each point, where it is, and the rows of the recovery matrix of its displacements, or of its
-            displacements and rotations: shape (3, rows) or (6, rows).
+        points: For each point, where it is, and the rows of the recovery matrix of its displacements, or of
+            its displacements and rotations: shape (3, rows) or (6, rows).
         name: Name of the appendage.
         keep: How many modes, those with the lowest frequencies; left out, all.
         length_unit: Length of the model's unit (m); 1e-3 for millimetres.
@@ -69,8 +69,8 @@ def appendage_from_craig_bampton(
     where = np.asarray(positions, dtype=np.float64)
     if where.ndim != 2 or where.shape[1:] != (3,) or len(held) != 6 * len(where):
         raise ValueError(
-            f"interface: must be six rows for each node of `positions`, got {len(held)} rows and positions of "
-            f"shape {where.shape}"
+            f"interface: must be six rows for each node of `positions`, got {len(held)} rows and positions "
+            f"of shape {where.shape}"
         )
     if len(set(held.tolist())) != len(held) or held.min() < 0 or held.max() >= rows or len(held) == rows:
         raise ValueError(f"interface: must be rows from 0 to {rows - 1}, each once and not all of them")
@@ -85,7 +85,9 @@ def appendage_from_craig_bampton(
     total = rigid.T @ mass[np.ix_(held, held)] @ rigid
     kilograms, centre, inertia = _body(total)
     if (least := float(np.linalg.eigvalsh(total - carried.T @ carried)[0])) < -CARRIED * np.abs(total).max():
-        raise ValueError(f"mass: modes must carry no more than the rigid mass, and {-least:g} is carried twice")
+        raise ValueError(
+            f"mass: modes must carry no more than the rigid mass, and {-least:g} is carried twice"
+        )
     zetas = _dampings(damping, keep)
     mass_root = float(np.sqrt(mass_unit))
     scale = np.array([1.0] * 3 + [1.0 / length_unit] * 3) / mass_root
@@ -93,7 +95,9 @@ def appendage_from_craig_bampton(
     for point, (at, recovery) in (points or {}).items():
         rows_of_point = np.asarray(recovery, dtype=np.float64)
         if rows_of_point.shape not in ((3, rows), (6, rows)):
-            raise ValueError(f"points: `{point}` must have a recovery matrix of shape (3, {rows}) or (6, {rows})")
+            raise ValueError(
+                f"points: `{point}` must have a recovery matrix of shape (3, {rows}) or (6, {rows})"
+            )
         placed.append({"name": point, "position": (length_unit * (np.asarray(at) - origin)).tolist()})
         recovered[point] = (rows_of_point[:, modal] @ shapes).T * scale[: len(rows_of_point)]
     modes = []
@@ -136,16 +140,18 @@ def _rigid_motions(arm: Numbers) -> Numbers:
 
 
 def _check_reduced(stiffness: Numbers, held: Any, modal: Any, rigid: Numbers) -> None:
-    """In a Craig-Bampton model modes strain nothing at the interface, and a rigid motion strains nothing at all."""
+    """In a Craig-Bampton model modes strain nothing at the interface, and a rigid motion strains nothing."""
     largest = float(np.abs(stiffness).max())
     if (coupled := float(np.abs(stiffness[np.ix_(modal, held)]).max())) > RIGID * largest:
         raise ValueError(
-            f"stiffness: must be 0 between interface and modes, got {coupled:g} of {largest:g}: rows of another "
-            f"order (`interface`), or matrices that are not reduced (`flexsc.appendage_from_matrices`)"
+            f"stiffness: must be 0 between interface and modes, got {coupled:g} of {largest:g}: rows of "
+            f"another order (`interface`), or matrices that are not reduced: "
+            f"`flexsc.appendage_from_matrices`"
         )
     # What the reduction leaves of large elements is small beside the modes.
     force = float(np.abs(stiffness[np.ix_(held, held)] @ rigid).max())
     if force > RIGID * largest * max(1.0, float(np.abs(rigid).max())):
         raise ValueError(
-            "stiffness: must meet no rigid motion of the interface: other `positions`, or another order of rows"
+            "stiffness: must meet no rigid motion of the interface: other `positions`, or another order of "
+            "rows"
         )

@@ -12,8 +12,8 @@ from flexsc.structure._punch import Solution
 if TYPE_CHECKING:
     Numbers = npt.NDArray[np.float64]
 
-# Momentum of a mode, of that of a rigid motion with its generalised mass: by the masses as Nastran lumps them,
-# and by equal parts at the corners where they are of other kinds.
+# Momentum of a mode, of that of a rigid motion with its generalised mass: by the masses as Nastran lumps
+# them, and by equal parts at the corners where they are of other kinds.
 EXACT, ROUGH = 1e-3, 0.1
 # A mode with as much is one of the rigid body.
 RIGID = 0.9
@@ -34,8 +34,9 @@ def check_free(path: Path, solution: Solution, elastic: npt.NDArray[np.bool_], b
     massive = {lump.grid for lump in lumps}
     if missing := sorted(massive - set(solution.shapes)):
         raise ValueError(
-            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, as its modes are "
-            f"told by them from those of a clamped structure, and has none at {', '.join(map(str, missing[:5]))}"
+            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, as they tell "
+            f"its modes from those of a clamped structure, and has none at "
+            f"{', '.join(map(str, missing[:5]))}"
         )
     positions, shapes = {}, {}
     for grid in massive:
@@ -45,11 +46,12 @@ def check_free(path: Path, solution: Solution, elastic: npt.NDArray[np.bool_], b
     sums = integrals_of(lumps, positions, shapes, np.zeros(3))
     norms = np.diagonal(sums.generalised)
     frequencies = solution.frequencies[elastic]
-    if bound == EXACT and (worst := float(np.abs(norms - 1.0).max())) > EXACT:
-        at = int(np.argmax(np.abs(norms - 1.0)))
+    at = int(np.argmax(np.abs(norms - 1.0)))
+    if bound == EXACT and abs(norms[at] - 1.0) > EXACT:
         raise ValueError(
-            f"{path}: shapes must be normalised by the masses of {deck}, and the mode at {frequencies[at]:g} rad/s "
-            f"has the generalised mass {norms[at]:.6g}, off by {worst:.1g}: another deck, density or normalisation"
+            f"{path}: shapes must be normalised by the masses of {deck}, and the mode at "
+            f"{frequencies[at]:g} rad/s has the generalised mass {norms[at]:.6g}, not 1: another deck, "
+            f"density or normalisation"
         )
     momenta = _momenta(sums) / np.sqrt(np.maximum(norms, np.finfo(np.float64).tiny))
     if not (momenta > bound).any():
@@ -68,8 +70,8 @@ def check_free(path: Path, solution: Solution, elastic: npt.NDArray[np.bool_], b
             f"{highest:g} rad/s are motions of the rigid body: give `lowest={1.05 * highest:.3g}`"
         )
     raise ValueError(
-        f"{found} has {momenta[at]:.2g} of the momentum of a rigid motion: supports, another deck, or masses that "
-        f"are not lumped at grid points"
+        f"{found} has {momenta[at]:.2g} of the momentum of a rigid motion: supports, another deck, or masses "
+        f"that are not lumped at grid points"
     )
 
 

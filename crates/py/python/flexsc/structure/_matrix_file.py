@@ -85,7 +85,9 @@ def _mtx(path: Path) -> dict[str, Any]:
         from scipy.sparse import coo_array
     except ImportError as error:
         if max(shape) > DENSE:
-            raise ImportError(f"matrices above {DENSE} rows need SciPy: pip install flexsc[matlab]") from error
+            raise ImportError(
+                f"matrices above {DENSE} rows need SciPy: pip install flexsc[matlab]"
+            ) from error
     else:
         if listed:
             return {"matrix": coo_array((values, (rows, columns)), shape=shape)}

@@ -97,8 +97,8 @@ def _read_op2(path: Path, subcase: int | None) -> Solution:
         op2 = reader.read_op2(str(path), debug=None, build_dataframe=False)
     except Exception as error:  # pyNastran's are of many kinds
         raise ValueError(
-            f"{path}: pyNastran cannot read it: {' '.join(str(error).split()) or type(error).__name__}: did the "
-            f"run end, and does it have normal modes (SOL 103)?"
+            f"{path}: pyNastran cannot read it: {' '.join(str(error).split()) or type(error).__name__}: did "
+            f"the run end, and does it have normal modes (SOL 103)?"
         ) from error
     # A key is the subcase, or begins with it.
     vectors = {key[0] if isinstance(key, tuple) else key: found for key, found in op2.eigenvectors.items()}
@@ -121,7 +121,7 @@ def _read_op2(path: Path, subcase: int | None) -> Solution:
         if hasattr(table, "generalized_mass") and set(numbers) <= set(table.mode)
     ]
     if not tables:
-        # Without the table of eigenvalues (LAMA), the masses of the bulk data show whether shapes are normalised.
+        # Without the table of eigenvalues (LAMA), the masses of the bulk data show how shapes are normalised.
         squares = np.asarray(found.eigns, dtype=np.float64)
         return Solution(np.sqrt(np.maximum(squares, 0.0)), _by_grid(found, np.ones(len(numbers))))
     row = {int(number): index for index, number in enumerate(tables[0].mode)}

@@ -83,7 +83,7 @@ def _matrix(name: str, matrix: Any) -> Numbers:
 
 
 class _Motions(NamedTuple):
-    """The poles of oscillations, right eigenvectors as columns, left ones as rows, and their condition number."""
+    """Poles of oscillations, right eigenvectors as columns, left ones as rows, and the condition number."""
 
     poles: Complex
     right: Complex

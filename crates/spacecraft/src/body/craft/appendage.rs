@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axes_orientation::AxesOrientation;
 use super::clamped::{ClampedMode, antisymmetric_part};
+use super::craig_bampton::CraigBampton;
 use super::drive::AppendageDrive;
 use super::fe_units::FileUnits;
 use super::hinge::{Hinge, HingedBody};
@@ -61,6 +62,10 @@ pub struct Appendage {
     /// is rigid.
     #[serde(default)]
     pub modes: ModeTable<ClampedMode>,
+    /// Craig-Bampton model in place of `modes`; `damping` is then needed, and `mass`, `centre` and `inertia` are compared
+    /// with it. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub craig_bampton: Option<CraigBampton>,
     /// Damping ratio of modes read from finite-element results, or a list with one for each; required where the
     /// file has none, as all but those of 42.
     #[serde(default, skip_serializing_if = "Option::is_none")]

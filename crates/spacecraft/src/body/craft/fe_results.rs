@@ -27,6 +27,9 @@ impl Appendage {
     /// The key, and the reason or the error in the file.
     pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), ConfigError> {
         self.modes.locate(directory);
+        if self.craig_bampton.is_some() {
+            return self.reduce(directory);
+        }
         let file = self.modes.file();
         let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::from_path(file)?))) else {
             self.no_keys_of_results()?;
@@ -81,6 +84,33 @@ impl Appendage {
         });
         let modes = modes.collect::<Result<Vec<_>, _>>()?;
         self.modes.fill(modes);
+        Ok(())
+    }
+
+    /// Takes the modes of the Craig-Bampton model, and their damping, in its place.
+    fn reduce(&mut self, directory: &Path) -> Result<(), ConfigError> {
+        let Some(mut model) = self.craig_bampton.take() else { return Ok(()) };
+        if self.modes.file().is_some() || !self.modes.is_empty() {
+            return Err(ConfigError::new(
+                "craig_bampton",
+                "must be left out beside `modes`: it has the modes",
+            ));
+        }
+        let within = |fault: ConfigError| fault.within("craig_bampton");
+        let results = model.results(directory, self.keep).map_err(within)?;
+        if let Some(mass) = results.mass {
+            self.weighs(&mass)?;
+        }
+        let dampings = self.dampings(&results.modes)?;
+        let modes = results.modes.iter().zip(dampings).enumerate().map(|(index, (mode, damping))| {
+            let reported =
+                |why| ConfigError::new("craig_bampton", format!("mode {} of the lowest: {why}", index + 1));
+            self.clamped(mode, damping).map_err(reported)
+        });
+        let modes = modes.collect::<Result<Vec<_>, _>>()?;
+        self.modes.fill(modes);
+        // From here on they are modes of a table, which contains this itself.
+        (self.keep, self.units, self.damping) = (None, None, None);
         Ok(())
     }
 
