@@ -32,7 +32,7 @@ fn read(name: &str, text: &str) -> Result<(), String> {
         dir.write(&deck.to_string_lossy(), text);
     }
     let format = ResultFormat::from_path(Path::new(name)).expect("a format");
-    format.read(&dir.path(name), None, &[]).map(drop)
+    format.read(&dir.path(name), None, &[], None).map(drop)
 }
 
 fn golden(name: &str) -> String {

@@ -28,6 +28,7 @@ mod frequency_factor;
 mod gimbals;
 mod hinges;
 mod imbalance;
+mod import_page;
 mod initial_motion;
 mod invariants;
 mod line_of_sight;

@@ -48,7 +48,7 @@ fn an_ephemeris_with_wrong_rows_or_gaps_is_refused_with_the_line() {
             ephemeris(without(1990.0, 4370.0), unchanged),
             ["line 41: the next row comes 2400 s later", "known to"],
         ),
-        (ephemeris(sparse(600.0), unchanged), ["must be within 1 km", "too far apart"]),
+        (ephemeris(sparse(600.0), unchanged), ["orbit.csv: line", "rows are too far apart"]),
     ] {
         dir.write("orbit.csv", table);
         dir.run("check study.toml").exits(2).says(&["`environment.orbit.ephemeris`", words[0], words[1]]);

@@ -163,7 +163,7 @@ fn units_of_others_are_suggested() {
         ("120.0\n", "\"120 secs\"\n", "s"),
         ("frequency = 3.141592653589793", "frequency = \"0.5 hz\"", "Hz"),
         ("0.017453292519943295", "\"10 RPM\"", "rpm"),
-        ("0.017453292519943295", "\"10 deg/hr\"", "deg/h"),
+        ("0.017453292519943295", "\"10 deg/hrs\"", "deg/h"),
     ] {
         let reported = Scenario::parse("x", &PLAIN.replacen(from, to, 1)).expect_err("refused").to_string();
         assert!(reported.contains(&format!("did you mean `{meant}`?")), "{reported}");

@@ -243,9 +243,102 @@ def test_files_of_matrices(kind: str, tmp_path: Path) -> None:
         found = flexsc.read_matrices(path)
         assert sorted(found) == ["KGG", "MGG"]
     else:
-        pytest.importorskip("scipy.io").mmwrite(path, mass, precision=17)
-        found = {"MGG": flexsc.read_matrices(path)["matrix"]}
+        rows = [
+            f"{i + 1} {j + 1} {mass[i, j]:.17e}".replace("e", "D")
+            for i, j in zip(*np.nonzero(mass), strict=True)
+        ]
+        head = f"%%MatrixMarket matrix coordinate real general\n{len(mass)} {len(mass)} {len(rows)}\n"
+        path.write_text(head + "\n".join(rows) + "\n")
+        matrix = flexsc.read_matrices(path)["matrix"]
+        found = {"MGG": matrix.toarray() if hasattr(matrix, "toarray") else matrix}
     assert np.array_equal(found["MGG"], mass)
+
+
+def test_a_symmetric_file_has_one_triangle(tmp_path: Path) -> None:
+    path = tmp_path / "both.mtx"
+    text = "%%MatrixMarket matrix coordinate real symmetric\n2 2 4\n1 1 4\n2 1 1\n1 2 1\n2 2 3\n"
+    path.write_text(text)
+    with pytest.raises(ValueError, match="line 5: must not mirror line 4"):
+        flexsc.read_matrices(path)
+    path.write_text(text.replace("2 2 4\n", "2 2 3\n", 1).replace("1 2 1\n", ""))
+    matrix = flexsc.read_matrices(path)["matrix"]
+    assert np.array_equal(
+        matrix.toarray() if hasattr(matrix, "toarray") else matrix, [[4.0, 1.0], [1.0, 3.0]]
+    )
+
+
+def reduced() -> tuple[Numbers, Numbers, Numbers]:
+    """The cantilever of these tests as a Craig-Bampton model of four modes, with the shapes of its modes."""
+    mass, stiffness, positions = beam()
+    inside = np.arange(6, len(mass))
+    part = np.ix_(inside, inside)
+    lower = np.linalg.cholesky(mass[part] + 1e-12 * np.eye(len(inside)))
+    squares, vectors = np.linalg.eigh(np.linalg.solve(lower, np.linalg.solve(lower, stiffness[part]).T))
+    modes = np.linalg.solve(lower.T, vectors[:, :4])
+    rigid = np.vstack([np.eye(6)] * len(positions))
+    for at, place in enumerate(positions):
+        rigid[6 * at : 6 * at + 3, 3:] = np.cross(np.eye(3), place - positions[0]).T
+    basis = np.zeros((len(mass), 10))
+    basis[:, :6] = rigid
+    basis[inside, 6:] = modes
+    assert (squares[:4] > 0.0).all()
+    return basis.T @ mass @ basis, basis.T @ stiffness @ basis, basis
+
+
+def test_a_craig_bampton_model_is_its_structure() -> None:
+    mass, stiffness, positions = beam()
+    reduced_mass, reduced_stiffness, basis = reduced()
+    tip = len(positions) - 1
+    whole = flexsc.appendage_from_matrices(
+        mass, stiffness, positions, {"tip": tip}, clamped=[0], damping=0.01, keep=4, root=0
+    )
+    recovery = basis[6 * tip : 6 * tip + 6]
+    order = [6, 7, 8, 9, 0, 1, 2, 3, 4, 5]
+    found = flexsc.appendage_from_craig_bampton(
+        reduced_mass[np.ix_(order, order)],
+        reduced_stiffness[np.ix_(order, order)],
+        [4, 5, 6, 7, 8, 9],
+        positions=[positions[0]],
+        root=positions[0],
+        points={"tip": (positions[tip], recovery[:, order])},
+        damping=0.01,
+    )
+    for key in ("mass", "centre", "inertia"):
+        np.testing.assert_allclose(found[key], whole[key], rtol=1e-6, atol=1e-6)
+    for own, expected in zip(found["modes"], whole["modes"], strict=True):
+        assert own["frequency"] == pytest.approx(expected["frequency"], rel=1e-6)
+        t, r = (np.array([mode[key] for mode in (own, expected)]) for key in ("translation", "rotation"))
+        np.testing.assert_allclose(
+            np.linalg.norm(t, axis=1)[0], np.linalg.norm(t, axis=1)[1], rtol=1e-5, atol=1e-6
+        )
+        np.testing.assert_allclose(
+            np.linalg.norm(r, axis=1)[0], np.linalg.norm(r, axis=1)[1], rtol=1e-5, atol=1e-6
+        )
+        tips = [np.linalg.norm(mode["shapes"]["tip"]["translation"]) for mode in (own, expected)]
+        assert tips[0] == pytest.approx(tips[1], rel=1e-4)
+
+
+def test_matrices_that_are_not_reduced_are_told() -> None:
+    mass, stiffness, _ = reduced()
+
+    def told(**keys: Any) -> str:
+        given: dict[str, Any] = {"mass": mass, "stiffness": stiffness, "damping": 0.01} | keys
+        with pytest.raises(ValueError, match=":") as error:
+            flexsc.appendage_from_craig_bampton(**given)
+        return str(error.value)
+
+    coupled = stiffness.copy()
+    coupled[0, 6] = coupled[6, 0] = 1.0
+    assert "must be 0 between interface and modes" in told(stiffness=coupled)
+    grounded = stiffness + np.diag([5.0] * 6 + [0.0] * 4)
+    assert "must meet no rigid motion" in told(stiffness=grounded)
+    assert "interface: must be six rows for each node" in told(interface=[0, 1, 2])
+    assert "interface: must be rows from 0 to 9" in told(interface=[0, 1, 2, 3, 4, 10])
+    heavier = mass.copy()
+    heavier[:6, 6:] *= 3.0
+    heavier[6:, :6] *= 3.0
+    assert "carried twice" in told(mass=heavier)
+    assert "recovery matrix of shape" in told(points={"tip": ([0, 0, 0], np.eye(3))})
 
 
 def test_files_that_hold_none_are_told(tmp_path: Path) -> None:

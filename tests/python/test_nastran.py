@@ -34,7 +34,28 @@ ENDDATA
 FREQUENCIES = (0.0, 1e-4, 1.5, 4.0)
 MASSES = (1.0, 1.0, 4.0, 0.25)
 GRIDS = (10, 20)
-SHAPES = np.random.default_rng(3).uniform(-1.0, 1.0, (4, 2, 6)).astype(np.float32).astype(np.float64)
+
+
+def free_shapes() -> Numbers:
+    """Two motions of the rigid body and two elastic ones, without momentum in the masses of the bulk data."""
+    arm = np.array([3000.0, 1000.0, 500.0])
+    mass = np.diag([2.0] * 3 + [4e6] * 3 + [1.0] * 3 + [0.0] * 3)
+    motions = np.vstack([np.eye(6), np.eye(6)])
+    motions[6:9, 3:] = np.cross(np.eye(3), arm).T
+    drawn = (
+        np.random.default_rng(3).uniform(-1.0, 1.0, (12, 2)) * np.tile(np.repeat([1.0, 1e-3], 3), 2)[:, None]
+    )
+    elastic = drawn - motions @ np.linalg.solve(motions.T @ mass @ motions, motions.T @ mass @ drawn)
+    rigid = motions[:, :2]
+    both = np.column_stack([rigid / np.sqrt(3.0), elastic])
+    both[:, 2:] *= np.sqrt(np.array(MASSES[2:]) / np.diagonal(elastic.T @ mass @ elastic))
+    rows = both.T.reshape(4, 2, 2, 3).copy()
+    # Of grid point 20 in system 5, whose x is the basic y and whose y the basic -x.
+    rows[:, 1] = np.stack([rows[:, 1, :, 1], -rows[:, 1, :, 0], rows[:, 1, :, 2]], axis=-1)
+    return rows.reshape(4, 2, 6).astype(np.float32).astype(np.float64)
+
+
+SHAPES = free_shapes()
 POINTS = {"bus": 10, "tip": 20}
 
 
@@ -44,9 +65,13 @@ def op2(
     frequencies: Sequence[float] = FREQUENCIES,
     masses: Sequence[float] = MASSES,
     grids: Sequence[int] = GRIDS,
-    shapes: Numbers = SHAPES,
+    shapes: Numbers | None = None,
+    table: bool = True,
+    approach: int = 22,
 ) -> Path:
     """An OP2 file of eigenvalues and eigenvectors: Fortran records, tables of numbered ones."""
+
+    shapes = SHAPES if shapes is None else shapes
 
     def words(*numbers: int) -> bytes:
         return b"".join(struct.pack("<3i", 4, number, 4) for number in numbers)
@@ -54,7 +79,7 @@ def op2(
     def record(data: bytes) -> bytes:
         return struct.pack("<i", len(data)) + data + struct.pack("<i", len(data))
 
-    def table(name: str, records: list[bytes]) -> bytes:
+    def named(name: str, records: list[bytes]) -> bytes:
         title = name.ljust(8).encode()
         head = words(2) + record(title) + words(-1, 7) + record(struct.pack("<7i", 102, 0, 0, 0, 512, 0, 0))
         head += words(-2, 1, 0, 7) + record(title + struct.pack("<5i", 1, 1, 20, 0, 1))
@@ -76,7 +101,7 @@ def op2(
         for at, w in enumerate(frequencies):
             cycles = w / (2 * np.pi)
             vectors.append(
-                identification(w1=22, w2=7, w4=subcase, w5=at + 1, w6=w * w, w7=cycles, w9=1, w10=8)
+                identification(w1=approach, w2=7, w4=subcase, w5=at + 1, w6=w * w, w7=cycles, w9=1, w10=8)
             )
             rows = zip(grids, shapes[at], strict=True)
             vectors.append(b"".join(struct.pack("<2i6f", 10 * grid + 2, 1, *row) for grid, row in rows))
@@ -85,7 +110,7 @@ def op2(
     )
     head += words(2) + record(b"XXXXXXXX") + words(-1, 0)
     values = [identification(w1=21, w2=6, w4=1, w10=7), b"".join(map(eigenvalue, range(len(frequencies))))]
-    path.write_bytes(head + table("LAMA", values) + table("OUGV1", vectors) + words(0))
+    path.write_bytes(head + (named("LAMA", values) if table else b"") + named("OUGV1", vectors) + words(0))
     return path
 
 
@@ -123,10 +148,10 @@ def test_shapes_are_mass_normalised_and_in_si(
     scale = np.array([1.0] * 3 + [1e3] * 3) / np.sqrt(1e3)
     for mode, mass in ((0, 4.0), (1, 0.25)):
         bus, tip = SHAPES[2 + mode] / np.sqrt(mass) * scale
-        np.testing.assert_allclose(structure.shapes["bus"][mode], bus, rtol=tolerance)
+        np.testing.assert_allclose(structure.shapes["bus"][mode], bus, rtol=tolerance, atol=1e-9)
         # The axes of system 5: x is the basic y, y the basic -x.
         turned = [-tip[1], tip[0], tip[2], -tip[4], tip[3], tip[5]]
-        np.testing.assert_allclose(structure.shapes["tip"][mode], turned, rtol=tolerance, atol=1e-12)
+        np.testing.assert_allclose(structure.shapes["tip"][mode], turned, rtol=tolerance, atol=1e-9)
     np.testing.assert_allclose(structure.positions["bus"], [-1.0, -1.0 / 3.0, -1.0 / 6.0])
     np.testing.assert_allclose(structure.positions["tip"], [2.0, 2.0 / 3.0, 1.0 / 3.0])
     inertia = 4e3 * np.eye(3)
@@ -156,6 +181,55 @@ def test_a_scenario_of_it_runs(tmp_path: Path, bulk: Path) -> None:
     run = scenario.simulate(log="none")
     assert run.metrics["firings"] > 0
     assert run.metrics["elastic_energy_peak_j"] > 0.0
+
+
+def test_modes_with_momentum_are_refused(tmp_path: Path, bulk: Path) -> None:
+    run = op2(tmp_path / "noise.op2", frequencies=(0.02, 0.11, 1.5, 4.0))
+    with pytest.raises(
+        ValueError, match=r"2 up to 0.11 rad/s are motions of the rigid body: give `lowest=0.11[56]`"
+    ):
+        flexsc.from_nastran(run, bulk, POINTS)
+    assert len(flexsc.from_nastran(run, bulk, POINTS, lowest=0.116).frequencies) == 2
+    held = SHAPES.copy()
+    held[:, 0] = 0.0
+    held /= np.sqrt(np.sum(held[:, 1, :3] ** 2, axis=1))[:, None, None] / np.sqrt(MASSES)[:, None, None]
+    with pytest.raises(ValueError, match=r"at 1.5 rad/s has momentum: .* `flexsc.appendage_from_nastran`"):
+        flexsc.from_nastran(op2(tmp_path / "held.op2", shapes=held), bulk, POINTS)
+    pushed = SHAPES.copy()
+    pushed[2, :, 2] += 0.02
+    with pytest.raises(ValueError, match=r"at 1.5 rad/s has 0.0\d+ of the momentum|generalised mass"):
+        flexsc.from_nastran(op2(tmp_path / "pushed.op2", shapes=pushed), bulk, POINTS)
+    scaled = op2(tmp_path / "scaled.op2", masses=(1.0,) * 4)
+    with pytest.raises(ValueError, match=r"the mode at 1.5 rad/s has the generalised mass 4"):
+        flexsc.from_nastran(scaled, bulk, POINTS)
+    with pytest.raises(ValueError, match=r"`DISPLACEMENT = ALL`, .* and has none at 20"):
+        flexsc.from_nastran(op2(tmp_path / "part.op2", grids=(10,), shapes=SHAPES[:, :1]), bulk, {"bus": 10})
+    # Coupled masses have no lumps: in equal parts they show a motion of the rigid body all the same.
+    bulk.write_text(BULK.replace("ENDDATA", "PARAM,COUPMASS,1\nENDDATA"))
+    with pytest.raises(ValueError, match=r"motions of the rigid body"):
+        flexsc.from_nastran(run, bulk, POINTS)
+
+
+def test_without_its_table_of_eigenvalues_a_file_is_read(tmp_path: Path, bulk: Path) -> None:
+    whole = op2(tmp_path / "run.op2")
+    unit = SHAPES / np.sqrt(MASSES)[:, None, None]
+    bare = op2(tmp_path / "bare.op2", masses=(1.0,) * 4, shapes=unit, table=False)
+    assert b"LAMA" not in bare.read_bytes()
+    assert b"LAMA" in whole.read_bytes()
+    expected = flexsc.from_nastran(whole, bulk, POINTS)
+    found = flexsc.from_nastran(bare, bulk, POINTS)
+    np.testing.assert_allclose(found.frequencies, expected.frequencies, rtol=1e-6)
+    np.testing.assert_allclose(found.shapes["tip"], expected.shapes["tip"], rtol=1e-5, atol=1e-9)
+
+
+def test_other_runs_are_named(tmp_path: Path, bulk: Path) -> None:
+    torn = tmp_path / "torn.op2"
+    torn.write_bytes(op2(tmp_path / "run.op2").read_bytes()[:700])
+    with pytest.raises(ValueError, match=r"pyNastran cannot read it|no eigenvectors|has none"):
+        flexsc.from_nastran(torn, bulk, POINTS)
+    buckling = op2(tmp_path / "buckling.op2", approach=83)
+    with pytest.raises(ValueError, match=r"has those of buckling|pyNastran cannot read it|has none"):
+        flexsc.from_nastran(buckling, bulk, POINTS)
 
 
 def test_what_the_files_do_not_tell_is_refused(tmp_path: Path, bulk: Path) -> None:

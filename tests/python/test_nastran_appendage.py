@@ -378,3 +378,33 @@ def test_what_the_files_do_not_tell_is_refused(tmp_path: Path) -> None:
     )
     refused("CONM1 9: must be a CONM2", deck=deck.replace("SPC1 ", "CONM1,9,14,,1.\nSPC1 "))
     refused("model.bdf: pyNastran cannot read it", deck=deck.replace("0.5000", "0.5.00"))
+
+
+def test_a_beam_lumps_half_of_its_torsional_inertia_at_each_end(tmp_path: Path) -> None:
+    """A shaft along x: the closed form of two freedoms, with rho (I1 + I2) L/2 at both ends of a CBEAM."""
+    radius, length, tip = 0.02, 0.5, 5e-5
+    polar = np.pi * radius**4 / 2
+    stiffness, lump = 26.6e9 * polar / length, 2700.0 * polar * length / 2
+    m, k = np.diag([2 * lump, lump + tip]), stiffness * np.array([[2.0, -1.0], [-1.0, 1.0]])
+    half = np.diag(1.0 / np.sqrt(np.diagonal(m)))
+    squares, vectors = np.linalg.eigh(half @ k @ half)
+    turns = half @ vectors
+    (tmp_path / "shaft.bdf").write_text(
+        "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,0.5,0.,0.\nGRID,3,,1.,0.,0.\n"
+        "CBEAM,1,1,1,2,0.,1.,0.\nCBEAM,2,1,2,3,0.,1.,0.\nPBEAML,1,1,,ROD\n,0.02\nMAT1,1,7.E10,2.66E10,,2700.\n"
+        "CONM2,9,3,,1.5\n,5.E-5,,1.E-4,,,1.E-4\nSPC1,1,123456,1\nENDDATA\n"
+    )
+    lines = ["$EIGENVECTOR", "$REAL OUTPUT", "$SUBCASE ID =           1"]
+    for mode in range(2):
+        lines.append(f"$EIGENVALUE = {squares[mode]:.7E}  MODE = {mode + 1:5d}")
+        for grid, turn in ((1, 0.0), (2, turns[0, mode]), (3, turns[1, mode])):
+            lines.append(f"{grid:10d}       G" + f"{0.0:18.6E}" * 3)
+            lines.append("-CONT-            " + f"{turn:18.6E}" + f"{0.0:18.6E}" * 2)
+    (tmp_path / "shaft.pch").write_text(
+        "".join(f"{line:72s}{number:8d}\n" for number, line in enumerate(lines, 1))
+    )
+    shaft = flexsc.appendage_from_nastran(
+        tmp_path / "shaft.pch", tmp_path / "shaft.bdf", damping=0.01, root=1
+    )
+    for mode, about in zip(shaft["modes"], (m @ turns).sum(axis=0), strict=True):
+        np.testing.assert_allclose(mode["rotation"], [about, 0.0, 0.0], rtol=2e-6, atol=1e-12)

@@ -32,12 +32,13 @@ impl CelestialFrame {
         (Self::Tod, "TOD", "TOD_EARTH"),
     ];
 
-    /// Returns the frame of a name in a message.
+    /// Returns the frame of a name in a message, in letters of either case.
     pub fn named(name: &str) -> Option<Self> {
-        if name == "J2000" {
+        let is = |other: &str| name.eq_ignore_ascii_case(other);
+        if is("J2000") {
             return Some(Self::Eme2000);
         }
-        let is_named = |(_, orbit, attitude): &&(Self, &str, &str)| name == *orbit || name == *attitude;
+        let is_named = |(_, orbit, attitude): &&(Self, &str, &str)| is(orbit) || is(attitude);
         Self::ALL.iter().find(is_named).map(|(frame, ..)| *frame)
     }
 

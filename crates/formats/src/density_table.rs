@@ -11,6 +11,8 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::foreign_file;
+use crate::number::real;
 use crate::structure::open_text_up_to;
 
 /// Largest number of rows.
@@ -41,8 +43,11 @@ impl DensityTable {
     /// The error in the file, with its line.
     pub fn read(&mut self) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
-        let reported = |why: String| format!("cannot be used: {file}: {why}");
-        let rows = open_text_up_to(Path::new(file), LONGEST).and_then(read).map_err(reported)?;
+        let path = Path::new(file);
+        let rows = open_text_up_to(path, LONGEST).and_then(read).map_err(|why| {
+            let why = foreign_file::refusal(path, &[], "CSV rows of height and density", why);
+            format!("cannot be used: {file}: {why}")
+        })?;
         self.rows = Arc::new(rows);
         Ok(())
     }
@@ -100,14 +105,16 @@ fn read(file: impl BufRead) -> Result<Vec<[f64; 2]>, String> {
             continue;
         }
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        if std::mem::take(&mut is_first) && fields == ["height", "density"] {
+        if std::mem::take(&mut is_first)
+            && fields.iter().map(|field| field.to_ascii_lowercase()).eq(["height", "density"])
+        {
             continue;
         }
         let [height, density] = fields[..] else {
             return Err(format!("line {number}: must have a height (m) and a density (kg/m³), got `{line}`"));
         };
         let parsed = |field: &str| {
-            field.parse::<f64>().map_err(|_| format!("line {number}: must be a number, got `{field}`"))
+            real(field).ok_or_else(|| format!("line {number}: must be a number, got `{field}`"))
         };
         rows.push([parsed(height)?, parsed(density)?]);
         places.push(number);
@@ -188,7 +195,7 @@ mod tests {
         refused("", "from 2 to 10000 rows, got 0");
         refused("1e5,5e-7\n1e5,3e-10\n", "line 2: must have increasing heights");
         refused("1e5,5e-7\n2e5,0\n", "line 2: must have a positive density");
-        refused("1e5,nan\n2e5,1e-9\n", "line 1: must have a positive density");
+        refused("1e5,nan\n2e5,1e-9\n", "line 1: must be a number, got `nan`");
         refused("1e300,1e-9\n", "line 1: must have a height");
         refused("1e5\n", "line 1: must have a height (m) and a density");
         refused("1e5,x\n", "line 1: must be a number, got `x`");

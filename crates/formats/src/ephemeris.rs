@@ -18,6 +18,8 @@ use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::celestial_frame::CelestialFrame;
+use crate::foreign_file;
+use crate::number::real;
 use crate::structure::open_text_up_to;
 
 /// Least number of rows, those of one polynomial.
@@ -29,6 +31,9 @@ const LONGEST: u64 = 256 << 20;
 /// Largest distance (m) and time (s) of a row.
 const FARTHEST: f64 = 1e15;
 
+/// Distance (m) of two positions at one date up to which they are one, and change of the velocity (m/s) from which it is a burn.
+const SAME: [f64; 2] = [1.0, 1e-3];
+
 /// Time (s) and position (m) of each row.
 type Rows = Vec<[f64; 4]>;
 
@@ -36,12 +41,58 @@ type Rows = Vec<[f64; 4]>;
 #[derive(Debug, Default, PartialEq)]
 struct StateTable {
     rows: Rows,
+    /// Velocity (m/s) of each row, if the file has that of all of them.
+    velocities: Vec<[f64; 3]>,
     /// Line of each row, of rows in a file.
     lines: Vec<usize>,
+    /// Lines at which the velocity jumps.
+    burns: Vec<usize>,
     /// Date (ns after 1970, UTC) of the time 0 of the rows, if they have dates.
     epoch_ns: Option<u64>,
     /// Axes of the rows, if the file names them.
     frame: Option<CelestialFrame>,
+}
+
+impl StateTable {
+    /// Appends a row of a file, unless it repeats the last one, as tools write at the end of a segment and at a burn.
+    ///
+    /// # Errors
+    /// Two positions at one instant, and too many rows.
+    fn push(&mut self, row: [f64; 4], velocity: Option<[f64; 3]>, line: usize) -> Result<(), String> {
+        if let (Some(last), Some(before)) = (self.rows.last(), self.lines.last())
+            && last[0] == row[0]
+        {
+            let far = distance(&last[1..], &row[1..]);
+            if far > SAME[0] {
+                return Err(format!(
+                    "line {line}: must be at the position of line {before}, which has the same date, and is {far:.1} m away"
+                ));
+            }
+            // After a burn the velocity is the new one.
+            if let (Some(new), Some(old)) = (velocity, self.velocities.last_mut()) {
+                self.burns.extend((distance(&new, &*old) > SAME[1]).then_some(line));
+                *old = new;
+            }
+            return Ok(());
+        }
+        if self.rows.len() == MOST {
+            return Err(format!("line {line}: must have at most {MOST} rows"));
+        }
+        // Velocities count where all rows have them.
+        if let Some(velocity) = velocity.filter(|_| self.velocities.len() == self.rows.len()) {
+            self.velocities.push(velocity);
+        } else {
+            self.velocities.clear();
+        }
+        self.rows.push(row);
+        self.lines.push(line);
+        Ok(())
+    }
+}
+
+/// Returns the distance of two points.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    f64::sqrt(a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum())
 }
 
 /// Positions at instants, or the path of the file that contains them.
@@ -71,7 +122,11 @@ impl EphemerisTable {
             self.table = other.table.clone();
             return Ok(());
         }
-        let table = read_file(Path::new(file)).map_err(|why| format!("cannot be used: {file}: {why}"))?;
+        let path = Path::new(file);
+        let table = read_file(path).map_err(|why| {
+            let reads = "CSV rows t, x, y, z and an OEM in keyword-value notation";
+            format!("cannot be used: {file}: {}", foreign_file::refusal(path, &["OEM"], reads, why))
+        })?;
         self.table = Arc::new(table);
         Ok(())
     }
@@ -103,6 +158,16 @@ impl EphemerisTable {
         let Some(own) = own else { return Some(rows.clone()) };
         let shift = (i128::from(*own) - i128::from(epoch_ns?)) as f64 / 1e9;
         Some(rows.iter().map(|[t, x, y, z]| [t + shift, *x, *y, *z]).collect())
+    }
+
+    /// Returns the velocities (m/s) of the rows, if their file has them.
+    pub fn velocities(&self) -> Option<&[[f64; 3]]> {
+        Some(&self.table.velocities[..]).filter(|velocities| velocities.len() == self.table.rows.len())
+    }
+
+    /// Returns the lines of a file at which the velocity jumps while the position stays.
+    pub fn burns(&self) -> &[usize] {
+        &self.table.burns
     }
 
     /// Returns the place of a row, for messages: its line in the file, or its number in the scenario.
@@ -193,8 +258,9 @@ fn read_table(lines: Lines<'_>) -> Result<StateTable, String> {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
         if columns == 0 {
             columns = fields.len();
-            if fields.first().is_some_and(|first| first.parse::<f64>().is_err()) {
-                if fields.len() < 4 || fields[..4] != ["t", "x", "y", "z"] {
+            if fields.first().is_some_and(|first| real(first).is_none()) {
+                let names = fields.iter().take(4).map(|name| name.to_ascii_lowercase());
+                if !names.eq(["t", "x", "y", "z"]) {
                     return Err(format!(
                         "line {number}: must be a header `t,x,y,z`, or numbers, got `{line}`"
                     ));
@@ -206,11 +272,8 @@ fn read_table(lines: Lines<'_>) -> Result<StateTable, String> {
             let expected = if columns < 4 { 4 } else { columns };
             return Err(format!("line {number}: must have {expected} numbers, got {}", fields.len()));
         }
-        table.rows.push(numbers(&fields[..4]).map_err(|why| format!("line {number}: {why}"))?);
-        table.lines.push(number);
-        if table.rows.len() > MOST {
-            return Err(format!("line {number}: must have at most {MOST} rows"));
-        }
+        let row = numbers(&fields[..4]).map_err(|why| format!("line {number}: {why}"))?;
+        table.push(row, None, number)?;
     }
     Ok(table)
 }
@@ -219,7 +282,7 @@ fn read_table(lines: Lines<'_>) -> Result<StateTable, String> {
 fn numbers(fields: &[&str]) -> Result<[f64; 4], String> {
     let mut found = [0.0; 4];
     for (found, field) in found.iter_mut().zip(fields) {
-        *found = field.parse().map_err(|_| format!("must be a number, got `{field}`"))?;
+        *found = real(field).ok_or_else(|| format!("must be a number, got `{field}`"))?;
     }
     Ok(found)
 }

@@ -14,6 +14,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::foreign_file;
 use crate::structure::open_text_up_to;
 
 /// Largest size of a file (bytes).
@@ -141,8 +142,12 @@ impl HarmonicTable {
             self.contents = other.contents.clone();
             return Ok(());
         }
-        let contents = open_text_up_to(Path::new(file), LONGEST).and_then(coefficient_file::read);
-        self.contents = Arc::new(contents.map_err(|why| format!("cannot be used: {file}: {why}"))?);
+        let path = Path::new(file);
+        let contents = open_text_up_to(path, LONGEST).and_then(coefficient_file::read).map_err(|why| {
+            let reads = "coefficients (.shc, .COF, or the columns of the IGRF)";
+            format!("cannot be used: {file}: {}", foreign_file::refusal(path, &[], reads, why))
+        })?;
+        self.contents = Arc::new(contents);
         Ok(())
     }
 

@@ -1,12 +1,16 @@
 //! Input files of flexsc: TOML documents with errors that point at the value, and structures from files of other
 //! programs.
 
+pub mod calendar_date;
 pub mod celestial_frame;
 pub mod count;
 pub mod density_table;
 pub mod document;
+pub mod element_message;
 pub mod ephemeris;
+pub mod foreign_file;
 pub mod harmonic_table;
+pub mod number;
 pub mod read_files;
 pub mod reader_units;
 pub mod structure;

@@ -21,6 +21,7 @@ mod handover;
 mod instants;
 mod linear;
 mod log;
+mod matrix_file;
 mod mcap_log;
 mod parts;
 mod run_logs;
@@ -84,6 +85,8 @@ mod _native {
     use super::linear::{common_margins, linearise, sampled};
     #[pymodule_export]
     use super::log::Log;
+    #[pymodule_export]
+    use super::matrix_file::matrix_market;
     #[pymodule_export]
     use super::mcap_log::to_mcap;
     #[pymodule_export]

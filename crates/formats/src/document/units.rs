@@ -25,6 +25,10 @@ const SYMBOLS: &[(&str, f64, [i16; 5], bool)] = &[
     ("min", 60.0, [0, 0, 1, 0, 0], false),
     ("h", 3600.0, [0, 0, 1, 0, 0], false),
     ("d", 86400.0, [0, 0, 1, 0, 0], false),
+    // As data sheets write them.
+    ("sec", 1.0, [0, 0, 1, 0, 0], false),
+    ("hr", 3600.0, [0, 0, 1, 0, 0], false),
+    ("day", 86400.0, [0, 0, 1, 0, 0], false),
     ("deg", DEGREE, [0, 0, 0, 0, 1], false),
     ("\u{b0}", DEGREE, [0, 0, 0, 0, 1], false),
     ("arcmin", DEGREE / 60.0, [0, 0, 0, 0, 1], false),
@@ -154,9 +158,13 @@ fn word_meant(word: &str) -> Option<String> {
 }
 
 impl Unit {
-    /// Parses a unit, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash applies to the next factor only.
+    /// Parses a unit, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash applies to the next factor only. Data sheets'
+    /// `deg/√h`, `N-m`, `N.m` and `kgm2` are units too.
     pub fn parse(text: &str) -> Option<Self> {
-        let mut rest = Rest(text.trim());
+        let apart = ["2", "\u{b2}", "^2"].into_iter().fold(text.trim().to_owned(), |text, power| {
+            text.replace(&format!("kgm{power}"), &format!("kg m{power}"))
+        });
+        let mut rest = Rest(&apart);
         let unit = rest.product()?;
         rest.0.is_empty().then_some(unit)
     }
@@ -215,7 +223,7 @@ impl Unit {
 /// Remaining text of a unit.
 struct Rest<'a>(&'a str);
 
-impl Rest<'_> {
+impl<'a> Rest<'a> {
     fn product(&mut self) -> Option<Unit> {
         let mut product = self.power()?;
         loop {
@@ -223,7 +231,7 @@ impl Rest<'_> {
             if let Some(rest) = self.0.strip_prefix('/') {
                 self.0 = rest.trim_start();
                 product = product.times(self.power()?.to_half(-2)?);
-            } else if let Some(rest) = self.0.strip_prefix(['*', '\u{b7}']) {
+            } else if let Some(rest) = self.0.strip_prefix(['*', '\u{b7}']).or_else(|| self.joined()) {
                 self.0 = rest.trim_start();
                 product = product.times(self.power()?);
             } else if self.0.is_empty() || self.0.starts_with(')') {
@@ -234,7 +242,16 @@ impl Rest<'_> {
         }
     }
 
+    /// Returns the text behind a point or a hyphen between two units.
+    fn joined(&self) -> Option<&'a str> {
+        self.0.strip_prefix(['.', '-']).filter(|rest| rest.starts_with(char::is_alphabetic))
+    }
+
     fn power(&mut self) -> Option<Unit> {
+        if let Some(rest) = self.0.strip_prefix('\u{221a}') {
+            self.0 = rest;
+            return self.power()?.to_half(1);
+        }
         if let Some(rest) = self.0.strip_prefix("sqrt(") {
             self.0 = rest;
             return self.closed()?.to_half(1);
@@ -255,7 +272,8 @@ impl Rest<'_> {
                 return base.to_half(power);
             }
         }
-        let Some(rest) = self.0.strip_prefix('^') else { return Some(base) };
+        let digit = self.0.starts_with(|c: char| ('2'..='4').contains(&c)).then_some(self.0);
+        let Some(rest) = self.0.strip_prefix('^').or(digit) else { return Some(base) };
         let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')).unwrap_or(rest.len());
         let (power, rest) = rest.split_at(end);
         self.0 = rest;
@@ -286,11 +304,9 @@ mod tests {
             ("hz", "Hz"),
             ("RPM", "rpm"),
             ("rev/min", "rpm"),
-            ("deg/hr", "deg/h"),
-            ("deg/rt-hr", "deg/sqrt(h)"),
-            ("deg/rthr", "deg/sqrt(h)"),
+            ("deg/rt-hr", "deg/sqrt(hr)"),
+            ("deg/rthr", "deg/sqrt(hr)"),
             ("deg/\u{221a}h", "deg/sqrt(h)"),
-            ("rad/sec", "rad/s"),
             ("rad/s/rtHz", "rad/s/sqrt(Hz)"),
             ("kg m2", "kg m^2"),
             ("seconds", "s"),
@@ -328,6 +344,24 @@ mod tests {
         close(converted("m sqrt(kg)/s^1.5", "sqrt(kg) m/s^1.5"), 1.0);
         close(converted("(N m)\u{b2} s", "(Nm)^2 s"), 1.0);
         close(converted("km^3/s^2", "m\u{b3}/s\u{b2}"), 1e9);
+        for (sheet, plain) in [
+            ("deg/\u{221a}h", "deg/sqrt(h)"),
+            ("\u{b0}/\u{221a}(h)", "deg/sqrt(h)"),
+            ("(deg/h)/\u{221a}Hz", "deg/h/sqrt(Hz)"),
+            ("N-m", "N m"),
+            ("N.m", "N m"),
+            ("mN-m-s", "mN m s"),
+            ("kgm2", "kg m^2"),
+            ("kgm\u{b2}", "kg m^2"),
+            ("kg.m\u{b2}", "kg m^2"),
+            ("kg-m2", "kg m^2"),
+            ("deg/hr", "deg/h"),
+            ("rad/sec", "rad/s"),
+            ("m/s2", "m/s^2"),
+            ("day", "d"),
+        ] {
+            close(converted(sheet, plain), 1.0);
+        }
     }
 
     #[test]
@@ -336,7 +370,10 @@ mod tests {
         assert_eq!(converted("Hz", "s"), None);
         assert_eq!(converted("deg", "rad/s"), None);
         assert_eq!(converted("rad/s", "1/s"), None);
-        for none in ["", "foo", "deg/", "mdeg", "kmin", "m^", "sqrt(m", "(m", "m)", "m^0.3", "kkg", "1.5"] {
+        for none in [
+            "", "foo", "deg/", "mdeg", "kmin", "m^", "sqrt(m", "(m", "m)", "m^0.3", "kkg", "1.5", "N-",
+            "N.2", "\u{221a}", "m5",
+        ] {
             assert_eq!(Unit::parse(none), None, "{none}");
         }
     }

@@ -1,6 +1,7 @@
-//! Orbit Ephemeris Messages in keyword-value notation: one segment of states at dates, in UTC.
+//! Orbit Ephemeris Messages in keyword-value notation: states at dates in UTC, of one object in segments that follow each other.
 
-use super::{Lines, MOST, Rows, StateTable, line_of, numbers};
+use super::{Lines, StateTable, line_of, numbers};
+use crate::calendar_date::nanoseconds;
 use crate::celestial_frame::CelestialFrame;
 
 /// Part of a message.
@@ -12,10 +13,18 @@ enum Part {
     Covariance,
 }
 
-/// Reads a message: positions in m, and times since the first row.
+/// Metadata of a segment.
+#[derive(Clone, Default, PartialEq)]
+struct Metadata {
+    object: String,
+    frame: Option<CelestialFrame>,
+    utc: bool,
+}
+
+/// Reads a message: positions in m, velocities in m/s, and times since the first row.
 pub(super) fn read(lines: Lines<'_>) -> Result<StateTable, String> {
-    let (mut rows, mut row_lines, mut first, mut frame) = (Rows::new(), Vec::new(), None, None);
-    let (mut part, mut utc) = (Part::Header, false);
+    let (mut table, mut part) = (StateTable::default(), Part::Header);
+    let (mut metadata, mut before) = (Metadata::default(), None);
     for line in lines {
         let (number, line) = line_of(line)?;
         let line = line.trim();
@@ -24,34 +33,28 @@ pub(super) fn read(lines: Lines<'_>) -> Result<StateTable, String> {
         }
         let refused = |why: String| Err(format!("line {number}: {why}"));
         part = match (part, line) {
-            (Part::Header, "META_START") => Part::Metadata,
-            (_, "META_START") => {
-                return refused("begins a second segment: the states must be in one".to_owned());
+            (Part::Header | Part::Rows, "META_START") => Part::Metadata,
+            (Part::Metadata, "META_STOP") => {
+                metadata.is_whole().map_err(|why| format!("line {number}: {why}"))?;
+                let own = std::mem::take(&mut metadata);
+                if before.get_or_insert_with(|| own.clone()) != &own {
+                    return refused(
+                        "must end the metadata of the object and the frame of the segment before: put others into a file of \
+                         their own"
+                            .to_owned(),
+                    );
+                }
+                table.frame = own.frame;
+                Part::Rows
             }
-            (Part::Metadata, "META_STOP") | (Part::Covariance, "COVARIANCE_STOP") => Part::Rows,
+            (Part::Covariance, "COVARIANCE_STOP") => Part::Rows,
             (Part::Rows, "COVARIANCE_START") => Part::Covariance,
             (Part::Header | Part::Covariance, _) => part,
             (Part::Metadata, _) => {
                 let Some((key, value)) = line.split_once('=') else {
                     return refused(format!("must be `KEY = value`, got `{line}`"));
                 };
-                match (key.trim(), value.trim()) {
-                    ("CENTER_NAME", center) if !center.eq_ignore_ascii_case("earth") => {
-                        return refused(format!("must have `CENTER_NAME = EARTH`, got `{center}`"));
-                    }
-                    ("TIME_SYSTEM", "UTC") => utc = true,
-                    ("TIME_SYSTEM", system) => {
-                        return refused(format!("must have `TIME_SYSTEM = UTC`, got `{system}`"));
-                    }
-                    ("REF_FRAME", name) => {
-                        let Some(found) = CelestialFrame::named(name) else {
-                            let why = "must have `REF_FRAME` EME2000, GCRF, ICRF, MOD, TEME or TOD";
-                            return refused(format!("{why}, got `{name}`"));
-                        };
-                        frame = Some(found);
-                    }
-                    _ => {}
-                }
+                metadata.read(key.trim(), value.trim()).map_err(|why| format!("line {number}: {why}"))?;
                 part
             }
             (Part::Rows, _) => {
@@ -63,58 +66,58 @@ pub(super) fn read(lines: Lines<'_>) -> Result<StateTable, String> {
                     let why = "must begin with a date from 1970 to 2500, such as 2026-03-20T14:46:00";
                     return refused(format!("{why}, got `{}`", fields[0]));
                 };
-                let since = (i128::from(date) - i128::from(*first.get_or_insert(date))) as f64 / 1e9;
-                let place = ["0", fields[1], fields[2], fields[3]];
-                let [_, x, y, z] = numbers(&place).map_err(|why| format!("line {number}: {why}"))?;
-                rows.push([since, x * 1e3, y * 1e3, z * 1e3]);
-                row_lines.push(number);
-                if rows.len() > MOST {
-                    return refused(format!("must have at most {MOST} rows"));
-                }
+                let since = (i128::from(date) - i128::from(*table.epoch_ns.get_or_insert(date))) as f64 / 1e9;
+                let three = |from: usize| -> Result<[f64; 3], String> {
+                    let [_, x, y, z] = numbers(&["0", fields[from], fields[from + 1], fields[from + 2]])
+                        .map_err(|why| format!("line {number}: {why}"))?;
+                    Ok([x, y, z].map(|kilometres| kilometres * 1e3))
+                };
+                let [x, y, z] = three(1)?;
+                let velocity = if fields.len() >= 7 { Some(three(4)?) } else { None };
+                table.push([since, x, y, z], velocity, number)?;
                 part
             }
         };
     }
-    if frame.is_none() {
-        return Err("must have a `REF_FRAME`".to_owned());
+    if part == Part::Metadata {
+        return Err(
+            "must have a `META_STOP` and states behind its last `META_START`: is the file cut?".to_owned()
+        );
     }
-    if !utc {
-        return Err("must have a `TIME_SYSTEM`".to_owned());
-    }
-    Ok(StateTable { rows, lines: row_lines, epoch_ns: first, frame })
+    Ok(table)
 }
 
-/// Returns the nanoseconds after 1970 of a date: `YYYY-MM-DDThh:mm:ss` or `YYYY-DDDThh:mm:ss`, with a fraction if any.
-pub(super) fn nanoseconds(text: &str) -> Option<u64> {
-    let (date, time) = text.strip_suffix('Z').unwrap_or(text).split_once('T')?;
-    let number = |text: &str, digits: usize, range: std::ops::RangeInclusive<i64>| {
-        let is_number = text.len() == digits && text.bytes().all(|byte| byte.is_ascii_digit());
-        is_number.then(|| text.parse::<i64>().ok()).flatten().filter(|number| range.contains(number))
-    };
-    let (year, rest) = date.split_once('-')?;
-    let year = number(year, 4, 1970..=2499)?;
-    let leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-    let before = if let Some((month, day)) = rest.split_once('-') {
-        let (month, day) = (number(month, 2, 1..=12)? as usize, number(day, 2, 1..=31)?);
-        let lengths = [31, if leap { 29 } else { 28 }, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31];
-        if day > lengths[month - 1] {
-            return None;
+impl Metadata {
+    /// Reads a key.
+    fn read(&mut self, key: &str, value: &str) -> Result<(), String> {
+        let is = |other: &str| value.eq_ignore_ascii_case(other);
+        match key {
+            "CENTER_NAME" if !is("earth") => {
+                return Err(format!("must have `CENTER_NAME = EARTH`, got `{value}`"));
+            }
+            "TIME_SYSTEM" if !is("utc") => {
+                return Err(format!("must have `TIME_SYSTEM = UTC`, got `{value}`"));
+            }
+            "TIME_SYSTEM" => self.utc = true,
+            "OBJECT_ID" => self.object = value.to_ascii_uppercase(),
+            "REF_FRAME" => {
+                let why =
+                    || format!("must have `REF_FRAME` EME2000, GCRF, ICRF, MOD, TEME or TOD, got `{value}`");
+                self.frame = Some(CelestialFrame::named(value).ok_or_else(why)?);
+            }
+            _ => {}
         }
-        lengths[..month - 1].iter().sum::<i64>() + day - 1
-    } else {
-        number(rest, 3, 1..=if leap { 366 } else { 365 })? - 1
-    };
-    let past = year - 1;
-    let days = 365 * (year - 1970) + past / 4 - past / 100 + past / 400 - 477 + before;
-    let mut clock = time.splitn(3, ':');
-    let (hour, minute) = (number(clock.next()?, 2, 0..=23)?, number(clock.next()?, 2, 0..=59)?);
-    let seconds = clock.next()?;
-    let (second, fraction) = seconds.split_once('.').unwrap_or((seconds, ""));
-    let second = number(second, 2, 0..=59)?;
-    if !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
-        return None;
+        Ok(())
     }
-    let digits: String = fraction.chars().chain("000000000".chars()).take(9).collect();
-    let total = ((days * 24 + hour) * 60 + minute) * 60 + second;
-    Some(u64::try_from(total).ok()? * 1_000_000_000 + digits.parse::<u64>().ok()?)
+
+    /// Checks that all is there without which the states mean nothing.
+    fn is_whole(&self) -> Result<(), String> {
+        if self.frame.is_none() {
+            return Err("must end metadata that have a `REF_FRAME`".to_owned());
+        }
+        if !self.utc {
+            return Err("must end metadata that have a `TIME_SYSTEM`".to_owned());
+        }
+        Ok(())
+    }
 }

@@ -1,16 +1,21 @@
-//! Files of Gauss coefficients: the `.shc` of the IAGA, and the `.COF` of the World Magnetic Model and of models in blocks.
+//! Files of Gauss coefficients: the `.shc` of the IAGA and its table of columns (`igrf14coeffs.txt`), and the `.COF` of the World
+//! Magnetic Model and of models in blocks.
 
 use std::io::BufRead;
 
 use super::{HarmonicRows, LARGEST, MOST_DEGREES, MOST_YEARS};
+use crate::number::real;
 
-/// Years for which a World Magnetic Model holds.
-const WMM_YEARS: f64 = 5.0;
+/// Years for which the rates of a model hold.
+const RATED_YEARS: f64 = 5.0;
+
+/// Largest number of lines before the rows of a table of columns.
+const HEADERS: usize = 5;
 
 /// Lines with their numbers, from 1.
 type NumberedLines = Vec<(usize, String)>;
 
-/// Reads the text of a file; the kinds differ in the first line.
+/// Reads the text of a file; the kinds differ in the first line, and columns in their rows.
 pub(super) fn read(file: impl BufRead) -> Result<HarmonicRows, String> {
     let mut lines = NumberedLines::new();
     for (index, line) in file.lines().enumerate() {
@@ -25,7 +30,10 @@ pub(super) fn read(file: impl BufRead) -> Result<HarmonicRows, String> {
     let Some((_, first)) = lines.first() else {
         return Err("must have coefficients, and is empty".to_owned());
     };
-    let numeric = |field: Option<&str>| field.is_some_and(|field| field.parse::<f64>().is_ok());
+    let numeric = |field: Option<&str>| field.and_then(real).is_some();
+    if let Some(header) = lines.iter().take(HEADERS + 1).position(|(_, line)| is_column_row(line)) {
+        return read_columns(&lines, header);
+    }
     let mut fields = first.split_whitespace();
     match (numeric(fields.next()), numeric(fields.next())) {
         (true, true) => read_shc(&lines),
@@ -36,10 +44,9 @@ pub(super) fn read(file: impl BufRead) -> Result<HarmonicRows, String> {
 
 /// Returns the numbers of a line of at least `least`.
 fn numbers((number, line): &(usize, String), least: usize, what: &str) -> Result<Vec<f64>, String> {
-    let fields = line.split_whitespace().map(|field| {
-        let read = field.parse::<f64>().ok().filter(|value| value.is_finite());
-        read.ok_or_else(|| format!("line {number}: must have {what}, got `{field}`"))
-    });
+    let fields = line
+        .split_whitespace()
+        .map(|field| real(field).ok_or_else(|| format!("line {number}: must have {what}, got `{field}`")));
     let found: Vec<f64> = fields.collect::<Result<_, _>>()?;
     if found.len() >= least {
         return Ok(found);
@@ -102,6 +109,59 @@ fn read_shc(lines: &NumberedLines) -> Result<HarmonicRows, String> {
     Ok(table)
 }
 
+/// Returns true for a row `g n m` or `h n m` of a table of columns.
+fn is_column_row(line: &str) -> bool {
+    let mut fields = line.split_whitespace();
+    fields.next().is_some_and(|kind| ["g", "h"].iter().any(|known| kind.eq_ignore_ascii_case(known)))
+        && fields.next().and_then(real).is_some()
+}
+
+/// Reads a table of columns whose rows begin at `first`: three names and the years in the line before, rates in a last column with
+/// the years between which they hold.
+fn read_columns(lines: &NumberedLines, first: usize) -> Result<HarmonicRows, String> {
+    let Some((number, header)) = first.checked_sub(1).and_then(|header| lines.get(header)) else {
+        return Err(format!("line {}: must follow a line `g/h n m` with the years", lines[first].0));
+    };
+    let mut titles: Vec<&str> = header.split_whitespace().skip(3).collect();
+    let has_rates = titles.last().is_some_and(|last| real(last).is_none());
+    if has_rates {
+        titles.pop();
+    }
+    let mut years = numbers(&(*number, titles.join(" ")), 1, "years behind `g/h n m`")?;
+    if years.len() >= MOST_YEARS {
+        return Err(format!("line {number}: must have at most {MOST_YEARS} years"));
+    }
+    let last = years[years.len() - 1];
+    years.extend(has_rates.then_some(last + RATED_YEARS));
+    let (mut rows, mut places) = (Vec::new(), Vec::new());
+    for (number, line) in &lines[first..] {
+        if !is_column_row(line) {
+            return Err(format!(
+                "line {number}: must begin with g or h, degree and order, got `{}`",
+                line.trim()
+            ));
+        }
+        let kind = line.trim_start().split_at(1);
+        let mut row = numbers(&(*number, kind.1.to_owned()), 3, "degree, order and values")?;
+        if kind.0.eq_ignore_ascii_case("h") {
+            row[1] = -row[1];
+        }
+        // A sine of order 0 is always 0.
+        if row[1] == 0.0 && row[1].is_sign_negative() {
+            continue;
+        }
+        if has_rates && row.len() == years.len() + 2 {
+            let value = row.len() - 2;
+            row[value + 1] = row[value] + RATED_YEARS * row[value + 1];
+        }
+        rows.push(row);
+        places.push(*number);
+    }
+    let mut table = HarmonicRows { years, rows };
+    table.sort(&|row| format!("line {}", places[row]))?;
+    Ok(table)
+}
+
 /// Coefficients of a block with their rates.
 struct Block {
     year: f64,
@@ -143,7 +203,7 @@ fn read_wmm(lines: &NumberedLines) -> Result<HarmonicRows, String> {
         block.rows.push(block_row(line)?);
         block.places.push(line.0);
     }
-    join(&[block], Some(year + WMM_YEARS))
+    join(&[block], Some(year + RATED_YEARS))
 }
 
 /// Reads blocks of a header, with a name, the year, degrees and the years between which it holds, and rows.

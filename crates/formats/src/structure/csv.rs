@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use super::LARGEST;
 use super::file::open_text;
+use crate::number::real;
 
 /// Reads a matrix.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
@@ -20,7 +21,7 @@ pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
             return Err(format!("line {line}: must have {columns} numbers, as the first row, got {found}"));
         }
         for (index, field) in record.iter().enumerate() {
-            let number = field.parse().map_err(|_| {
+            let number = real(field).ok_or_else(|| {
                 let column = index + 1;
                 format!(
                     "line {line}: must have numbers separated by commas, got `{field}` in column {column}"

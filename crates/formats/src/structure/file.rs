@@ -1,15 +1,18 @@
-//! Opening of files of structures: regular files of limited size.
+//! Opening of the files that a scenario names: regular files of limited size, texts without the mark of their encoding.
 
 use std::fs::{self, File};
-use std::io::{BufReader, Read, Take};
+use std::io::{BufRead, BufReader, Read, Take};
 use std::path::Path;
 
 use crate::read_files;
 
 /// Largest size of a file (bytes): a full matrix of the largest order takes half of it.
 const LONGEST: u64 = 256 << 20;
+/// Mark with which some programs begin a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Opens a file.
+#[cfg(feature = "matrices")]
 pub fn open(path: &Path) -> Result<File, String> {
     open_up_to(path, LONGEST)
 }
@@ -29,12 +32,45 @@ fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
     Ok(file)
 }
 
-/// Opens a file for sequential reading, limited to the largest size.
+/// Opens a text for sequential reading, limited to the largest size.
 pub fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
-    Ok(BufReader::new(open(path)?.take(LONGEST)))
+    open_text_up_to(path, LONGEST)
 }
 
-/// Opens a file for sequential reading, limited to `longest` bytes.
+/// Opens a text for sequential reading, limited to `longest` bytes, behind its byte order mark if it has one.
 pub fn open_text_up_to(path: &Path, longest: u64) -> Result<BufReader<Take<File>>, String> {
-    Ok(BufReader::new(open_up_to(path, longest)?.take(longest)))
+    let mut text = BufReader::new(open_up_to(path, longest)?.take(longest));
+    let start = text.fill_buf().map_err(|error| error.to_string())?;
+    if start.starts_with(b"\xff\xfe") || start.starts_with(b"\xfe\xff") {
+        return Err("is text in UTF-16: save it as UTF-8".to_owned());
+    }
+    let mark = if start.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
+    text.consume(mark);
+    Ok(text)
+}
+
+/// Reads a whole text of at most `longest` bytes, in which what is no UTF-8 is replaced.
+pub fn read_text_up_to(path: &Path, longest: u64) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    open_text_up_to(path, longest)?.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_begin_behind_their_byte_order_mark() {
+        let path = std::env::temp_dir().join(format!("flexsc-text-{}", std::process::id()));
+        let read = |bytes: &[u8]| {
+            fs::write(&path, bytes).expect("a file");
+            read_text_up_to(&path, 100)
+        };
+        assert_eq!(read(b"\xef\xbb\xbft,x\r\n").as_deref(), Ok("t,x\r\n"));
+        assert_eq!(read(b"").as_deref(), Ok(""));
+        assert_eq!(read(b"\xef\xbb").as_deref(), Ok("\u{fffd}"));
+        assert!(read(b"\xff\xfet\0").is_err_and(|why| why.contains("UTF-16")));
+        fs::remove_file(&path).expect("a file");
+    }
 }

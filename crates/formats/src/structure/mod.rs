@@ -27,8 +27,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
 use eigen_reduced::EigenError;
-pub use file::open_text_up_to;
+pub use file::{open_text_up_to, read_text_up_to};
 pub use matrix::Matrix;
+pub use matrix_market::{MatrixElements, read_elements as read_matrix_market};
 pub use shape::Shape;
 
 /// Largest order of the matrices.

@@ -15,6 +15,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Shape;
 use super::{LARGEST, csv};
+use crate::foreign_file;
+use crate::number::real;
 
 /// Endings of the column names of a point's shape, after the point's name and a dot: three translations, three
 /// rotations.
@@ -105,8 +107,10 @@ impl<M: ModeRow> ModeTable<M> {
         if let Some(others) = others.filter(|others| others.file == self.file) {
             self.table.clone_from(&others.table);
         } else if path.extension().is_none_or(|extension| extension != "csv") {
+            let instead =
+                foreign_file::instead(path).map(|instead| format!(": {instead}")).unwrap_or_default();
             return Err(format!(
-                "must be an array of modes, or the path of a {} file, got `{file}`",
+                "must be an array of modes, or the path of a {} file, got `{file}`{instead}",
                 M::FILES
             ));
         } else {
@@ -223,7 +227,7 @@ impl FileColumn {
 
 /// Parses a field as a quantity, or returns a message with the accepted values.
 fn number<T: for<'de> Deserialize<'de>>(field: &str) -> Result<T, String> {
-    let number: f64 = field.parse().map_err(|_| format!("must be a number, got `{field}`"))?;
+    let number = real(field).ok_or_else(|| format!("must be a number, got `{field}`"))?;
     T::deserialize(number.into_deserializer()).map_err(|error: serde::de::value::Error| error.to_string())
 }
 

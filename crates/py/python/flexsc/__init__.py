@@ -89,6 +89,7 @@ if TYPE_CHECKING:
     from flexsc.structure import (
         StateSpace,
         Structure,
+        appendage_from_craig_bampton,
         appendage_from_matrices,
         appendage_from_nastran,
         from_csv,
@@ -151,6 +152,7 @@ __all__ = [
     "Witness",
     "WorstCase",
     "__version__",
+    "appendage_from_craig_bampton",
     "appendage_from_matrices",
     "appendage_from_nastran",
     "campaign",
@@ -201,8 +203,8 @@ _LATER = {
         "_signal": "Signal",
         "results": "BudgetLevel IndexBudget LoopMargins NoiseSpectrum OutputBound OutputNoise PointingBudget "
         "SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario Witness WorstCase",
-        "structure": "StateSpace Structure appendage_from_matrices appendage_from_nastran "
-        "from_csv from_nastran from_state_space read_matrices write_scenario",
+        "structure": "StateSpace Structure appendage_from_craig_bampton appendage_from_matrices "
+        "appendage_from_nastran from_csv from_nastran from_state_space read_matrices write_scenario",
     }.items()
     for name in names.split()
 }

@@ -15,7 +15,14 @@ use super::deferred::Deferred;
 use super::kepler::{earth_gravity, earth_radius};
 use super::precession::to_mean_of_date;
 use super::row_departure::{Departure, MOST};
-use super::sampled_orbit::SampledOrbit;
+use super::sampled_orbit::{MOST_ROWS, SampledOrbit};
+use super::wide_rows::{Gap, WideRows};
+
+/// Angle from row to row (rad) above which rows that depart from their neighbours' orbit are too far apart, and not wrong.
+const FAR: f64 = 0.4;
+
+/// Difference of velocities (m/s) above which those of the file are not those of its positions.
+const UNLIKE: f64 = 1.0;
 
 /// Orbit by positions at instants.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -110,6 +117,18 @@ impl EphemerisOrbit {
     /// # Errors
     /// The reason for which the rows are no orbit there.
     pub(super) fn run_path(&self, duration: f64, epoch_ns: Option<u64>) -> Result<Arc<SampledOrbit>, String> {
+        let apart = |place: String, gap: f64, far: f64| {
+            format!(
+                "{place}: rows are too far apart: the next row comes {gap} s later, and between them the orbit is known to {:.1} km only, \
+                 with velocities or without; export a row a minute for a low orbit",
+                far / 1e3
+            )
+        };
+        if let Some(gap) =
+            self.least_known(duration, epoch_ns).filter(|gap| gap.distance.is_nan() || gap.distance > MOST)
+        {
+            return Err(apart(self.ephemeris.place(gap.row), gap.gap, gap.distance));
+        }
         let orbit = self.path(epoch_ns).ok_or_else(|| {
             let of_dates = self.ephemeris.epoch_ns().is_some();
             let why = if of_dates { "has dates" } else { "is along axes of 2000" };
@@ -123,8 +142,14 @@ impl EphemerisOrbit {
         if !worst.is_refused() {
             return Ok(orbit);
         }
-        let (place, most, far) = (self.ephemeris.place(worst.row), MOST / 1e3, worst.distance / 1e3);
+        let (place, most, far) = (self.place_at(worst.time, epoch_ns), MOST / 1e3, worst.distance / 1e3);
+        let own = self.ephemeris.rows(epoch_ns).unwrap_or_default();
+        let next = own.partition_point(|row| row[0] <= worst.time).clamp(1, own.len().max(2) - 1);
+        let gap = own.get(next).zip(own.get(next - 1)).map_or(0.0, |(after, before)| after[0] - before[0]);
+        let distance = own.get(next).map_or(1.0, |[_, x, y, z]| f64::sqrt(x * x + y * y + z * z));
+        let angle = gap * f64::sqrt(self.gravity.get() / distance) / distance;
         Err(match worst.gap {
+            None if angle > FAR => apart(place, gap, worst.distance),
             None => format!(
                 "{place}: must be within {most} km of the polynomial through the four rows before it and the four after it, got {far:.1} km: \
                  is the row wrong, or are the rows too far apart?"
@@ -139,8 +164,15 @@ impl EphemerisOrbit {
     /// Returns remarks on the orbit in a run of this duration (s) from `epoch_ns` nanoseconds after 1970, if known.
     pub(super) fn remarks(&self, duration: f64, epoch_ns: Option<u64>) -> Vec<ConfigError> {
         let worst = self.path(epoch_ns).map(|orbit| orbit.departure([0.0, duration]));
+        let burns = self.ephemeris.burns().first().map(|line| {
+            let count = self.ephemeris.burns().len();
+            format!(
+                "has {count} dates at which the velocity jumps, as at a burn, the first in line {line}: the orbit is smooth there, over \
+                 four rows on either side"
+            )
+        });
         let why = worst.filter(Departure::is_remarkable).map(|worst| {
-            let (place, far) = (self.ephemeris.place(worst.row), worst.distance);
+            let (place, far) = (self.place_at(worst.time, epoch_ns), worst.distance);
             match worst.gap {
                 None => format!(
                     "{place}: is {far:.0} m from the polynomial through the four rows before it and the four after it: velocities and \
@@ -151,20 +183,66 @@ impl EphemerisOrbit {
                 ),
             }
         });
-        why.map(|why| ConfigError::new("ephemeris", why)).into_iter().collect()
+        let unlike = self.unlike_velocity(duration, epoch_ns);
+        [why, burns, unlike].into_iter().flatten().map(|why| ConfigError::new("ephemeris", why)).collect()
+    }
+
+    /// Returns a remark on velocities of the file that are not those of its positions.
+    fn unlike_velocity(&self, duration: f64, epoch_ns: Option<u64>) -> Option<String> {
+        let (times, _, velocities) = self.states(epoch_ns)?;
+        let orbit = self.path(epoch_ns)?;
+        let within =
+            times.iter().zip(velocities?).enumerate().filter(|(_, (t, _))| (0.0..=duration).contains(*t));
+        let off = within.map(|(row, (t, velocity))| (row, (orbit.motion(*t)[1] - velocity).norm()));
+        let (row, worst) = off.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, worst)| *worst > UNLIKE)?;
+        let place = self.ephemeris.place(row);
+        Some(format!(
+            "{place}: the velocity differs by {worst:.1} m/s from that of the positions: is it in km/s and in the axes of the positions? \
+             Positions count"
+        ))
+    }
+
+    /// Returns the place of the last row up to a time of the run (s).
+    fn place_at(&self, t: f64, epoch_ns: Option<u64>) -> String {
+        let rows = self.ephemeris.rows(epoch_ns).unwrap_or_default();
+        self.ephemeris.place(rows.partition_point(|row| row[0] <= t + 1e-6).saturating_sub(1))
+    }
+
+    /// Returns times since the start of a run (s), positions (m) and, if the file has them, velocities (m/s) in its axes.
+    #[expect(clippy::type_complexity, reason = "three columns of one table")]
+    fn states(&self, epoch_ns: Option<u64>) -> Option<(Vec<f64>, Vec<Vector>, Option<Vec<Vector>>)> {
+        let rows = self.ephemeris.rows(epoch_ns)?;
+        let turn = match self.is_rotated() {
+            true => UnitQuaternion::new_normalize(to_mean_of_date(self.row_frame(), epoch_ns?)?),
+            false => UnitQuaternion::identity(),
+        };
+        let along =
+            |vector: [f64; 3]| if self.is_rotated() { turn * Vector::from(vector) } else { vector.into() };
+        let (times, positions) = rows.into_iter().map(|[t, x, y, z]| (t, along([x, y, z]))).unzip();
+        let velocities =
+            self.ephemeris.velocities().filter(|own| own.iter().any(|velocity| *velocity != [0.0; 3]));
+        Some((times, positions, velocities.map(|own| own.iter().map(|velocity| along(*velocity)).collect())))
+    }
+
+    /// Returns the gap in a run of this duration (s) in which the orbit is known least, of rows that are far apart and have velocities.
+    fn least_known(&self, duration: f64, epoch_ns: Option<u64>) -> Option<Gap> {
+        let (times, positions, velocities) = self.states(epoch_ns)?;
+        WideRows { times: &times, positions: &positions, velocities: &velocities? }
+            .least_known([0.0, duration])
     }
 
     /// Returns the rows in the inertial axes of a run from `epoch_ns` nanoseconds after 1970: time since the start (s), and
     /// position (m).
     fn rows(&self, epoch_ns: Option<u64>) -> Option<Vec<[f64; 4]>> {
-        let mut rows = self.ephemeris.rows(epoch_ns)?;
-        if self.is_rotated() {
-            let turn = UnitQuaternion::new_normalize(to_mean_of_date(self.row_frame(), epoch_ns?)?);
-            for [_, position @ ..] in &mut rows {
-                *position = (turn * Vector::from(*position)).into();
-            }
-        }
-        Some(rows)
+        let (times, positions, velocities) = self.states(epoch_ns)?;
+        let wide = velocities.as_ref().map(|velocities| WideRows {
+            times: &times,
+            positions: &positions,
+            velocities,
+        });
+        let filled = wide.filter(WideRows::is_wide).and_then(|wide| wide.filled(MOST_ROWS));
+        let (times, positions) = filled.unwrap_or((times, positions));
+        Some(times.iter().zip(&positions).map(|(t, at)| [*t, at.x, at.y, at.z]).collect())
     }
 
     /// Returns the orbit in a run from `epoch_ns` nanoseconds after 1970; `None` where it is not known.

@@ -12,6 +12,7 @@ use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::altitude_orbit::AltitudeOrbit;
+use super::element_set::ElementSet;
 use super::ephemeris_orbit::EphemerisOrbit;
 use super::kepler::{earth_gravity, earth_radius};
 use super::local_time::LocalTime;
@@ -48,7 +49,7 @@ struct OrbitKeys {
     gravity: Option<Positive>,
     planet_radius: Option<Positive>,
     j2: Option<Oblateness>,
-    tle: Option<[String; 2]>,
+    tle: Option<ElementSet>,
     ephemeris: Option<EphemerisTable>,
     frame: Option<CelestialFrame>,
 }
@@ -148,9 +149,15 @@ impl TryFrom<OrbitKeys> for OrbitKind {
 }
 
 impl OrbitKind {
-    /// Reads the file of an ephemeris relative to `directory`, or takes the rows of `other` if that has read the same
+    /// Reads the file of elements or of an ephemeris relative to `directory`, or takes the rows of `other` if that has read the same
     /// file; returns an inconsistency of the orbit in itself, a key within the orbit and the reason.
     pub fn read(&mut self, directory: &Path, other: Option<&Self>) -> Option<ConfigError> {
+        if let Self::TwoLines(orbit) = self {
+            orbit.tle.locate(directory);
+            if let Err(why) = orbit.tle.read() {
+                return Some(ConfigError::new("tle", why));
+            }
+        }
         let Self::Ephemeris(orbit) = self else { return self.fault() };
         let other = match other {
             Some(Self::Ephemeris(other)) => Some(&other.ephemeris),
@@ -162,8 +169,10 @@ impl OrbitKind {
 
     /// Replaces the reference to a file by its rows, in a run from `epoch_ns` nanoseconds after 1970, if known.
     pub fn inline(&mut self, epoch_ns: Option<u64>) {
-        if let Self::Ephemeris(orbit) = self {
-            orbit.inline(epoch_ns);
+        match self {
+            Self::Ephemeris(orbit) => orbit.inline(epoch_ns),
+            Self::TwoLines(orbit) => orbit.tle.inline(),
+            Self::Kepler(_) | Self::Altitude(_) => {}
         }
     }
 

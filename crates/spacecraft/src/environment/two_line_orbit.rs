@@ -10,10 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use super::date::DAY;
 use super::deferred::Deferred;
+use super::element_set::ElementSet;
 use super::kepler::{earth_gravity, earth_radius};
 use super::sampled_orbit::{MOST_ROWS, ROWS, SampledOrbit};
 use super::sgp4::Sgp4;
-use super::two_lines;
+use super::two_lines::MeanElements;
 
 /// Angle at the perigee (rad) between two rows that are computed from the elements: one minute in a low orbit.
 const STEP: f64 = 0.065;
@@ -26,11 +27,11 @@ const FRESH: f64 = 14.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TwoLineOrbit {
-    /// Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18 revolutions a day: SGP4
-    /// gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run starts at the
+    /// Mean elements about the Earth, from 0.05 to 18 revolutions a day: both lines of a two-line element set, three with
+    /// a name, one text of them, or the path of a file of them or of an OMM (keywords, XML, JSON). SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run starts at the
     /// `epoch`, else at that of the elements (`check` remarks more than 14 days between them), in axes of the true
     /// equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
-    pub tle: [String; 2],
+    pub tle: ElementSet,
     /// Gravitational parameter of the planet (m³/s²); default: the Earth's.
     #[serde(default = "earth_gravity")]
     pub gravity: Positive,
@@ -46,7 +47,7 @@ pub struct TwoLineOrbit {
 /// Orbit of a run, with everything that it follows from.
 #[derive(Clone, Debug, PartialEq)]
 struct RunOrbit {
-    tle: [String; 2],
+    tle: ElementSet,
     planet: [f64; 2],
     epoch_ns: u64,
     duration: f64,
@@ -55,19 +56,19 @@ struct RunOrbit {
 }
 
 impl TwoLineOrbit {
-    /// Creates the orbit from both lines, with the gravitational parameter (m³/s²) and the radius (m) of the planet.
-    pub(super) fn new(tle: [String; 2], gravity: Positive, planet_radius: Positive) -> Self {
+    /// Creates the orbit from its elements, with the gravitational parameter (m³/s²) and the radius (m) of the planet.
+    pub(super) fn new(tle: ElementSet, gravity: Positive, planet_radius: Positive) -> Self {
         Self { tle, gravity, planet_radius, sampled: Deferred::default() }
     }
 
     /// Returns the epoch of the elements (ns after 1970, UTC).
     pub(super) fn epoch_ns(&self) -> Option<u64> {
-        two_lines::parse(&self.tle).ok().map(|elements| elements.epoch_ns)
+        self.tle.elements().ok().map(|elements| elements.epoch_ns)
     }
 
-    /// Returns the fault of a line, with its key.
+    /// Returns the fault of the elements, with its key.
     pub(super) fn fault(&self) -> Option<ConfigError> {
-        two_lines::parse(&self.tle).err()
+        self.tle.elements().err()
     }
 
     /// Returns the orbit in a run of this duration (s) from `epoch_ns` nanoseconds after 1970.
@@ -119,7 +120,7 @@ impl TwoLineOrbit {
     }
 
     /// Returns the interval between two rows (s).
-    fn step(elements: &two_lines::MeanElements) -> f64 {
+    fn step(elements: &MeanElements) -> f64 {
         let e = elements.eccentricity;
         // The true anomaly moves by n (1 + e)²/(1 - e²)^1.5 at the perigee.
         let flat = (1.0 - e) * (1.0 + e);
@@ -129,7 +130,7 @@ impl TwoLineOrbit {
 
     /// Returns the number of rows of a run of this duration (s).
     fn rows(&self, duration: f64) -> Option<f64> {
-        let elements = two_lines::parse(&self.tle).ok()?;
+        let elements = self.tle.elements().ok()?;
         Some(duration / Self::step(&elements) + ROWS as f64)
     }
 
@@ -155,7 +156,7 @@ impl TwoLineOrbit {
 
     /// Returns rows of SGP4 over a run, and some beyond each end.
     fn sample(&self, duration: f64, epoch_ns: u64) -> Option<SampledOrbit> {
-        let elements = two_lines::parse(&self.tle).ok()?;
+        let elements = self.tle.elements().ok()?;
         let (mut orbit, step) = (Sgp4::new(&elements), Self::step(&elements));
         // The difference of two counts is exact where it matters.
         let since = (i128::from(epoch_ns) - i128::from(elements.epoch_ns)) as f64 / 1e9;

@@ -15,10 +15,14 @@ const BLOCKS: &str = "   DGRF2020  2020.00  1  0  0 2020.00 2025.00   -1.0  600.
     2  0  -2556.2     0.0   -11.2    0.0   IGRF2025   6\n2  1   2950.9 -3133.6    -5.3  -27.3   IGRF2025   7\n\
     2  2   1648.7  -814.2    -8.3  -11.1   IGRF2025   8\n";
 
+const COLUMNS: &str = "# a comment\nc/s deg ord IGRF IGRF SV\ng/h n m 2020.0 2025.0 2025-30\ng 1 0 -29403.41 -29350.0 12.6\n\
+    g 1 1 -1451.37 -1410.3 10.0\nh 1 1 4653.35 4545.5 -21.5\n";
+
 /// Returns the name and the bytes of a file; the kinds differ in their first lines, and not in their names.
 pub fn file(chance: &mut Chance) -> (&'static str, Vec<u8>) {
-    let (name, text) = [("f.shc", SHC), ("f.COF", WORLD_MODEL), ("f.COF", BLOCKS)][chance.below(3)];
-    let other = chance.one(&[SHC, WORLD_MODEL, BLOCKS]);
+    let (name, text) =
+        [("f.shc", SHC), ("f.COF", WORLD_MODEL), ("f.COF", BLOCKS), ("f.txt", COLUMNS)][chance.below(4)];
+    let other = chance.one(&[SHC, WORLD_MODEL, BLOCKS, COLUMNS]);
     match chance.below(8) {
         0 => (name, text.into()),
         // Lines of one kind within another.

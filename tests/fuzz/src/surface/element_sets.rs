@@ -1,5 +1,6 @@
 //! Two-line element sets: each field at and beyond its limits, and lines that are none.
 
+use super::structures;
 use crate::chance::Chance;
 use crate::mutate;
 
@@ -59,11 +60,16 @@ const FIELDS: &[(usize, usize, &[&str])] = &[
         ],
     ),
 ];
+const MESSAGE: &str = "CCSDS_OMM_VERS = 2.0\nOBJECT_NAME = A\nCENTER_NAME = EARTH\nREF_FRAME = TEME\nTIME_SYSTEM = UTC\n\
+    MEAN_ELEMENT_THEORY = SGP4\nEPOCH = 2026-11-24T06:00:00\nMEAN_MOTION = 15.5\nECCENTRICITY = .0005\nINCLINATION = 51.6\n\
+    RA_OF_ASC_NODE = 10\nARG_OF_PERICENTER = 20\nMEAN_ANOMALY = 30\nBSTAR = .1E-3\n";
+const JSON: &str = "{\"EPOCH\": \"2026-11-24T06:00:00\", \"MEAN_MOTION\": 15.5, \"ECCENTRICITY\": 5e-4, \"INCLINATION\": 51.6, \
+    \"RA_OF_ASC_NODE\": 10.0, \"ARG_OF_PERICENTER\": 20.0, \"MEAN_ANOMALY\": 30.0, \"BSTAR\": 1e-4}";
 /// Column of the checksum.
 const CHECKSUM: usize = 68;
 
 /// Returns the lines of a set.
-pub fn lines(chance: &mut Chance) -> Vec<String> {
+fn lines(chance: &mut Chance) -> Vec<String> {
     let mut lines: Vec<Vec<u8>> = SETS[chance.below(SETS.len())].map(|line| line.as_bytes().to_vec()).into();
     for _ in 0..chance.below(4) {
         let (line, column, values) = FIELDS[chance.below(FIELDS.len())];
@@ -90,6 +96,26 @@ pub fn lines(chance: &mut Chance) -> Vec<String> {
         _ => {}
     }
     lines.iter().map(|line| String::from_utf8_lossy(line).into_owned()).collect()
+}
+
+/// Returns a set as a scenario gives it: its value, and a file if it is in one.
+pub fn given(chance: &mut Chance) -> (String, Option<(String, Vec<u8>)>) {
+    let quoted = |text: &str| serde_json::to_string(text).unwrap_or_default();
+    if chance.percent(20) {
+        let text = if chance.percent(50) { MESSAGE.to_owned() } else { JSON.to_owned() };
+        return (quoted("a.omm"), Some(("a.omm".to_owned(), structures::spoilt(&text, chance))));
+    }
+    let lines = lines(chance);
+    let mut text = lines.join("\n") + "\n";
+    match chance.below(6) {
+        0 => (quoted(&text), None),
+        1 => {
+            structures::rewrite(&mut text, chance);
+            (quoted("a.tle"), Some(("a.tle".to_owned(), text.into_bytes())))
+        }
+        2 => (JSON.replace("\":", "\" ="), None),
+        _ => (serde_json::to_string(&lines).unwrap_or_default(), None),
+    }
 }
 
 /// Gives a line the checksum of its digits, where a minus counts 1.

@@ -76,8 +76,9 @@ pub fn make(chance: &mut Chance) -> Case {
     let mut epoch = "2026-11-24T00:00:00Z";
     match focus {
         Focus::ElementSet => {
-            let text = serde_json::to_string(&element_sets::lines(chance)).unwrap_or_default();
+            let (text, file) = element_sets::given(chance);
             let _ = writeln!(environment, "orbit = {{ tle = {text} }}");
+            files.extend(file);
             epoch = "";
         }
         Focus::Ephemeris => {

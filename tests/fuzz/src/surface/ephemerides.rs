@@ -50,10 +50,24 @@ fn message(chance: &mut Chance) -> String {
          START_TIME = 2026-11-24T00:00:00\nSTOP_TIME = 2026-11-24T00:39:00\nMETA_STOP\n"
     );
     let radius = radius(chance) / 1e3;
+    let spacing = [1, 1, 1, 10, 40][chance.below(5)];
     for row in 0..ROWS[chance.below(ROWS.len())] {
-        let angle = RATE * 60.0 * row as f64;
+        let angle = RATE * 60.0 * (row * spacing) as f64;
         let (x, y) = (radius * angle.cos(), radius * angle.sin());
-        let _ = writeln!(text, "2026-11-24T00:{row:02}:00.5 {x:.6} {y:.6} {:.6} 0 7.5 0", 0.1 * radius);
+        let speed = if chance.percent(95) { 1.0 } else { [0.0, 1e3, -1.0][chance.below(3)] } * RATE * radius;
+        let (vx, vy) = (-speed * angle.sin(), speed * angle.cos());
+        let state = format!(" {x:.6} {y:.6} {:.6} {vx:.6} {vy:.6} 0\n", 0.1 * radius);
+        let minute = row * spacing;
+        let date = format!("2026-11-24T{:02}:{:02}:00.5", minute / 60 % 24, minute % 60);
+        text += &format!("{date}{state}");
+        if chance.percent(3) {
+            text += &format!("{date}{state}");
+        }
+        if chance.percent(3) {
+            text +=
+                &text[text.find("META_START").unwrap_or(0)..text.find("META_STOP").unwrap_or(0)].to_owned();
+            text += &format!("META_STOP\n{date}{state}");
+        }
     }
     if chance.percent(15) {
         text += "COVARIANCE_START\nEPOCH = 2026-11-24T00:00:00\n1 2 3\nCOVARIANCE_STOP\n";

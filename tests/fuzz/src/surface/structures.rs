@@ -121,16 +121,32 @@ fn matrices(seeds: &Seeds, chance: &mut Chance) -> Vec<(String, Vec<u8>)> {
 
 /// A text with other lines, numbers or bytes.
 pub fn spoilt(text: &str, chance: &mut Chance) -> Vec<u8> {
-    let change = match chance.below(4) {
+    let mut text = text.to_owned();
+    if chance.percent(25) {
+        rewrite(&mut text, chance);
+    }
+    let change = match chance.below(5) {
         0 => mutate::number,
         1 | 2 => mutate::lines,
-        _ => return spoilt_bytes(text, chance),
+        3 => return text.into_bytes(),
+        _ => return spoilt_bytes(&text, chance),
     };
-    let mut text = text.to_owned();
     for _ in 0..chance.times() {
         change(&mut text, chance);
     }
     text.into_bytes()
+}
+
+/// Writes a text as other programs do: with a byte order mark, other ends of lines, exponents or letters.
+pub fn rewrite(text: &mut String, chance: &mut Chance) {
+    match chance.below(6) {
+        0 => text.insert(0, '\u{feff}'),
+        1 => *text = text.replace('\n', "\r\n"),
+        2 => *text = text.replace('\n', " \t \n"),
+        3 => *text = text.replace('e', "D"),
+        4 => *text = text.to_ascii_lowercase(),
+        _ => *text = text.to_ascii_uppercase(),
+    }
 }
 
 fn spoilt_bytes(text: &str, chance: &mut Chance) -> Vec<u8> {

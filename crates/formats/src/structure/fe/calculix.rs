@@ -7,7 +7,7 @@ use std::io::BufRead;
 
 use super::tables::{ParticipationTable, modes_from_factors};
 use super::text::{Lines, TextLine};
-use super::{FileResults, NaturalFrequency, lowest};
+use super::{FileMass, FileResults, NaturalFrequency, lowest};
 
 /// Table to which the current lines belong.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -52,6 +52,12 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
                 mass = Some(total(&line)?);
                 At::Elsewhere
             }
+            _ if section == At::Eigenvalues && line_text.starts_with("NODAL") => {
+                return Err(format!(
+                    "line {}: has modes of cyclic symmetry, whose shapes are those of a sector: take the whole structure",
+                    line.number
+                ));
+            }
             _ if line_text.is_empty()
                 || ["MODE", "REAL", "("].iter().any(|head| line_text.starts_with(head)) =>
             {
@@ -77,24 +83,35 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
 }
 
 fn eigenvalue(line: &TextLine, last: Option<&NaturalFrequency>) -> Result<NaturalFrequency, String> {
-    let fields = line.fields(["MODE NO", "EIGENVALUE", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
-    let (number, mode, imaginary) = (line.number, fields.whole(0)?, fields.real(4)?);
+    // Unsymmetric problems, as with friction, have no column of eigenvalues.
+    let is_unsymmetric = line.text.split_whitespace().count() == 4;
+    let (mode, frequency, cycles, imaginary, eigenvalue) = if is_unsymmetric {
+        let fields = line.fields(["MODE NO", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
+        let frequency = fields.real(1)?;
+        (fields.whole(0)?, frequency, fields.real(2)?, fields.real(3)?, frequency * frequency)
+    } else {
+        let fields = line.fields(["MODE NO", "EIGENVALUE", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
+        (fields.whole(0)?, fields.real(2)?, fields.real(3)?, fields.real(4)?, fields.real(1)?)
+    };
+    let number = line.number;
     if last.is_some_and(|last| last.mode >= mode) {
         return Err(format!("line {number}: must have one step `*FREQUENCY`, got mode {mode} again"));
     }
     if imaginary != 0.0 {
         return Err(format!(
-            "line {number}: mode {mode} must be stable, got an imaginary part of {imaginary} rad/time"
+            "line {number}: mode {mode} must be one of a clamped structure without damping, got an imaginary part of {imaginary} \
+             rad/time: clamp the root, or leave out what makes the modes complex (friction, damping, rotation)"
         ));
     }
     // Shapes are mass-normalised.
-    let natural = NaturalFrequency { line: number, mode, frequency: fields.real(2)?, generalised_mass: 1.0 };
-    natural.checked(fields.real(1)?, fields.real(3)?)
+    let natural = NaturalFrequency { line: number, mode, frequency, generalised_mass: 1.0 };
+    natural.checked(eigenvalue, cycles)
 }
 
-/// Returns the mass of the free nodes: the largest of the masses that move along one axis.
-fn total(line: &TextLine) -> Result<f64, String> {
+/// Returns the mass of the free nodes: the largest of the masses that move along one axis, and the moments of inertia.
+fn total(line: &TextLine) -> Result<FileMass, String> {
     let fields =
         line.fields(["X-COMPONENT", "Y-COMPONENT", "Z-COMPONENT", "X-ROTATION", "Y-ROTATION", "Z-ROTATION"])?;
-    Ok(fields.six(0)?[..3].iter().fold(0.0, |most: f64, part| most.max(*part)))
+    let [x, y, z, inertia @ ..] = fields.six(0)?;
+    Ok(FileMass { mass: x.max(y).max(z), moment: None, inertia: Some(inertia), clamp: None })
 }

@@ -2,33 +2,60 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::BufRead;
+use std::path::Path;
 
 use nalgebra::Vector3;
 
-use super::element::MassRule;
-use super::text::{Lines, TextLine, real};
+use super::element::{HollowSection, MassRule};
+use super::text::{Lines, TextLine};
+use crate::number::real;
+use crate::structure::file::open_text_up_to;
 
-/// Element types: name, number of nodes in the deck, and rule of mass integration (`None` for a point mass). Types with
-/// incompatible modes (C3D8I, S4, B31) are excluded, because results do not contain all of their motion.
-const TYPES: [(&str, usize, Option<MassRule>); 17] = [
-    ("C3D20", 20, Some(MassRule::Full)),
-    ("C3D20R", 20, Some(MassRule::Reduced)),
-    ("C3D8", 8, Some(MassRule::Full)),
-    ("C3D8R", 8, Some(MassRule::Reduced)),
-    ("C3D10", 10, Some(MassRule::Full)),
-    ("C3D4", 4, Some(MassRule::Full)),
-    ("C3D15", 15, Some(MassRule::Full)),
-    ("C3D6", 6, Some(MassRule::Full)),
-    ("S8", 8, Some(MassRule::Full)),
-    ("S8R", 8, Some(MassRule::Reduced)),
-    ("S6", 6, Some(MassRule::Full)),
-    ("S4R", 4, Some(MassRule::Reduced)),
-    ("S3", 3, Some(MassRule::Full)),
-    ("B32", 3, Some(MassRule::Full)),
-    ("B32R", 3, Some(MassRule::Reduced)),
-    ("B31R", 2, Some(MassRule::Reduced)),
-    ("MASS", 1, None),
+/// Mass of an element.
+#[derive(Copy, Clone)]
+enum ElementMass {
+    /// That of its volume, by a rule of integration.
+    Solid(MassRule),
+    Point,
+    /// None: springs, dashpots, gaps.
+    Nothing,
+}
+use ElementMass::{Nothing, Point, Solid};
+
+/// Element types: name, number of nodes in the deck, and mass. Types with incompatible modes (C3D8I, S4, B31) are excluded, because
+/// results do not contain all of their motion.
+const TYPES: [(&str, usize, ElementMass); 24] = [
+    ("C3D20", 20, Solid(MassRule::Full)),
+    ("C3D20R", 20, Solid(MassRule::Reduced)),
+    ("C3D8", 8, Solid(MassRule::Full)),
+    ("C3D8R", 8, Solid(MassRule::Reduced)),
+    ("C3D10", 10, Solid(MassRule::Full)),
+    ("C3D4", 4, Solid(MassRule::Full)),
+    ("C3D15", 15, Solid(MassRule::Full)),
+    ("C3D6", 6, Solid(MassRule::Full)),
+    ("S8", 8, Solid(MassRule::Full)),
+    ("S8R", 8, Solid(MassRule::Reduced)),
+    ("S6", 6, Solid(MassRule::Full)),
+    ("S4R", 4, Solid(MassRule::Reduced)),
+    ("S3", 3, Solid(MassRule::Full)),
+    ("B32", 3, Solid(MassRule::Full)),
+    ("B32R", 3, Solid(MassRule::Reduced)),
+    ("B31R", 2, Solid(MassRule::Reduced)),
+    ("MASS", 1, Point),
+    ("SPRINGA", 2, Nothing),
+    ("SPRING1", 1, Nothing),
+    ("SPRING2", 2, Nothing),
+    ("DASHPOTA", 2, Nothing),
+    ("GAPUNI", 2, Nothing),
+    ("DCOUP3D", 1, Nothing),
+    ("D", 3, Nothing),
 ];
+
+/// Largest number of files of a deck, and how deep one may include another.
+const MOST_FILES: usize = 100;
+const DEEPEST: usize = 10;
+/// Largest size of an included file (bytes).
+const LONGEST: u64 = 64 << 20;
 
 /// Sets of point masses have no more members, counted each time that one is looked up: sets may hold each other.
 const MOST_MEMBERS: usize = 10_000_000;
@@ -51,10 +78,23 @@ pub struct Deck {
     pub densities: BTreeMap<String, f64>,
     /// Rule of mass integration of each element.
     pub rules: BTreeMap<usize, MassRule>,
+    /// Wall of each beam with a hollow section.
+    pub hollow: BTreeMap<usize, HollowBeam>,
+    /// Elements without mass.
+    pub massless: BTreeSet<usize>,
     /// Point masses at nodes.
     pub masses: Vec<PointMass>,
     /// Positions of the nodes.
     pub positions: BTreeMap<usize, Vector3<f64>>,
+}
+
+/// Beam with a hollow section.
+#[derive(Copy, Clone, Debug)]
+pub struct HollowBeam {
+    /// Nodes at both ends.
+    pub ends: [usize; 2],
+    /// Its section.
+    pub section: HollowSection,
 }
 
 /// Keyword to which the current lines belong.
@@ -75,15 +115,26 @@ enum At {
     Mass {
         set: String,
     },
+    /// Hollow section of the beams of a set: true for a pipe.
+    Section {
+        set: String,
+        pipe: bool,
+    },
 }
 
 #[derive(Default)]
 struct Reader {
     deck: Deck,
     material: Option<String>,
-    /// Elements of type MASS in each set, and names of sets within; `points` holds the elements' nodes and lines.
+    /// Point masses and beams in each set, and names of sets within; `points` holds the elements' nodes and lines.
     members: BTreeMap<String, Vec<Member>>,
     points: BTreeMap<usize, (usize, usize)>,
+    /// Nodes at both ends of each beam.
+    beams: BTreeMap<usize, [usize; 2]>,
+    /// Hollow sections of sets, with the line of each.
+    sections: Vec<(String, HollowSection, usize)>,
+    /// Number of files that were opened.
+    files: usize,
     /// Masses of sets, with the line of each.
     set_masses: Vec<(String, f64, usize)>,
     /// How many members of sets were looked up.
@@ -95,12 +146,24 @@ enum Member {
     Set(String),
 }
 
-/// Reads a deck.
+/// Reads a deck, which includes files relative to `directory`.
 ///
 /// # Errors
 /// The error, with its line.
-pub fn read(text: impl BufRead) -> Result<Deck, String> {
+pub fn read(text: impl BufRead, directory: &Path) -> Result<Deck, String> {
     let (mut reader, mut section) = (Reader::default(), At::Elsewhere);
+    read_file(&mut reader, &mut section, text, directory, 0)?;
+    reader.finish()
+}
+
+/// Reads the lines of a deck or of a file that it includes.
+fn read_file(
+    reader: &mut Reader,
+    section: &mut At,
+    text: impl BufRead,
+    directory: &Path,
+    depth: usize,
+) -> Result<(), String> {
     let mut lines = Lines::new(text);
     let mut keyword = String::new();
     while let Some(line) = lines.next()? {
@@ -111,16 +174,44 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         // A keyword that ends with a comma continues on the next line.
         if text.starts_with('*') || keyword.ends_with(',') {
             keyword.push_str(&line.without_spaces().to_ascii_uppercase());
-            if !keyword.ends_with(',') {
+            if keyword.starts_with("*INCLUDE") && !keyword.ends_with(',') {
+                keyword.clear();
                 section.is_whole(&line)?;
-                section = reader.open(&keyword, &line)?;
+                include(reader, section, &line, directory, depth)?;
+            } else if !keyword.ends_with(',') {
+                section.is_whole(&line)?;
+                *section = reader.open(&keyword, &line)?;
                 keyword.clear();
             }
             continue;
         }
-        reader.read_line(&line, &mut section)?;
+        reader.read_line(&line, section)?;
     }
-    reader.finish()
+    Ok(())
+}
+
+/// Reads the file that a line `*INCLUDE, INPUT=FILE` names.
+fn include(
+    reader: &mut Reader,
+    section: &mut At,
+    line: &TextLine,
+    directory: &Path,
+    depth: usize,
+) -> Result<(), String> {
+    let number = line.number;
+    let name = line.text.split_once('=').map(|(_, name)| name.trim().trim_matches(['"', '\'']));
+    let Some(name) = name.filter(|name| !name.is_empty()) else {
+        return Err(format!("line {number}: must name a file, as `*INCLUDE, INPUT=mesh.inp`"));
+    };
+    reader.files += 1;
+    if depth == DEEPEST || reader.files > MOST_FILES {
+        return Err(format!(
+            "line {number}: must include at most {MOST_FILES} files, {DEEPEST} within each other: does one include itself?"
+        ));
+    }
+    let text = open_text_up_to(&directory.join(name), LONGEST)
+        .map_err(|why| format!("line {number}: includes {name}: {why}"))?;
+    read_file(reader, section, text, directory, depth + 1).map_err(|why| format!("{name}: {why}"))
 }
 
 impl At {
@@ -152,11 +243,6 @@ impl Reader {
             parameter(keyword, name).ok_or_else(|| format!("line {number}: must have a parameter {name}"))
         };
         Ok(match keyword.split(',').next().unwrap_or_default() {
-            "*INCLUDE" => {
-                return Err(format!(
-                    "line {number}: must have no *INCLUDE: put what it includes in its place"
-                ));
-            }
             "*NODE" => At::Nodes,
             "*ELEMENT" => {
                 let name = needed("TYPE")?;
@@ -176,6 +262,17 @@ impl Reader {
             }
             "*DENSITY" => At::Density,
             "*MASS" => At::Mass { set: needed("ELSET")? },
+            "*BEAMSECTION" => match parameter(keyword, "SECTION").as_deref() {
+                None | Some("RECT" | "CIRC") => At::Elsewhere,
+                Some(hollow @ ("PIPE" | "BOX")) => {
+                    At::Section { set: needed("ELSET")?, pipe: hollow == "PIPE" }
+                }
+                Some(other) => {
+                    return Err(format!(
+                        "line {number}: `SECTION` must be RECT, CIRC, PIPE or BOX, got {other}: take `modes` from the .dat"
+                    ));
+                }
+            },
             "*SHELLSECTION" if keyword.split(',').any(|word| word == "COMPOSITE") => {
                 return Err(format!(
                     "line {number}: must have no COMPOSITE section, whose layers the results do not contain"
@@ -185,7 +282,7 @@ impl Reader {
         })
     }
 
-    fn read_line(&mut self, line: &TextLine, section: &mut At) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine, section_of: &mut At) -> Result<(), String> {
         let number = line.number;
         let words: Vec<&str> = line.text.split(',').map(str::trim).filter(|word| !word.is_empty()).collect();
         let whole = |index: usize, name: &str| -> Result<usize, String> {
@@ -196,7 +293,7 @@ impl Reader {
             let word = words.get(index).copied().unwrap_or_default();
             real(word).ok_or_else(|| format!("line {number}: `{name}` must be a finite number, got `{word}`"))
         };
-        match section {
+        match section_of {
             At::Elsewhere => {}
             At::Nodes => {
                 let mut position = Vector3::zeros();
@@ -225,25 +322,34 @@ impl Reader {
                     ));
                 }
                 *missing = nodes + 1 - words.len();
-                if self.deck.rules.contains_key(&element) || self.points.contains_key(&element) {
+                let is_known = self.deck.rules.contains_key(&element)
+                    || self.points.contains_key(&element)
+                    || self.deck.massless.contains(&element);
+                if is_known {
                     return Err(format!(
                         "line {number}: must have each element once, got element {element} again"
                     ));
                 }
-                if let Some(rule) = rule {
-                    self.deck.rules.insert(element, rule);
-                } else {
-                    self.points.insert(element, (whole(1, "node")?, number));
-                    if let Some(set) = set {
-                        self.members.entry(set.clone()).or_default().push(Member::Element(element));
-                    }
+                let is_beam = name.starts_with('B') && words.len() == nodes + 1;
+                match rule {
+                    Solid(rule) => drop(self.deck.rules.insert(element, rule)),
+                    Point => drop(self.points.insert(element, (whole(1, "node")?, number))),
+                    Nothing => drop(self.deck.massless.insert(element)),
+                }
+                if is_beam {
+                    self.beams.insert(element, [whole(1, "node")?, whole(nodes, "node")?]);
+                }
+                if let Some(set) = set.as_ref().filter(|_| is_beam || matches!(rule, Point)) {
+                    self.members.entry(set.clone()).or_default().push(Member::Element(element));
                 }
             }
             At::Set { name, generate: true } => {
                 let (first, last) = (whole(0, "first")?, whole(1, "last")?);
                 let step = if words.len() > 2 { whole(2, "step")?.max(1) } else { 1 };
+                let within = first..=last.max(first);
+                let points = self.points.range(within.clone()).map(|(element, _)| *element);
                 let own: Vec<usize> =
-                    self.points.range(first..=last.max(first)).map(|(element, _)| *element).collect();
+                    points.chain(self.beams.range(within).map(|(element, _)| *element)).collect();
                 look_up(&mut self.members_read, own.len(), number)?;
                 let own =
                     own.into_iter().filter(|element| (element - first) % step == 0).map(Member::Element);
@@ -264,7 +370,26 @@ impl Reader {
                     return Err(format!("line {number}: must belong to a *MATERIAL"));
                 };
                 self.deck.densities.insert(name.clone(), density);
-                *section = At::Elsewhere;
+                *section_of = At::Elsewhere;
+            }
+            At::Section { set, pipe } => {
+                // Behind the outer radius of a pipe, and both sides of a box.
+                let from = if *pipe { 1 } else { 2 };
+                let walls = (from..words.len()).map(|index| number_at(index, "thickness"));
+                let walls: Vec<f64> = walls.collect::<Result<_, _>>()?;
+                let wall = walls.first().copied().unwrap_or_default();
+                if wall.is_nan() || wall <= 0.0 {
+                    return Err(format!("line {number}: `thickness` must be positive, got {wall}"));
+                }
+                if walls.iter().any(|other| *other != wall) {
+                    return Err(format!(
+                        "line {number}: must have one thickness of all walls, got {}: take `modes` from the .dat",
+                        line.text.trim()
+                    ));
+                }
+                let section = if *pipe { HollowSection::Pipe { wall } } else { HollowSection::Box { wall } };
+                self.sections.push((set.clone(), section, number));
+                *section_of = At::Elsewhere;
             }
             At::Mass { set } => {
                 let mass = number_at(0, "mass")?;
@@ -272,32 +397,43 @@ impl Reader {
                     return Err(format!("line {number}: `mass` must be positive, got {mass}"));
                 }
                 self.set_masses.push((set.clone(), mass, number));
-                *section = At::Elsewhere;
+                *section_of = At::Elsewhere;
             }
         }
         Ok(())
     }
 
-    /// Assigns the masses to the nodes of their elements.
+    /// Returns the point masses and beams of a set that a line names.
+    fn elements(&mut self, set: &str, line: usize) -> Result<Vec<usize>, String> {
+        let (mut open, mut names, mut found) = (vec![set], BTreeSet::new(), Vec::new());
+        while let Some(name) = open.pop() {
+            if !names.insert(name) {
+                continue;
+            }
+            let members = self.members.get(name).ok_or_else(|| {
+                format!("line {line}: must have a set {name} of beams or of elements of type MASS")
+            })?;
+            look_up(&mut self.members_read, members.len(), line)?;
+            for member in members {
+                match member {
+                    Member::Element(element) => found.push(*element),
+                    Member::Set(name) => open.push(name),
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// Assigns masses to the nodes of their elements, and hollow sections to their beams.
     fn finish(mut self) -> Result<Deck, String> {
         let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
-        for (set, mass, line) in &self.set_masses {
-            let mut open = vec![set.as_str()];
-            let mut names = BTreeSet::new();
-            while let Some(name) = open.pop() {
-                if !names.insert(name) {
-                    continue;
-                }
-                let members = self
-                    .members
-                    .get(name)
-                    .ok_or_else(|| format!("line {line}: must have a set {name} of elements of type MASS"))?;
-                look_up(&mut self.members_read, members.len(), *line)?;
-                for member in members {
-                    match member {
-                        Member::Element(element) => drop(weighed.insert(*element, *mass)),
-                        Member::Set(name) => open.push(name),
-                    }
+        for (set, mass, line) in std::mem::take(&mut self.set_masses) {
+            weighed.extend(self.elements(&set, line)?.into_iter().map(|element| (element, mass)));
+        }
+        for (set, section, line) in std::mem::take(&mut self.sections) {
+            for element in self.elements(&set, line)? {
+                if let Some(ends) = self.beams.get(&element) {
+                    self.deck.hollow.insert(element, HollowBeam { ends: *ends, section });
                 }
             }
         }

@@ -32,6 +32,62 @@ pub enum MassRule {
     Full,
 }
 
+/// Hollow section of a beam, with the thickness of its wall, in the square or rectangle to which the beam is expanded.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum HollowSection {
+    /// Tube.
+    Pipe {
+        /// Thickness.
+        wall: f64,
+    },
+    /// Rectangular tube.
+    Box {
+        /// Thickness.
+        wall: f64,
+    },
+}
+
+impl HollowSection {
+    /// Returns points of the wall in natural coordinates of the section from -1 to 1, whose halves have the lengths `halves`, with
+    /// weights of which the whole square has 4; `None` if the wall is thicker than a half.
+    pub fn points(self, halves: [f64; 2]) -> Option<Vec<([f64; 2], f64)>> {
+        let gauss = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
+        let (Self::Pipe { wall } | Self::Box { wall }) = self;
+        let inner = halves.map(|half| 1.0 - wall / half);
+        if inner.iter().any(|inner| !(0.0..1.0).contains(inner)) {
+            return None;
+        }
+        Some(match self {
+            Self::Pipe { .. } => {
+                // Exact up to the seventh power: by the square of the radius, and evenly about the circle.
+                let (low, high) = (inner[0] * inner[0], 1.0);
+                let rings = gauss.iter().map(|(at, _)| f64::sqrt(0.5 * ((high + low) + (high - low) * at)));
+                let weight = std::f64::consts::PI * (high - low) / 16.0;
+                let angles = (0..8).map(|k| std::f64::consts::FRAC_PI_8 * (2.0 * f64::from(k) + 1.0));
+                let angles: Vec<(f64, f64)> = angles.map(|a| (libm::cos(a), libm::sin(a))).collect();
+                rings
+                    .flat_map(|r| {
+                        angles.iter().map(move |(c, s)| ([r * c, r * s], weight)).collect::<Vec<_>>()
+                    })
+                    .collect()
+            }
+            Self::Box { .. } => {
+                let line = [
+                    (-0.774_596_669_241_483_4, 5.0 / 9.0),
+                    (0.0, 8.0 / 9.0),
+                    (0.774_596_669_241_483_4, 5.0 / 9.0),
+                ];
+                // The whole without its inside.
+                let square = |[x, y]: [f64; 2], sign: f64| {
+                    let along = line.iter().flat_map(|a| line.iter().map(move |b| (*a, *b)));
+                    along.map(|(a, b)| ([x * a.0, y * b.0], sign * x * y * a.1 * b.1)).collect::<Vec<_>>()
+                };
+                [square([1.0; 2], 1.0), square(inner, -1.0)].concat()
+            }
+        })
+    }
+}
+
 /// Quadrature point of an element: natural coordinates, and weight.
 type QuadraturePoint = ([f64; 3], f64);
 

@@ -7,8 +7,9 @@ use std::io::BufRead;
 
 use super::mystran::Reactions;
 use super::tables::{ParticipationTable, modes_from_factors, modes_from_masses};
-use super::text::{Lines, TextLine, real};
-use super::{FileResults, NaturalFrequency, lowest};
+use super::text::{Lines, TextLine};
+use super::{FileMass, FileResults, NaturalFrequency, lowest};
+use crate::number::real;
 
 const ASK: &str = "ask for `MEFFMASS(ALL) = YES`, in MYSTRAN for `MPFACTOR = ALL`";
 const NO_EIGENVALUES: &str =
@@ -57,7 +58,9 @@ struct Reader {
     /// Mode to which MYSTRAN's current lines belong.
     eigenvector: Option<usize>,
     reactions: Reactions,
-    mass: Option<f64>,
+    mass: Option<FileMass>,
+    /// Rows of a mass matrix that is being read.
+    matrix: Vec<[f64; 6]>,
 }
 
 /// Reads the modes of a file.
@@ -76,6 +79,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
         eigenvector: None,
         reactions: Reactions::default(),
         mass: None,
+        matrix: Vec::new(),
     };
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
@@ -90,6 +94,9 @@ impl Reader {
         if text.contains("FATAL MESSAGE") || text.trim_start().starts_with("*ERROR") {
             let shown: String = text.trim().chars().take(80).collect();
             return Err(format!("line {}: the run failed: `{shown}`", line.number));
+        }
+        if text.trim_start().starts_with("SOL") && is_buckling(text) {
+            return Err(format!("line {}: is a buckling analysis: run normal modes (SOL 103)", line.number));
         }
         if text.starts_with('1') && text.contains("PAGE") {
             self.head = 3;
@@ -107,11 +114,14 @@ impl Reader {
         if let Some(rest) = line_text.strip_prefix("OUTPUTFOREIGENVECTOR") {
             self.eigenvector = rest.parse().ok();
             self.at = At::Elsewhere;
+        } else if line_text.starts_with("COMPLEXEIGENVALUE") {
+            return Err(format!("line {}: has complex modes: run real normal modes (SOL 103)", line.number));
         } else if let Some(title) = title(&line_text) {
             self.at = title;
             match title {
                 At::Eigenvalues => self.titled = Some(remark(&line_text)),
                 At::Factors => self.mystran = text.contains("M O D A L"),
+                At::MassMatrix => self.matrix.clear(),
                 _ => {}
             }
         } else if self.at == At::Eigenvalues && remark(&line_text) != Remark::None {
@@ -170,18 +180,39 @@ impl Reader {
         Ok(())
     }
 
-    /// Reads the first row of a matrix in stars, which begins with the mass.
+    /// Reads a row of a matrix of six rows in stars.
     fn mass_row(&mut self, line: &TextLine) -> Result<(), String> {
         let Some(row) = line.text.trim_start().strip_prefix('*').filter(|row| !row.starts_with('*')) else {
             return Ok(());
         };
-        self.at = At::Elsewhere;
-        let first = row.split_whitespace().next().unwrap_or_default();
-        let mass = real(first).ok_or_else(|| {
-            let shown: String = first.chars().take(40).collect();
-            format!("line {}: the mass matrix must begin with a finite number, got `{shown}`", line.number)
-        })?;
-        self.mass = Some(mass);
+        // Stars alone are a line or a column of the frame.
+        let is_frame = |word: &&str| word.bytes().all(|byte| byte == b'*');
+        let words: Vec<&str> = row.split_whitespace().filter(|word| !is_frame(word)).collect();
+        if words.is_empty() {
+            return Ok(());
+        }
+        let mut numbers = [0.0; 6];
+        // Of a matrix without six columns, the first row has the mass.
+        for (number, word) in numbers.iter_mut().zip(&words) {
+            *number = real(word).ok_or_else(|| {
+                let shown: String = word.chars().take(40).collect();
+                format!("line {}: the mass matrix must have finite numbers, got `{shown}`", line.number)
+            })?;
+        }
+        self.matrix.push(numbers);
+        let [x, y, z] = [0, 1, 2].map(|row| self.matrix.get(row).copied().unwrap_or_default());
+        let whole = self.matrix.len() == 6;
+        if whole || words.len() < 6 {
+            self.at = At::Elsewhere;
+        }
+        // The lower left block of MYSTRAN is empty.
+        let diagonal = || std::array::from_fn(|axis| self.matrix[3 + axis][3 + axis]);
+        self.mass = Some(FileMass {
+            mass: x[0],
+            moment: whole.then(|| [y[5], z[3], x[4]]),
+            inertia: whole.then(diagonal),
+            clamp: None,
+        });
         Ok(())
     }
 
@@ -235,6 +266,12 @@ fn title(line_text: &str) -> Option<At> {
         _ if line_text.starts_with("REALEIGENVALUES") => At::Eigenvalues,
         _ => return None,
     })
+}
+
+/// Returns true if a line of the executive control asks for buckling.
+fn is_buckling(text: &str) -> bool {
+    let solution = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty()).nth(1);
+    solution.is_some_and(|name| name == "105" || name.to_ascii_uppercase().contains("BUCKL"))
 }
 
 fn remark(line_text: &str) -> Remark {

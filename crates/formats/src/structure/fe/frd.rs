@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use super::NaturalFrequency;
 use super::element::ElementKind;
 use super::text::{Lines, TextLine};
+use crate::number::real;
 
 /// Columns of a node's number; `WIDE` is the number of columns of each displacement.
 const NODE: Range<usize> = 3..13;
@@ -54,6 +55,8 @@ pub struct Frd {
     pub elements: Vec<Element>,
     /// Their numbers.
     numbers: BTreeSet<usize>,
+    /// True if the last element of the file has no mass.
+    is_skipped: bool,
     /// Modes with their shapes.
     pub shapes: Vec<NodalMode>,
 }
@@ -76,11 +79,11 @@ struct Head {
     cycles: Option<(usize, f64)>,
 }
 
-/// Reads the shapes of a file.
+/// Reads the shapes of a file, and its elements but for those that are `massless` in the deck.
 ///
 /// # Errors
 /// The error, with its line.
-pub fn read(text: impl BufRead) -> Result<Frd, String> {
+pub fn read(text: impl BufRead, massless: &BTreeSet<usize>) -> Result<Frd, String> {
     let (mut frd, mut section, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
@@ -92,7 +95,9 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
                 ended = true;
                 break;
             }
-            _ if start.starts_with(" -1") || start.starts_with(" -2") => frd.read_line(&line, &section)?,
+            _ if start.starts_with(" -1") || start.starts_with(" -2") => {
+                frd.read_line(&line, &section, massless)?
+            }
             _ if start.starts_with(" -4") => {
                 let name = line.text.get(5..13).or_else(|| line.text.get(5..)).unwrap_or_default().trim();
                 // The block before ends first: its mode has to be whole when another follows.
@@ -146,8 +151,14 @@ impl Head {
         let number = line.number;
         let wrong = || format!("line {number}: `{name}` must be a finite number, got `{value}`");
         match name {
-            "1PGM" => self.generalised_mass = Some(super::text::real(value).ok_or_else(wrong)?),
-            "1PGK" => self.eigenvalue = Some(super::text::real(value).ok_or_else(wrong)?),
+            "1PGM" => self.generalised_mass = Some(real(value).ok_or_else(wrong)?),
+            "1PGK" => self.eigenvalue = Some(real(value).ok_or_else(wrong)?),
+            // -1 of a whole structure.
+            "1PHID" if value.parse().is_ok_and(|diameter: i64| diameter >= 0) => {
+                return Err(format!(
+                    "line {number}: has modes of cyclic symmetry, whose shapes are those of a sector: take the whole structure"
+                ));
+            }
             "1PMODE" => self.mode = Some(value.parse().map_err(|_| wrong())?),
             _ => {}
         }
@@ -182,7 +193,7 @@ impl Frd {
     }
 
     /// Reads a row of a block.
-    fn read_line(&mut self, line: &TextLine, section: &At) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine, section: &At, massless: &BTreeSet<usize>) -> Result<(), String> {
         let second = line.text.starts_with(" -2");
         let number = line.number;
         match section {
@@ -194,6 +205,7 @@ impl Frd {
                 }
                 self.positions.push(three(line)?);
             }
+            At::Elements if second && self.is_skipped => {}
             At::Elements if second => {
                 let Some(element) = self.elements.last_mut() else {
                     return Err(format!("line {number}: must follow the line of an element"));
@@ -219,6 +231,11 @@ impl Frd {
                 }
             }
             At::Elements => {
+                let element = line.column(NODE, "element")?.whole()?;
+                self.is_skipped = massless.contains(&element);
+                if self.is_skipped {
+                    return Ok(());
+                }
                 let code = line.column(13..18, "type")?.whole()?;
                 let kind = ElementKind::from_number(code).ok_or_else(|| {
                     let why = match code {
@@ -228,7 +245,6 @@ impl Frd {
                     format!("line {number}: `type` must be that of a solid, 1 to 6, got {code}{why}")
                 })?;
                 self.is_whole()?;
-                let element = line.column(NODE, "element")?.whole()?;
                 if !self.numbers.insert(element) {
                     return Err(format!(
                         "line {number}: must have each element once, got element {element} again"

@@ -8,13 +8,17 @@ use std::collections::BTreeMap;
 use flexsc_numerics::inverse::inverse_3x3;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-use super::deck::{Deck, PointMass};
+use super::deck::{Deck, HollowBeam, PointMass};
 use super::element::{ElementKind, MassRule, ShapeFunctions, Values};
 use super::frd::{Element, Frd};
-use super::{FileMode, FileResults, StructurePoint, lowest, tables::ParticipationTable};
+use super::{FileMass, FileMode, FileResults, StructurePoint, lowest, tables::ParticipationTable};
 
 /// Tolerance of the normalisation and orthogonality of shapes in the mass of the structure.
 const NORMALISED: f64 = 1e-3;
+/// Displacement of a node at rest, of the largest: constraints of expanded beams leave rounding.
+const AT_REST: f64 = 1e-8;
+/// Distance of the centre of mass from where it should be, relative to the spread of the mass, up to which the origin is the root.
+const NEAR: f64 = 0.05;
 /// Tolerance by which a point of an element may be outside of it, relative to the element.
 const INSIDE: f64 = 1e-3;
 /// Tolerance by which a point is in the middle of an element in a direction, relative to the element: positions have
@@ -30,6 +34,7 @@ pub fn modes(
     deck: &Deck,
     keep: Option<usize>,
     points: &[StructurePoint],
+    centre: Option<[f64; 3]>,
 ) -> Result<FileResults, String> {
     let natural: Vec<_> = frd.shapes.iter().map(|shape| shape.natural.clone()).collect();
     if let Some(first) = natural.first().filter(|first| first.mode != 1) {
@@ -52,10 +57,13 @@ pub fn modes(
         sums.add_point(mass, &frd, deck, &mut rules, &shapes)?;
     }
     sums.are_normalised()?;
-    let places = points
-        .iter()
-        .map(|point| Found::for_point(point, &frd, &mut rules))
-        .collect::<Result<Vec<_>, _>>()?;
+    let clamp = clamp(&frd.positions, &shapes);
+    let root = centre.and_then(|centre| sums.root(&Vector3::from(centre), clamp, &frd)).unwrap_or_default();
+    let place = |point: &StructurePoint| {
+        let at = (Vector3::from(point.at) + root).into();
+        Found::for_point(&StructurePoint { name: point.name.clone(), at }, &frd, &mut rules)
+    };
+    let places = points.iter().map(place).collect::<Result<Vec<_>, _>>()?;
     let modes = natural.iter().zip(&shapes).map(|(natural, shape)| {
         let scale = 1.0 / f64::sqrt(natural.generalised_mass);
         let (mut translation, mut moments) = (Vector3::zeros(), Matrix3::zeros());
@@ -63,7 +71,7 @@ pub fn modes(
             translation += phi * (scale * mass);
             moments += moment * phi.transpose() * scale;
         }
-        let n = moments;
+        let n = moments - root * translation.transpose();
         let rotation = [n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]];
         FileMode {
             frequency: natural.frequency,
@@ -74,7 +82,18 @@ pub fn modes(
             shapes: places.iter().map(|place| place.shape(&frd, shape, scale)).collect(),
         }
     });
-    Ok(FileResults { modes: modes.collect(), mass: Some(sums.masses.iter().sum()) })
+    let modes = modes.collect();
+    Ok(FileResults { modes, mass: Some(sums.about(&root, clamp)) })
+}
+
+/// Returns the least and greatest coordinates of the nodes that are at rest in all shapes.
+fn clamp(positions: &[Vector3<f64>], shapes: &[Vec<Vector3<f64>>]) -> Option<[Vector3<f64>; 2]> {
+    let bounds: Vec<f64> =
+        shapes.iter().map(|shape| AT_REST * shape.iter().map(Vector3::amax).fold(0.0, f64::max)).collect();
+    let at_rest =
+        |node: &usize| shapes.iter().zip(&bounds).all(|(shape, bound)| shape[*node].amax() <= *bound);
+    let held = (0..positions.len()).filter(at_rest).map(|node| positions[node]);
+    held.map(|at| [at, at]).reduce(|[low, high], [at, _]| [low.inf(&at), high.sup(&at)])
 }
 
 /// Cache of shape functions and quadrature points.
@@ -105,6 +124,8 @@ struct Sums {
     moments: Vec<Vector3<f64>>,
     /// Integrals of phi_i . phi_j over mass.
     products: DMatrix<f64>,
+    /// Integral of r r' dm.
+    second: Matrix3<f64>,
 }
 
 impl Sums {
@@ -113,6 +134,41 @@ impl Sums {
             masses: vec![0.0; nodes],
             moments: vec![Vector3::zeros(); nodes],
             products: DMatrix::zeros(modes, modes),
+            second: Matrix3::zeros(),
+        }
+    }
+
+    fn mass(&self) -> f64 {
+        self.masses.iter().sum()
+    }
+
+    /// Returns the root from which the centre of mass is at `centre`: the origin if it is there, or a point of the clamp.
+    fn root(
+        &self,
+        centre: &Vector3<f64>,
+        clamp: Option<[Vector3<f64>; 2]>,
+        frd: &Frd,
+    ) -> Option<Vector3<f64>> {
+        let own = self.moments.iter().sum::<Vector3<f64>>() / self.mass();
+        let spread = (self.second / self.mass() - own * own.transpose()).trace() + centre.norm_squared();
+        let root = own - centre;
+        let [low, high] = clamp.filter(|_| root.norm_squared() > NEAR * NEAR * spread)?;
+        let (least, greatest) =
+            frd.positions.iter().fold((own, own), |(low, high), at| (low.inf(at), high.sup(at)));
+        let margin = NEAR * (greatest - least).norm();
+        (0..3).all(|axis| (low[axis] - margin..=high[axis] + margin).contains(&root[axis])).then_some(root)
+    }
+
+    /// Returns the mass about a point.
+    fn about(&self, root: &Vector3<f64>, clamp: Option<[Vector3<f64>; 2]>) -> FileMass {
+        let (mass, sum) = (self.mass(), self.moments.iter().sum::<Vector3<f64>>());
+        let second =
+            self.second - root * sum.transpose() - sum * root.transpose() + root * root.transpose() * mass;
+        FileMass {
+            mass,
+            moment: Some((sum - root * mass).into()),
+            inertia: Some(std::array::from_fn(|axis| second.trace() - second[(axis, axis)])),
+            clamp: clamp.map(|corners| corners.map(|corner| (corner - root).into())),
         }
     }
 
@@ -139,15 +195,27 @@ impl Sums {
             .get(number)
             .ok_or_else(|| format!("line {line}: element {number} must be one of the deck"))?;
         let positions = || element.nodes.iter().map(|node| frd.positions[*node]);
-        for (values, weight) in rules.points(*kind, rule) {
-            let volume = weight * values.slopes(positions()).determinant();
+        let wall;
+        let points = if let Some(beam) = deck.hollow.get(number) {
+            let functions = rules.functions(*kind);
+            let axes = functions.at([0.0; 3]).slopes(positions());
+            wall = hollow_points(beam, deck, functions, &axes).ok_or_else(|| {
+                format!("line {line}: element {number} must have a wall within its section")
+            })?;
+            &wall[..]
+        } else {
+            rules.points(*kind, rule)
+        };
+        for (values, weight) in points {
+            let volume = values.slopes(positions()).determinant();
             // What overflows is no volume either.
             if volume.is_nan() || volume <= 0.0 {
                 return Err(format!(
                     "line {line}: element {number} must not be turned inside out: are its nodes in order?"
                 ));
             }
-            self.add_mass(density * volume, &values.interpolate(positions()), values, &element.nodes, shapes);
+            let mass = density * weight * volume;
+            self.add_mass(mass, &values.interpolate(positions()), values, &element.nodes, shapes);
         }
         Ok(())
     }
@@ -165,6 +233,7 @@ impl Sums {
             self.masses[*node] += mass * function;
             self.moments[*node] += position * (mass * function);
         }
+        self.second += position * position.transpose() * mass;
         let moved: Vec<_> =
             shapes.iter().map(|shape| values.interpolate(nodes.iter().map(|node| shape[*node]))).collect();
         for (i, one) in moved.iter().enumerate() {
@@ -227,6 +296,30 @@ impl Sums {
         }
         Ok(())
     }
+}
+
+/// Returns the quadrature points of the wall of a hollow beam, which is expanded to a brick with these axes; `None` if its ends
+/// are none of the deck, or its wall is too thick.
+fn hollow_points(
+    beam: &HollowBeam,
+    deck: &Deck,
+    functions: &ShapeFunctions,
+    axes: &Matrix3<f64>,
+) -> Option<Vec<(Values, f64)>> {
+    let [from, to] = beam.ends;
+    let along = deck.positions.get(&to)? - deck.positions.get(&from)?;
+    let cosine = |axis: usize| (axes.column(axis).dot(&along) / axes.column(axis).norm()).abs();
+    let axis = (0..3).max_by(|a, b| cosine(*a).total_cmp(&cosine(*b)))?;
+    let across = [(axis + 1) % 3, (axis + 2) % 3];
+    let wall = beam.section.points(across.map(|axis| axes.column(axis).norm()))?;
+    let gauss = f64::sqrt(1.0 / 3.0);
+    let points = wall.iter().flat_map(|point| [-gauss, gauss].map(|at| (at, *point)));
+    let value = |(at, (place, weight)): (f64, ([f64; 2], f64))| {
+        let mut natural = [0.0; 3];
+        (natural[axis], natural[across[0]], natural[across[1]]) = (at, place[0], place[1]);
+        (functions.at(natural), weight)
+    };
+    Some(points.map(value).collect())
 }
 
 /// Point with the elements that contain it.

@@ -3,6 +3,7 @@
 //! Modes are about the reference point of the file's participations, in its axes, and mass-normalised.
 
 mod calculix;
+mod craig_bampton;
 mod deck;
 mod element;
 mod f06;
@@ -21,6 +22,7 @@ use std::path::Path;
 
 use super::file::open_text_up_to;
 use super::mode_table::MOST_MODES;
+pub use craig_bampton::craig_bampton_modes;
 use tables::ParticipationTable;
 
 /// Largest size of a file (bytes): larger ones contain shapes or stresses of thousands of nodes, which are not used.
@@ -75,8 +77,21 @@ pub struct StructurePoint {
 pub struct FileResults {
     /// Modes with the lowest frequencies, increasing.
     pub modes: Vec<FileMode>,
-    /// Mass of the structure, if the file has it: of the free nodes, or of all.
-    pub mass: Option<f64>,
+    /// Mass of the structure, if the file has it.
+    pub mass: Option<FileMass>,
+}
+
+/// Mass of a structure in the file's units, about the point to which its participations refer: of the free nodes, or of all.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct FileMass {
+    /// Mass.
+    pub mass: f64,
+    /// Integral of r dm, if the file has it.
+    pub moment: Option<[f64; 3]>,
+    /// Moments of inertia about the three axes, if the file has them.
+    pub inertia: Option<[f64; 3]>,
+    /// Least and greatest coordinates of the nodes at rest, if the file has shapes.
+    pub clamp: Option<[[f64; 3]; 2]>,
 }
 
 impl ResultFormat {
@@ -96,7 +111,8 @@ impl ResultFormat {
         matches!(self, Self::Frd)
     }
 
-    /// Reads the `keep` lowest modes of a file (all for `None`), with their shapes at `points`.
+    /// Reads the `keep` lowest modes of a file (all for `None`), with their shapes at `points`. If the file has the mesh, and its
+    /// centre of mass is not at `centre`, they are about the point of the clamp from which it is.
     ///
     /// # Errors
     /// The error, with its line.
@@ -105,6 +121,7 @@ impl ResultFormat {
         path: &Path,
         keep: Option<usize>,
         points: &[StructurePoint],
+        centre: Option<[f64; 3]>,
     ) -> Result<FileResults, String> {
         let text = open_text_up_to(path, LONGEST)?;
         match self {
@@ -115,9 +132,10 @@ impl ResultFormat {
                 // CalculiX gives results the name of their deck.
                 let deck = path.with_extension("inp");
                 let reported = |why: String| format!("the deck {}: {why}", deck.display());
-                let deck =
-                    deck::read(open_text_up_to(&deck, LONGEST).map_err(reported)?).map_err(reported)?;
-                integrals::modes(frd::read(text)?, &deck, keep, points)
+                let directory = path.parent().unwrap_or(Path::new("."));
+                let deck = deck::read(open_text_up_to(&deck, LONGEST).map_err(reported)?, directory)
+                    .map_err(reported)?;
+                integrals::modes(frd::read(text, &deck.massless)?, &deck, keep, points, centre)
             }
         }
     }
@@ -183,14 +201,17 @@ fn lowest(
     let modes = natural.first().map_or(0, |first| first.mode)..=natural.last().map_or(0, |last| last.mode);
     tables.iter().try_for_each(|table| table.is_within(&modes))?;
     natural.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-    if let Some(pair) = natural.windows(2).find(|pair| pair[0].frequency < MECHANISM * pair[1].frequency) {
+    // Residual vectors may follow the modes that are kept.
+    let count = kept(natural.len(), keep)?;
+    let pairs = natural.windows(2).take(count.saturating_sub(1).max(1));
+    if let Some(pair) = pairs.into_iter().find(|pair| pair[0].frequency < MECHANISM * pair[1].frequency) {
         return Err(format!(
             "line {}: mode {} at {} rad/s is none of a clamped structure, as the next is at {} rad/s: clamp the root, \
              or look for a mechanism",
             pair[0].line, pair[0].mode, pair[0].frequency, pair[1].frequency
         ));
     }
-    natural.truncate(kept(natural.len(), keep)?);
+    natural.truncate(count);
     Ok(natural)
 }
 

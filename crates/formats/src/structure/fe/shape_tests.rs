@@ -20,13 +20,13 @@ fn rows(table: &str, structure: &str) -> Vec<Vec<f64>> {
 }
 
 fn read(frd: &str, deck: &str, points: &[StructurePoint]) -> Result<FileResults, String> {
-    let deck = deck::read(deck.as_bytes()).map_err(|why| format!("the deck: {why}"))?;
-    integrals::modes(frd::read(frd.as_bytes())?, &deck, None, points)
+    let deck = deck::read(deck.as_bytes(), &golden("")).map_err(|why| format!("the deck: {why}"))?;
+    integrals::modes(frd::read(frd.as_bytes(), &deck.massless)?, &deck, None, points, None)
 }
 
 fn file(name: &str, points: &[StructurePoint]) -> FileResults {
     let path = golden(name);
-    ResultFormat::from_path(&path).expect("a format").read(&path, None, points).expect("modes")
+    ResultFormat::from_path(&path).expect("a format").read(&path, None, points, None).expect("modes")
 }
 
 fn tip(position: [f64; 3]) -> StructurePoint {
@@ -39,7 +39,7 @@ fn first_moments_follow_from_shapes_and_masses() {
         let results = file(&format!("{structure}.frd"), &[]);
         let expected = rows("expected.csv", structure);
         assert_eq!(results.modes.len(), expected.len());
-        let found = results.mass.expect("a mass");
+        let found = results.mass.expect("a mass").mass;
         assert!((found / mass - 1.0).abs() < 1e-12, "{structure}: {found}");
         for (mode, row) in results.modes.iter().zip(&expected) {
             assert!((mode.frequency / row[0] - 1.0).abs() < 1e-6, "{structure}");
@@ -144,7 +144,7 @@ fn errors_name_line_and_field() {
         (in_deck("*MASS, ELSET=TIP", "*MASS, ELSET=TAP"), "the deck: line 228: must have a set TAP"),
         (
             in_deck("*MATERIAL", "*INCLUDE, INPUT=more.inp\n*MATERIAL"),
-            "the deck: line 231: must have no *INCLUDE",
+            "the deck: line 231: includes more.inp: No such file",
         ),
         (in_deck("16, 177", "16, 977"), "line 223 of the deck: must have a node of the deck, got 977"),
         (beam("*MASS, ELSET=TIP\n1.5", "*MASS, ELSET=TIP\n1.4"), "normalised by the mass of the deck"),
@@ -185,7 +185,7 @@ fn every_kind_of_element_weighs_what_the_run_took_it_to_weigh() {
     // integration.
     for kind in ["c3d4", "c3d6", "c3d8", "c3d8r", "c3d10", "c3d15", "c3d20r", "s3", "s4r", "b31r"] {
         let results =
-            ResultFormat::Frd.read(&golden(&format!("elements/{kind}.frd")), None, &[]).expect(kind);
+            ResultFormat::Frd.read(&golden(&format!("elements/{kind}.frd")), None, &[], None).expect(kind);
         assert_eq!(results.modes.len(), 6);
         let mass = match kind {
             "b31r" => 2700.0 * 2.0 * 0.02 * 0.03,
@@ -193,7 +193,140 @@ fn every_kind_of_element_weighs_what_the_run_took_it_to_weigh() {
             // Coordinates have six digits.
             _ => 2700.0 * 2.0 * (0.2 + 0.015) * 0.3,
         };
-        let found = results.mass.expect("a mass");
+        let found = results.mass.expect("a mass").mass;
         assert!((found / mass - 1.0).abs() < 1e-5, "{kind}: {found} {mass}");
     }
+}
+
+/// Writes a file of its own directory for a test, and reads it.
+fn beside(
+    files: &[(&str, &str)],
+    points: &[StructurePoint],
+    centre: [f64; 3],
+) -> Result<FileResults, String> {
+    static NUMBER: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
+    let number = NUMBER.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let directory = std::env::temp_dir().join(format!("flexsc-frd-{}-{number}", std::process::id()));
+    std::fs::create_dir_all(&directory).expect("a directory");
+    for (name, text) in files {
+        std::fs::write(directory.join(name), text).expect("a file");
+    }
+    let read = ResultFormat::Frd.read(&directory.join("run.frd"), None, points, Some(centre));
+    std::fs::remove_dir_all(&directory).expect("a directory");
+    read
+}
+
+#[test]
+fn decks_include_files_and_springs() {
+    let (frd, deck) = (text("beam.frd"), text("beam.inp"));
+    let expected = file("beam.frd", &[]);
+    let centre = expected.mass.and_then(|mass| mass.moment.map(|moment| moment.map(|part| part / mass.mass)));
+    let centre = centre.expect("a centre");
+    let (mesh, rest) = deck.split_at(deck.find("*MATERIAL").expect("a material"));
+    let mesh = format!("{mesh}*ELEMENT, TYPE=SPRINGA, ELSET=STRUT\n9001, 1, 2\n");
+    let springs = frd.replacen("\n -3", "\n\0", 1).replacen(
+        "\n -3",
+        "\n -1      9001   11    0    2\n -2         1         2\n -3",
+        1,
+    );
+    let springs = springs.replace("\n\0", "\n -3");
+    let files = [
+        ("run.frd", springs.as_str()),
+        ("run.inp", &format!("*include, Input = \"Mesh 1.inp\"\n{rest}")),
+        ("Mesh 1.inp", &mesh),
+    ];
+    assert_eq!(beside(&files, &[], centre).expect("modes"), expected);
+    let circle = [("run.frd", frd.as_str()), ("run.inp", "*INCLUDE, INPUT=run.inp\n")];
+    assert!(beside(&circle, &[], centre).expect_err("a circle").contains("does one include itself?"));
+    let unnamed = [("run.frd", frd.as_str()), ("run.inp", "*INCLUDE\n")];
+    assert!(beside(&unnamed, &[], centre).expect_err("no name").contains("line 1: must name a file"));
+}
+
+/// The closed form of a uniform cantilever: w = 1.8751041² sqrt(EI/m)/L², t = 0.7830 sqrt(m), r = 0.5688 sqrt(m) L.
+#[test]
+fn hollow_beams_have_the_mass_of_their_wall() {
+    for (kind, inertia, area) in [
+        (
+            "pipe",
+            std::f64::consts::FRAC_PI_4 * (0.02_f64.powi(4) - 0.019_f64.powi(4)),
+            std::f64::consts::PI * (0.02 * 0.02 - 0.019 * 0.019),
+        ),
+        ("box", (0.04 * 0.06_f64.powi(3) - 0.038 * 0.058_f64.powi(3)) / 12.0, 0.04 * 0.06 - 0.038 * 0.058),
+    ] {
+        let results = file(&format!("elements/{kind}.frd"), &[tip([3.0, 0.0, 0.0])]);
+        let mass = 1600.0 * area * 3.0;
+        let found = results.mass.expect("a mass");
+        assert!((found.mass / mass - 1.0).abs() < 1e-6, "{kind}: {} {mass}", found.mass);
+        assert!((found.moment.expect("moments")[0] / (1.5 * mass) - 1.0).abs() < 1e-6);
+        let largest = |mode: &FileMode| f64::sqrt(mode.translation.iter().map(|part| part * part).sum());
+        let stiff = 1.875_104_068_7_f64.powi(2) * f64::sqrt(1.2e11 * inertia / (1600.0 * area)) / 9.0;
+        let mode = results
+            .modes
+            .iter()
+            .min_by(|a, b| (a.frequency - stiff).abs().total_cmp(&(b.frequency - stiff).abs()))
+            .expect("modes");
+        assert!((mode.frequency / stiff - 1.0).abs() < 0.02, "{kind}: {} {stiff}", mode.frequency);
+        assert!((largest(mode) / (0.7830 * f64::sqrt(mass)) - 1.0).abs() < 0.01, "{kind}");
+    }
+}
+
+#[test]
+fn modes_are_about_the_clamp_from_which_the_centre_is_given() {
+    let (frd, deck) = (text("beam.frd"), text("beam.inp"));
+    let own = file("beam.frd", &[tip([4.0, 0.0, 0.0])]);
+    let centre = own
+        .mass
+        .and_then(|mass| mass.moment.map(|moment| moment.map(|part| part / mass.mass)))
+        .expect("a centre");
+    // All nodes moved by 3 m along x, in the file and in the deck.
+    let shift = |line: &str, from: usize, until: usize| {
+        let x: f64 = line[from..until].trim().parse().expect("a number");
+        format!("{}{:12.5E}{}", &line[..from], x + 3.0, &line[until..])
+    };
+    let mut nodes = false;
+    let moved: Vec<String> = frd
+        .lines()
+        .map(|line| {
+            nodes = (nodes || line.starts_with("    2C")) && !line.starts_with(" -3");
+            if nodes && line.starts_with(" -1") { shift(line, 13, 25) } else { line.to_owned() }
+        })
+        .collect();
+    let mut nodes = false;
+    let deck: Vec<String> = deck
+        .lines()
+        .map(|line| {
+            nodes = if line.starts_with('*') {
+                line.to_ascii_uppercase().starts_with("*NODE,") || line.eq_ignore_ascii_case("*NODE")
+            } else {
+                nodes
+            };
+            match line.split(',').collect::<Vec<_>>()[..] {
+                [node, x, y, z] if nodes => {
+                    format!("{node},{:e},{y},{z}", x.trim().parse::<f64>().expect("a number") + 3.0)
+                }
+                _ => line.to_owned(),
+            }
+        })
+        .collect();
+    let (moved, deck) = (format!("{}\n", moved.join("\n")), format!("{}\n", deck.join("\n")));
+    let files = [("run.frd", moved.as_str()), ("run.inp", deck.as_str())];
+    let results = beside(&files, &[tip([4.0, 0.0, 0.0])], centre).expect("modes");
+    for (found, expected) in results.modes.iter().zip(&own.modes) {
+        let pairs = found
+            .rotation
+            .iter()
+            .chain(&found.shapes[0][0])
+            .zip(expected.rotation.iter().chain(&expected.shapes[0][0]));
+        assert!(
+            pairs
+                .into_iter()
+                .all(|(a, b)| (a - b).abs()
+                    < 1e-4 * expected.rotation.iter().fold(1.0_f64, |m, r| m.max(r.abs()))),
+            "{found:?} {expected:?}"
+        );
+    }
+    // A centre that is at no distance from the clamp: about the origin of the file.
+    let far = beside(&files, &[], centre.map(|part| part + 1.0)).expect("modes");
+    let moment = far.mass.and_then(|mass| mass.moment).expect("moments");
+    assert!((moment[0] / far.mass.expect("a mass").mass - (centre[0] + 3.0)).abs() < 1e-4);
 }

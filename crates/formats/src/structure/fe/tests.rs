@@ -19,15 +19,15 @@ fn parse(format: ResultFormat, text: &[u8], keep: Option<usize>) -> Result<FileR
         ResultFormat::CalculiX => calculix::read(text, keep),
         ResultFormat::Flex => flex::read(text, keep),
         ResultFormat::Frd => {
-            let deck = deck::read(&bytes("boom.inp")[..])?;
-            integrals::modes(frd::read(text)?, &deck, keep, &[])
+            let deck = deck::read(&bytes("boom.inp")[..], &golden(""))?;
+            integrals::modes(frd::read(text, &deck.massless)?, &deck, keep, &[], None)
         }
     }
 }
 
 fn file(name: &str) -> FileResults {
     let path = golden(name);
-    ResultFormat::from_path(&path).expect("a format").read(&path, None, &[]).expect("modes")
+    ResultFormat::from_path(&path).expect("a format").read(&path, None, &[], None).expect("modes")
 }
 
 /// Returns the modes of a structure from an independent computation: frequency, t, r, r phi'.
@@ -70,7 +70,7 @@ fn participations_are_those_of_shapes_and_masses() {
         let worst = deviations(&results.modes, structure, mass, inertia);
         assert!(worst.iter().zip(bounds).all(|(found, bound)| *found <= bound), "{name}: {worst:?}");
         assert!(
-            results.mass.is_none_or(|found| (found / mass - 1.0).abs() < 0.02),
+            results.mass.is_none_or(|found| (found.mass / mass - 1.0).abs() < 0.02),
             "{name}: {:?}",
             results.mass
         );
@@ -157,23 +157,6 @@ fn a_table_goes_on_over_pages_and_is_of_mass_normalised_modes() {
     }
     let six = parse(ResultFormat::F06, &bytes("pages-nx.f06"), Some(6)).expect("modes");
     assert_eq!(six.modes[..], results.modes[..6]);
-}
-
-#[test]
-fn numbers_are_read_as_fortran_prints_them() {
-    let cases = [
-        ("1.5D+03", 1500.0),
-        ("0.1234567-100", 1.234_567e-101),
-        ("-.5E0", -0.5),
-        ("1.+2", 100.0),
-        ("+3", 3.0),
-    ];
-    for (field, number) in cases {
-        assert_eq!(text::real(field), Some(number), "{field}");
-    }
-    for field in ["", "****", "NaN", "Infinity", "inf", "1e999", "1.0.0", "1-2-3", "--1", "0x1"] {
-        assert_eq!(text::real(field), None, "{field}");
-    }
 }
 
 #[test]

@@ -1,7 +1,9 @@
-//! Lines of a text file, and numbers as Fortran prints them.
+//! Lines of a text file, and the numbers in their fields.
 
 use std::io::{BufRead, Read};
 use std::ops::Range;
+
+use crate::number::real;
 
 /// Largest length of a line (bytes): files with longer lines are not text.
 const LONGEST: usize = 4096;
@@ -164,23 +166,4 @@ impl<const N: usize> Fields<'_, N> {
         let shown: String = self.words[field].chars().take(40).collect();
         format!("line {}: `{}` must be {expected}, got `{shown}`", self.number, self.names[field])
     }
-}
-
-/// Parses a number as Fortran prints it: `D` stands for `E`, and three-digit exponents have neither.
-pub fn real(field: &str) -> Option<f64> {
-    let mut plain = String::with_capacity(field.len() + 1);
-    for c in field.chars() {
-        match c {
-            '0'..='9' | '.' => plain.push(c),
-            'e' | 'E' | 'd' | 'D' => plain.push('e'),
-            '+' | '-' => {
-                if plain.ends_with(|last: char| last.is_ascii_digit() || last == '.') {
-                    plain.push('e');
-                }
-                plain.push(c);
-            }
-            _ => return None,
-        }
-    }
-    plain.parse().ok().filter(|number: &f64| number.is_finite())
 }

@@ -8,6 +8,7 @@
 """
 
 from flexsc.structure._clamped import appendage_from_nastran
+from flexsc.structure._craig_bampton import appendage_from_craig_bampton
 from flexsc.structure._files import from_csv, write_scenario
 from flexsc.structure._matrices import appendage_from_matrices
 from flexsc.structure._matrix_file import read_matrices
@@ -19,6 +20,7 @@ from flexsc.structure._structure import Structure
 __all__ = [
     "StateSpace",
     "Structure",
+    "appendage_from_craig_bampton",
     "appendage_from_matrices",
     "appendage_from_nastran",
     "from_csv",

@@ -150,6 +150,7 @@ def _of_element(bulk: Any, element: Any, path: Path) -> Iterator[Lump]:
             between = bulk.nodes[grids[1]].get_position() - bulk.nodes[grids[0]].get_position()
             mass = element.MassPerLength() * float(np.linalg.norm(between + ends[1] - ends[0]))
         else:
+            between = np.zeros(3)
             mass, ends = float(element.Mass()), [np.zeros(3)] * len(grids)
     except (AttributeError, KeyError, TypeError, RuntimeError) as error:
         raise ValueError(f"{name}: must have a property and a material, of which its mass follows") from error
@@ -160,8 +161,21 @@ def _of_element(bulk: Any, element: Any, path: Path) -> Iterator[Lump]:
             f"{name}: must be one of {', '.join((*_BARS, *_EQUAL))} without mid-side grid points, or "
             f"have no density, got {len(grids)} grid points and the mass {mass:g}"
         )
+    # Of a bar, Nastran lumps no inertia.
+    own = _torsion(element, between + ends[1] - ends[0]) if kind == "CBEAM" else np.zeros((3, 3))
     for grid, end in zip(grids, ends, strict=True):
-        yield Lump(grid, mass / len(grids), end, np.zeros((3, 3)))
+        yield Lump(grid, mass / len(grids), end, own)
+
+
+def _torsion(element: Any, along: Numbers) -> Numbers:
+    """The integral of x x' dm of half a beam, across it: its torsional inertia is half of rho (I1 + I2) L."""
+    length = float(np.linalg.norm(along))
+    if not length > 0.0:
+        return np.zeros((3, 3))
+    polar = float(element.Rho() * (element.I11() + element.I22())) * length / 2.0
+    axis = along / length
+    across: Numbers = polar / 2.0 * (np.eye(3) - np.outer(axis, axis))
+    return across
 
 
 def _end(bulk: Any, element: Any, end: int, path: Path) -> Numbers:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc._numpy import np, npt
 from flexsc.structure._clamped import MECHANISM, _dampings
+from flexsc.structure._matrix_file import DENSE
 
 if TYPE_CHECKING:
     Numbers = npt.NDArray[np.float64]
@@ -18,8 +19,6 @@ SYMMETRIC = 1e-9
 RIGID = 1e-6
 # Number of modes, unless it is given.
 KEPT = 10
-# Dense matrices above this order take minutes.
-DENSE = 4000
 
 
 def appendage_from_matrices(

@@ -6,7 +6,11 @@ import os
 from pathlib import Path
 from typing import Any
 
+from flexsc import _native as engine
 from flexsc._numpy import np
+
+# Dense matrices above this order take minutes.
+DENSE = 4000
 
 
 def read_matrices(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -15,7 +19,7 @@ def read_matrices(path: str | os.PathLike[str]) -> dict[str, Any]:
     ========  ==================================================================================
     `.npz`    NumPy's, with arrays under their names, or one sparse matrix of SciPy as `matrix`
     `.mat`    MATLAB's up to version 7.2, by SciPy: `pip install flexsc[matlab]`
-    `.mtx`    MatrixMarket's, by SciPy, with one matrix as `matrix`
+    `.mtx`    MatrixMarket's, with one matrix as `matrix`, sparse as the file is if SciPy is there
     `.op4`    Nastran's OUTPUT4, text or binary, by pyNastran: `pip install flexsc[nastran]`
     ========  ==================================================================================
 
@@ -76,11 +80,20 @@ def _mat(path: Path) -> dict[str, Any]:
 
 
 def _mtx(path: Path) -> dict[str, Any]:
+    shape, listed, rows, columns, values = engine.matrix_market(path)
     try:
-        from scipy.io import mmread
+        from scipy.sparse import coo_array
     except ImportError as error:
-        raise ImportError("MatrixMarket files need SciPy: pip install flexsc[matlab]") from error
-    return {"matrix": mmread(path)}
+        if max(shape) > DENSE:
+            raise ImportError(
+                f"matrices above {DENSE} rows need SciPy: pip install flexsc[matlab]"
+            ) from error
+    else:
+        if listed:
+            return {"matrix": coo_array((values, (rows, columns)), shape=shape)}
+    matrix = np.zeros(shape)
+    np.add.at(matrix, (rows, columns), values)
+    return {"matrix": matrix}
 
 
 def _op4(path: Path) -> dict[str, Any]:

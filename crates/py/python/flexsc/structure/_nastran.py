@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexsc._numpy import np, npt
+from flexsc.structure._free_modes import check_free
 from flexsc.structure._punch import Solution, read_punch
 from flexsc.structure._structure import Structure
 
@@ -37,7 +38,9 @@ def from_nastran(
         model: The bulk data, for positions, coordinate systems, the centre of mass and the inertia tensor.
         points: Names of points, with the numbers of their grid points.
         damping: Damping ratio of all modes.
-        lowest: Modes below this frequency (rad/s) are those of the rigid body, and left out.
+        lowest: Modes below this frequency (rad/s) are those of the rigid body, and left out. Those above it
+            have neither momentum nor angular momentum, by the masses of the bulk data, if it has any: that
+            needs shapes at all grid points with mass.
         centre: Centre of mass in the basic coordinate system, in the model's unit; left out, that of the
             model, whose inertia tensor the structure then has.
         length_unit: Length of the model's unit (m); 1e-3 for millimetres.
@@ -56,6 +59,7 @@ def from_nastran(
     elastic = solution.frequencies > lowest
     if not elastic.any():
         raise ValueError(f"{path}: must have a mode above {lowest:g} rad/s, and has none")
+    check_free(path, solution, elastic, bulk, Path(model))
     positions, shapes = {}, {}
     for name, number in points.items():
         if number not in bulk.nodes:
@@ -88,7 +92,14 @@ def _read_op2(path: Path, subcase: int | None) -> Solution:
     """Frequencies and mass-normalised shapes of an OP2 file."""
     if not path.is_file():
         raise FileNotFoundError(f"{path}: no such file")
-    op2 = _pynastran("op2.op2").read_op2(str(path), debug=None, build_dataframe=False)
+    reader = _pynastran("op2.op2")
+    try:
+        op2 = reader.read_op2(str(path), debug=None, build_dataframe=False)
+    except Exception as error:  # pyNastran's are of many kinds
+        raise ValueError(
+            f"{path}: pyNastran cannot read it: {' '.join(str(error).split()) or type(error).__name__}: did "
+            f"the run end, and does it have normal modes (SOL 103)?"
+        ) from error
     # A key is the subcase, or begins with it.
     vectors = {key[0] if isinstance(key, tuple) else key: found for key, found in op2.eigenvectors.items()}
     if not vectors:
@@ -101,18 +112,40 @@ def _read_op2(path: Path, subcase: int | None) -> Solution:
     if chosen not in vectors:
         raise ValueError(f"subcase: must be one of {sorted(vectors)}, got {chosen}")
     found = vectors[chosen]
+    if (kind := _other_solution(found)) is not None:
+        raise ValueError(f"{path}: must have real normal modes (SOL 103), and has {kind}")
     numbers = np.asarray(found.modes)
-    tables = [table for table in op2.eigenvalues.values() if set(numbers) <= set(table.mode)]
+    tables = [
+        table
+        for table in op2.eigenvalues.values()
+        if hasattr(table, "generalized_mass") and set(numbers) <= set(table.mode)
+    ]
     if not tables:
-        raise ValueError(f"{path}: must have the table of eigenvalues (LAMA), with the generalised masses")
+        # Without the table of eigenvalues (LAMA), the masses of the bulk data show how shapes are normalised.
+        squares = np.asarray(found.eigns, dtype=np.float64)
+        return Solution(np.sqrt(np.maximum(squares, 0.0)), _by_grid(found, np.ones(len(numbers))))
     row = {int(number): index for index, number in enumerate(tables[0].mode)}
     rows = [row[int(number)] for number in numbers]
     masses = np.asarray(tables[0].generalized_mass, dtype=np.float64)[rows]
     if not (masses > 0.0).all():
         raise ValueError(f"{path}: must have positive generalised masses, got {masses.min():g}")
+    return Solution(np.asarray(tables[0].radians, dtype=np.float64)[rows], _by_grid(found, masses))
+
+
+def _by_grid(found: Any, masses: Numbers) -> dict[int, Numbers]:
+    """The shapes at each grid point, divided by the roots of these generalised masses."""
     data = np.asarray(found.data, dtype=np.float64) / np.sqrt(masses)[:, None, None]
-    shapes = {int(node): data[:, index] for index, (node, _) in enumerate(found.node_gridtype)}
-    return Solution(np.asarray(tables[0].radians, dtype=np.float64)[rows], shapes)
+    return {int(node): data[:, index] for index, (node, _) in enumerate(found.node_gridtype)}
+
+
+def _other_solution(found: Any) -> str | None:
+    """The kind of eigenvectors that are not those of real normal modes."""
+    if np.iscomplexobj(found.data):
+        return "complex ones: leave out damping, rotation and other unsymmetric terms"
+    code = getattr(found, "analysis_code", 2)
+    if code in (7, 8):
+        return "those of buckling (SOL 105)"
+    return None if code == 2 else f"other vectors (analysis code {code})"
 
 
 def _read_bulk(path: Path) -> Any:

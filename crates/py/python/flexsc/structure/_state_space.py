@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc._numpy import np, npt
 from flexsc.structure._modal_model import StateSpace
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
 _ALIKE = 1e-8
 # An input that pushes a mode by less than this part of what it pushes the others by is rounding.
 _ROUNDING = 1e-12
+# At how many frequencies the transfer function is computed from the matrices themselves.
+SOLVED = 24
 # Where motions drive each other, rounding gives eigenvectors a condition number of its inverse root.
 _FULL = 1e7
 
@@ -56,12 +59,13 @@ def from_state_space(
         )
     if D is not None and (through := np.abs(_matrix("D", D)).max(initial=0.0)) > 0.0:
         raise ValueError(f"D: must be 0, as no motion of modes feeds through, got {through:g}")
-    found = sorted(_modes(a, b, tolerance), key=lambda mode: mode[0])
+    motions = _decomposed(a)
+    found = sorted(_modes(a, b, motions, tolerance), key=lambda mode: mode[0])
     if not found:
         raise ValueError("B: must push a mode, and pushes none")
     w, zeta, influences, displacements, rates = (np.array(column) for column in zip(*found, strict=True))
     model = StateSpace(w, zeta, influences, c @ displacements.T, c @ rates.T, 0.0)
-    deviation, where = _deviation(model, a, b, c)
+    deviation, where = max(_deviation(model, a, b, c), _modal_deviation(model, motions, b, c))
     if deviation > tolerance:
         raise ValueError(
             f"A, B, C: must be those of modes, whose transfer function is off by a relative {deviation:.1e} "
@@ -78,17 +82,33 @@ def _matrix(name: str, matrix: Any) -> Numbers:
     return found
 
 
-def _modes(a: Numbers, b: Numbers, tolerance: float) -> list[tuple[float, float, Numbers, Numbers, Numbers]]:
-    """Frequency, damping ratio, influence of the inputs, states of a unit displacement and of a unit rate."""
+class _Motions(NamedTuple):
+    """Poles of oscillations, right eigenvectors as columns, left ones as rows, and the condition number."""
+
+    poles: Complex
+    right: Complex
+    left: Complex
+    condition: float
+
+
+def _decomposed(a: Numbers) -> _Motions:
     poles, right = np.linalg.eig(a)
-    upper = _oscillating(poles)
-    condition = np.linalg.cond(right)
+    _oscillating(poles)
+    condition = float(np.linalg.cond(right))
     if not condition < _FULL:
         raise ValueError(
             f"A: must have motions that are modes of their own, and their condition number is "
             f"{condition:.1e}: some drive each other, or the state has scales too far apart"
         )
-    left = np.linalg.inv(right)
+    return _Motions(poles, right, np.linalg.inv(right), condition)
+
+
+def _modes(
+    a: Numbers, b: Numbers, motions: _Motions, tolerance: float
+) -> list[tuple[float, float, Numbers, Numbers, Numbers]]:
+    """Frequency, damping ratio, influence of the inputs, states of a unit displacement and of a unit rate."""
+    poles, right, left, condition = motions
+    upper = _oscillating(poles)
     largest = np.linalg.norm(b, axis=0).max(initial=0.0)
     modes = []
     for group in _alike(poles, upper):
@@ -156,17 +176,31 @@ def _alike(poles: Complex, upper: npt.NDArray[np.intp]) -> list[list[int]]:
     return groups
 
 
-def _deviation(model: StateSpace, a: Numbers, b: Numbers, c: Numbers) -> tuple[float, float]:
-    """The largest relative deviation of the transfer function from that of the matrices, and where it is."""
+def _places(model: StateSpace, most: int) -> Numbers:
+    """Frequencies at and between the natural ones, of which many are thinned out."""
     w = model.frequencies
     places = np.concatenate([[0.5 * w[0]], w, np.sqrt(w[1:] * w[:-1]), [2.0 * w[-1]]])
-    # So many tell; each costs a solution.
-    places = places[:: 1 + len(places) // 400]
-    own = model.response(places)
+    return np.asarray(places[:: 1 + len(places) // most])
+
+
+def _deviation(model: StateSpace, a: Numbers, b: Numbers, c: Numbers) -> tuple[float, float]:
+    """The largest relative deviation of the transfer function from that of the matrices, and where it is."""
+    # Each costs a solution, in which threads of the linear algebra may wait for each other.
+    places = _places(model, SOLVED)
+    unit = np.eye(len(a))
+    return _worst(model, places, (c @ np.linalg.solve(1j * w * unit - a, b) for w in places.tolist()))
+
+
+def _modal_deviation(model: StateSpace, motions: _Motions, b: Numbers, c: Numbers) -> tuple[float, float]:
+    """The same from the sum over all poles, at and between all natural frequencies."""
+    places, seen, pushed = _places(model, 10_000), c @ motions.right, motions.left @ b
+    return _worst(model, places, (seen / (1j * w - motions.poles) @ pushed for w in places.tolist()))
+
+
+def _worst(model: StateSpace, places: Numbers, exact: Iterable[Complex]) -> tuple[float, float]:
     worst = (0.0, float(places[0]))
-    for place, seen in zip(places.tolist(), own, strict=True):
-        exact = c @ np.linalg.solve(1j * place * np.eye(len(a)) - a, b)
-        size = float(np.linalg.norm(exact))
+    for place, own, true in zip(places.tolist(), model.response(places), exact, strict=True):
+        size = float(np.linalg.norm(true))
         if size > 0.0:
-            worst = max(worst, (float(np.linalg.norm(seen - exact)) / size, place))
+            worst = max(worst, (float(np.linalg.norm(own - true)) / size, place))
     return worst

@@ -13,8 +13,9 @@ use serde::{Deserialize, Serialize};
 
 use super::axes_orientation::AxesOrientation;
 use super::clamped::{ClampedMode, antisymmetric_part};
+use super::craig_bampton::CraigBampton;
 use super::drive::AppendageDrive;
-use super::fe_results::Units;
+use super::fe_units::FileUnits;
 use super::hinge::{Hinge, HingedBody};
 use super::mass::MassProperties;
 use super::plate::{Plate, PlateAxis, UniformPlate};
@@ -61,6 +62,10 @@ pub struct Appendage {
     /// is rigid.
     #[serde(default)]
     pub modes: ModeTable<ClampedMode>,
+    /// Craig-Bampton model in place of `modes`; `damping` is then needed, and `mass`, `centre` and `inertia` are compared
+    /// with it. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub craig_bampton: Option<CraigBampton>,
     /// Damping ratio of modes read from finite-element results, or a list with one for each; required where the
     /// file has none, as all but those of 42.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -74,9 +79,11 @@ pub struct Appendage {
     /// Thermal bending in sunlight; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thermal: Option<Thermal>,
-    /// Units of finite-element results, except for 42, whose files are in SI units; default: metres and kilograms.
+    /// Units of finite-element results, except for 42, whose files are in SI units: `m` (metres, kilograms), `mm` (millimetres,
+    /// tonnes), `in` (inches, pound-force seconds squared an inch), or `length` (`m`, `cm`, `mm`, `in`, `ft`) and `mass` (`kg`, `g`,
+    /// `t`, `lb`, `slug`, `slinch`); default: `m`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub units: Option<Units>,
+    pub units: Option<FileUnits>,
 }
 
 impl Appendage {

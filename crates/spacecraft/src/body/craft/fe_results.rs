@@ -3,49 +3,22 @@
 use std::path::Path;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::foreign_file;
 use flexsc_formats::structure::Shape;
-use flexsc_formats::structure::fe::{FileMode, ResultFormat, StructurePoint};
+use flexsc_formats::structure::fe::{FileMass, FileMode, ResultFormat, StructurePoint};
 use flexsc_formats::structure::mode_table::{MOST_MODES, ModeRow};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+
+use nalgebra::{Matrix3, Vector3};
 
 use super::{Appendage, ClampedMode};
 use crate::body::spatial::NamedPoint;
 
+/// Difference allowed between moments of inertia of the file's structure and of the appendage about the root, of the largest.
+const OWN_INERTIA: f64 = 0.3;
 /// Relative difference allowed between the masses of the file's structure and of the appendage, for clamped nodes and
 /// attached equipment.
 const OWN_MASS: f64 = 0.2;
-
-/// Units of a file that states none, because the solver leaves them to its user.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Units {
-    /// Metres, kilograms, newtons.
-    #[default]
-    #[serde(rename = "m")]
-    Metres,
-    /// Millimetres, tonnes, newtons.
-    #[serde(rename = "mm")]
-    Millimetres,
-}
-
-impl Units {
-    /// Returns the unit of length (m).
-    const fn length(self) -> f64 {
-        match self {
-            Self::Metres => 1.0,
-            Self::Millimetres => 1e-3,
-        }
-    }
-
-    /// Returns the unit of mass (kg).
-    const fn mass(self) -> f64 {
-        match self {
-            Self::Metres => 1.0,
-            Self::Millimetres => 1e3,
-        }
-    }
-}
 
 impl Appendage {
     /// Reads the modes, if they are in a file, or copies them from another appendage that was read from the same file.
@@ -54,6 +27,9 @@ impl Appendage {
     /// The key, and the reason or the error in the file.
     pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), ConfigError> {
         self.modes.locate(directory);
+        if self.craig_bampton.is_some() {
+            return self.reduce(directory);
+        }
         let file = self.modes.file();
         let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::from_path(file)?))) else {
             self.no_keys_of_results()?;
@@ -63,7 +39,15 @@ impl Appendage {
             return Ok(());
         };
         let keys = |options: &Self| {
-            (options.mass, options.keep, options.units, options.damping.clone(), options.points.clone())
+            (
+                options.mass,
+                options.centre,
+                options.inertia,
+                options.keep,
+                options.units,
+                options.damping.clone(),
+                options.points.clone(),
+            )
         };
         if let Some(others) =
             others.filter(|others| others.modes.file() == Some(file) && keys(others) == keys(self))
@@ -83,9 +67,14 @@ impl Appendage {
         }
         let reported = |why| ConfigError::new("modes", format!("cannot be used: {}: {why}", file.display()));
         let places = if format.has_shapes() { self.places() } else { Vec::new() };
-        let results = format.read(file, self.keep, &places).map_err(reported)?;
+        let unit = self.units.unwrap_or_default().length();
+        let centre = Vector3::from(self.centre.map(Finite::get)) / unit;
+        let results = format.read(file, self.keep, &places, Some(centre.into())).map_err(|why| {
+            let reads = "results of Nastran, MYSTRAN, CalculiX and 42";
+            reported(foreign_file::refusal(file, &[], reads, why))
+        })?;
         if let Some(mass) = results.mass {
-            self.weighs(mass * self.units.unwrap_or_default().mass())?;
+            self.weighs(&mass)?;
         }
         let dampings = self.dampings(&results.modes)?;
         let modes = results.modes.iter().zip(dampings).enumerate();
@@ -95,6 +84,33 @@ impl Appendage {
         });
         let modes = modes.collect::<Result<Vec<_>, _>>()?;
         self.modes.fill(modes);
+        Ok(())
+    }
+
+    /// Takes the modes of the Craig-Bampton model, and their damping, in its place.
+    fn reduce(&mut self, directory: &Path) -> Result<(), ConfigError> {
+        let Some(mut model) = self.craig_bampton.take() else { return Ok(()) };
+        if self.modes.file().is_some() || !self.modes.is_empty() {
+            return Err(ConfigError::new(
+                "craig_bampton",
+                "must be left out beside `modes`: it has the modes",
+            ));
+        }
+        let within = |fault: ConfigError| fault.within("craig_bampton");
+        let results = model.results(directory, self.keep).map_err(within)?;
+        if let Some(mass) = results.mass {
+            self.weighs(&mass)?;
+        }
+        let dampings = self.dampings(&results.modes)?;
+        let modes = results.modes.iter().zip(dampings).enumerate().map(|(index, (mode, damping))| {
+            let reported =
+                |why| ConfigError::new("craig_bampton", format!("mode {} of the lowest: {why}", index + 1));
+            self.clamped(mode, damping).map_err(reported)
+        });
+        let modes = modes.collect::<Result<Vec<_>, _>>()?;
+        self.modes.fill(modes);
+        // From here on they are modes of a table, which contains this itself.
+        (self.keep, self.units, self.damping) = (None, None, None);
         Ok(())
     }
 
@@ -150,17 +166,60 @@ impl Appendage {
         self.points.iter().map(place).collect()
     }
 
-    /// Checks that the mass of the file's structure (kg) agrees with the appendage's.
-    fn weighs(&self, structure: f64) -> Result<(), ConfigError> {
-        let mass = self.mass.get();
-        if (structure - mass).abs() <= OWN_MASS * mass {
-            return Ok(());
+    /// Checks that mass, centre of mass and inertia of the file's structure agree with the appendage's.
+    fn weighs(&self, structure: &FileMass) -> Result<(), ConfigError> {
+        let (units, mass) = (self.units.unwrap_or_default(), self.mass.get());
+        let own = structure.mass * units.mass();
+        if (own - mass).abs() > OWN_MASS * mass {
+            let why = format!(
+                "must be that of the structure in the file, {own} kg, to a fifth, got {mass}: are its `units` right? A \
+                 CalculiX file leaves out what clamped nodes weigh"
+            );
+            return Err(ConfigError::new("mass", why));
         }
+        let (centre, own_inertia) = (self.centre_of_mass(), self.inertia_tensor());
+        let squared = own_inertia.trace() / 2.0 / mass + centre.norm_squared();
+        if let Some(moment) = structure.moment {
+            let moment = Vector3::from(moment) * (units.mass() * units.length());
+            if (moment - centre * mass).norm() > OWN_MASS * mass * f64::sqrt(squared) {
+                let [x, y, z]: [f64; 3] = (moment / own).into();
+                let clamp = structure.clamp.map_or_else(
+                    || {
+                        "the results must be about the root: ask the solver for them about its grid"
+                            .to_owned()
+                    },
+                    |[low, high]| {
+                        let corner = |at: [f64; 3]| at.map(|part| part * units.length());
+                        format!(
+                            "nodes at rest are from {:?} to {:?} m of the file",
+                            corner(low),
+                            corner(high)
+                        )
+                    },
+                );
+                let why = format!(
+                    "must be that of the structure in the file, [{x:.4}, {y:.4}, {z:.4}] m from its reference point, got {:?}; {clamp}",
+                    self.centre.map(Finite::get)
+                );
+                return Err(ConfigError::new("centre", why));
+            }
+        }
+        let Some(inertia) = structure.inertia else { return Ok(()) };
+        let about_root =
+            own_inertia + (Matrix3::identity() * centre.norm_squared() - centre * centre.transpose()) * mass;
+        let found = inertia.map(|part| part * units.mass() * units.length() * units.length());
+        let most = OWN_INERTIA * about_root.diagonal().max();
+        let Some(axis) = (0..3).find(|axis| (found[*axis] - about_root[(*axis, *axis)]).abs() > most) else {
+            return Ok(());
+        };
         let why = format!(
-            "must be that of the structure in the file, {structure} kg, to a fifth, got {mass}: are its `units` right? A \
-             CalculiX file leaves out what clamped nodes weigh"
+            "must give, with `mass` and `centre`, the moment of inertia of the structure in the file about its reference point, {} kg m² \
+             about {}, got {}: is it about the centre of mass, and is the reference point the root?",
+            found[axis],
+            ["x", "y", "z"][axis],
+            about_root[(axis, axis)]
         );
-        Err(ConfigError::new("mass", why))
+        Err(ConfigError::new("inertia", why))
     }
 
     /// Returns the damping ratios: those of the scenario if given, else those of the file.
