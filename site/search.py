@@ -25,7 +25,7 @@ SYNONYMS = {
     "stepping.html": "reinforcement learning gym agent",
     "viewers.html": "3D animation Foxglove Rerun",
     "install.html": "pip download setup",
-    "figures.html#a-page-for-a-design-review": "report PDF review HTML",
+    "figures.html#a-page-for-a-design-review": "design review report PDF HTML",
     "validity.html": "limitations accuracy verification validation",
     "scenario/actuators.html": "reaction wheels thrusters magnetorquers CMG",
     "scenario/sensors.html": "star tracker gyro IMU magnetometer Sun sensor",

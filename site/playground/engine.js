@@ -47,10 +47,15 @@ export class Engine {
     this.start();
   }
 
+  // True if something runs that takes long.
+  get isBusy() {
+    return [...this.waiting.values()].some(({ ask }) => !["check", "log", "examples", "schema", "style"].includes(ask));
+  }
+
   async bytes(request) {
     await this.ready;
     const id = (this.count += 1);
-    const asked = new Promise((resolve, reject) => this.waiting.set(id, { resolve, reject }));
+    const asked = new Promise((resolve, reject) => this.waiting.set(id, { ask: request.ask, resolve, reject }));
     this.worker.postMessage({ id, request });
     return asked;
   }

@@ -109,10 +109,10 @@ class Playground {
     this.timer = setTimeout(() => this.check(), this.isLoading ? 0 : pause);
   }
 
-  // Checks the text; a run in progress is of an earlier one.
+  // Checks the text; what is in progress is of an earlier one.
   async check() {
     const generation = (this.generation += 1);
-    if (this.isRunning) this.engine.restart();
+    if (this.engine.isBusy) this.engine.restart();
     try {
       const checked = await this.engine.json({ ask: "check", file: this.file, text: this.editor.text });
       if (generation !== this.generation) return;

@@ -1,6 +1,6 @@
 // The spacecraft as a turning model, from the glTF file that the engine writes. Loaded when it is first wanted.
 
-import { AmbientLight, AnimationMixer, Box3, Clock, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { AmbientLight, AnimationMixer, Box3, DirectionalLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 
@@ -43,9 +43,10 @@ async function show(parent, bytes) {
   bar.append(play, cursor);
   parent.replaceChildren(renderer.domElement, ...(duration > 0 ? [bar] : []));
 
-  const clock = new Clock();
-  renderer.setAnimationLoop(() => {
-    const step = clock.getDelta();
+  let before = performance.now();
+  renderer.setAnimationLoop((now) => {
+    const step = Math.max(0, now - before) / 1000;
+    before = now;
     if (isPlaying && duration > 0) {
       mixer.update(step);
       cursor.value = ((mixer.time % duration) / duration) * 1000;

@@ -4,5 +4,5 @@
 mod page_progress;
 mod workbench;
 
-pub use page_progress::ToldProgress;
+pub use page_progress::ProgressReceiver;
 pub use workbench::Workbench;

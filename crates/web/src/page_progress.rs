@@ -1,15 +1,15 @@
-//! Progress of a run, told to a page.
+//! Progress of a run, for a page.
 
 use flexsc_core::dynamics::MotionPiece;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Record, RecordError, Sample};
 
-/// Function that is told which part of a run is done, from 0 to 1.
-pub type ToldProgress = fn(f64);
+/// Function that takes the part of a run that is done, from 0 to 1.
+pub type ProgressReceiver = fn(f64);
 
-/// Record that tells which part of a run is done.
+/// Record that passes the part of a run that is done to a receiver.
 pub struct PageProgress {
-    told: ToldProgress,
+    receiver: ProgressReceiver,
     duration: f64,
     samples: u32,
 }
@@ -19,14 +19,14 @@ impl PageProgress {
     const EACH: u32 = 4096;
 
     /// Returns the progress of a run of this duration (s).
-    pub fn new(told: ToldProgress, duration: f64) -> Self {
-        Self { told, duration, samples: 0 }
+    pub fn new(receiver: ProgressReceiver, duration: f64) -> Self {
+        Self { receiver, duration, samples: 0 }
     }
 
     fn update(&mut self, now: f64) {
         self.samples = self.samples.wrapping_add(1);
         if self.samples.is_multiple_of(Self::EACH) {
-            (self.told)(now / self.duration);
+            (self.receiver)(now / self.duration);
         }
     }
 }

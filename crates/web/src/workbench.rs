@@ -13,7 +13,7 @@ use flexsc_view::with_layout;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
-use crate::page_progress::{PageProgress, ToldProgress};
+use crate::page_progress::{PageProgress, ProgressReceiver};
 
 /// Request of a page. What it asks for is of the scenario that was read last.
 #[derive(Deserialize)]
@@ -43,9 +43,9 @@ enum Request {
     Examples,
 }
 
-/// What a page works on: a scenario, and its run.
+/// Scenario of a page, and its run.
 pub struct Workbench {
-    told: ToldProgress,
+    receiver: ProgressReceiver,
     study: Option<EditableStudy>,
     run: Option<FinishedRun>,
 }
@@ -62,9 +62,9 @@ struct FinishedRun {
 type Failure = String;
 
 impl Workbench {
-    /// Returns a workbench without a scenario, which tells the progress of its runs.
-    pub fn new(told: ToldProgress) -> Self {
-        Self { told, study: None, run: None }
+    /// Returns a workbench without a scenario, with the receiver of the progress of its runs.
+    pub fn new(receiver: ProgressReceiver) -> Self {
+        Self { receiver, study: None, run: None }
     }
 
     /// Returns the result of a request: JSON, or bytes of a figure, a log or a model. `{"error": TEXT}` if it fails.
@@ -136,7 +136,7 @@ impl Workbench {
         };
         let (mut events, mut full) = (log(Detail::Events)?, log(Detail::Full)?);
         let mut observer = RunObserver::new(scenario);
-        let progress = PageProgress::new(self.told, scenario.duration.seconds());
+        let progress = PageProgress::new(self.receiver, scenario.duration.seconds());
         let records = ((&mut events, &mut full), (&mut observer, progress));
         let metrics = Campaign::simulate(&run, records).map_err(|error| error.to_string())?;
         let finished =
@@ -159,7 +159,7 @@ impl Workbench {
         let provenance = with_layout(Campaign::provenance(&run), &run.scenario, Detail::Scene);
         let mut log = LogBytes::new(&provenance, Detail::Scene).map_err(|error| error.to_string())?;
         let scene = Scene::for_detail(&run.scenario, Detail::Scene);
-        let progress = PageProgress::new(self.told, run.scenario.duration.seconds());
+        let progress = PageProgress::new(self.receiver, run.scenario.duration.seconds());
         let metrics =
             Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
         let bytes = log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string())?;
