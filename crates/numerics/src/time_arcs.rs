@@ -205,3 +205,52 @@ impl<const COLUMNS: usize> TimeArc<COLUMNS> {
         &self.powers[0]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn arcs_are_built_once_and_copied() {
+        let (arcs, count) = (TimeArcs::<1>::default(), Cell::new(0));
+        let sine = |arcs: &TimeArcs<1>, t: f64| {
+            let span = || [8.0 * libm::floor(t / 8.0), 8.0 * libm::floor(t / 8.0) + 8.0];
+            let row = |t: SplitTime| {
+                count.set(count.get() + 1);
+                [libm::sin(0.25 * t.middle + 0.25 * t.offset)]
+            };
+            arcs.read(t, span, row, |_, _| true, |arc| arc.at(t))[0]
+        };
+        for t in (0..320).map(|k| 0.1 * f64::from(k)) {
+            assert!((sine(&arcs, t) - libm::sin(0.25 * t)).abs() < 1e-15, "{t}");
+        }
+        assert_eq!(count.get(), 4 * NODES);
+        let copy = arcs.clone();
+        assert_eq!(sine(&copy, 31.0).to_bits(), sine(&arcs, 31.0).to_bits());
+        assert_eq!(count.get(), 4 * NODES);
+        // A fifth arc takes the place of the first.
+        assert!(sine(&arcs, 33.0) == sine(&TimeArcs::default(), 33.0));
+        assert!(sine(&arcs, 1.0) == sine(&copy, 1.0));
+        assert_eq!(count.get(), 7 * NODES);
+    }
+
+    #[test]
+    fn arcs_are_halved_about_a_kink() {
+        let arcs = TimeArcs::<1>::default();
+        let kink = |t: f64| {
+            let row = |t: SplitTime| [(t.middle + t.offset - 20.0).abs()];
+            let resolved = |_: &TimeArc<1>, tail: &Row<1>| tail[0] < 1e-12;
+            arcs.read(t, || [0.0, 64.0], row, resolved, |arc| (arc.at(t)[0], arc.span))
+        };
+        for (t, span) in
+            [(5.0, [0.0, 16.0]), (19.0, [16.0, 20.0]), (21.0, [20.0, 24.0]), (40.0, [32.0, 64.0])]
+        {
+            let (value, found) = kink(t);
+            assert!((value - f64::abs(t - 20.0)).abs() < 1e-13, "{t}: {value}");
+            assert!(found[0] <= t && t < found[1], "{t}: {found:?}");
+            assert!(found[1] - found[0] <= span[1] - span[0], "{t}: {found:?}");
+        }
+    }
+}

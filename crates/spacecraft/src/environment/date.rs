@@ -18,7 +18,7 @@ pub fn greenwich(epoch_ns: u64) -> f64 {
     // Its 876600 hours a century are the days themselves; the next term is reduced to a day without loss.
     let seconds = 67_310.548_41
         + DAY * (days - days.floor())
-        + remainder_of_product(8_640_184.812_866, days, 36_525.0 * DAY) / 36_525.0
+        + remainder_of_product(8_640_184_812_866.0, days, 36_525e6 * DAY) / 36_525e6
         + centuries * centuries * (0.093_104 - centuries * 6.2e-6);
     TAU * (seconds / DAY).rem_euclid(1.0)
 }

@@ -53,7 +53,7 @@ impl GravityGradient {
     /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode.
     pub(super) fn modal_tensor((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
         let (half, [x, y, z]) = (0.5 * tide, nadir.into());
-        let [a, b, c] = [x, y, z].map(|part| -3.0 * half * part);
+        let (a, b, c) = (-3.0 * half * x, -3.0 * half * y, -3.0 * half * z);
         Matrix3::new(half + a * x, a * y, a * z, a * y, half + b * y, b * z, a * z, b * z, half + c * z)
     }
 

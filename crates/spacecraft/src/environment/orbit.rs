@@ -42,7 +42,7 @@ pub(super) fn body_axes(attitude: &Quaternion<f64>) -> Matrix3<f64> {
     let Quaternion { coords } = attitude;
     let [x, y, z, w] = (*coords).into();
     let twice = 2.0 / attitude.norm_squared();
-    let [tx, ty, tz] = [x, y, z].map(|part| twice * part);
+    let (tx, ty, tz) = (twice * x, twice * y, twice * z);
     let (xx, yy, zz) = (tx * x, ty * y, tz * z);
     let (xy, yz, zx) = (tx * y, ty * z, tz * x);
     let (wx, wy, wz) = (tx * w, ty * w, tz * w);

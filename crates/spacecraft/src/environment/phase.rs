@@ -59,6 +59,8 @@ mod tests {
             let later = phase.at(SplitTime { middle: t - 64.0, offset: 64.0 });
             assert!(libm::remainder(later - exact, TAU).abs() < 1e-15, "{t}");
         }
-        assert!((remainder_of_product(0.985_600_3, 1e7, 360.0) + 77.000_000_000_152_653).abs() < 1e-13);
+        // 8640184812866 times 9920.75, less 27 periods.
+        let found = remainder_of_product(8_640_184_812_866.0, 9920.75, 3_155_760e9);
+        assert!(found == 511_593_482_240_369.5, "{found}");
     }
 }

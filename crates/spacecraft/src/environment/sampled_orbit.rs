@@ -150,11 +150,22 @@ impl SampledOrbit {
     /// steps of the last two.
     pub(super) fn span(&self, t: f64) -> [f64; 2] {
         let last = self.times.len() - 1;
-        let next = self.times.partition_point(|time| *time <= t).clamp(1, last);
-        let [from, to] = [self.times[next - 1], self.times[next]];
-        let steps = libm::floor((t - from) / (to - from));
-        let beyond = steps < 0.0 || (next == last && steps >= 1.0);
-        if beyond { [steps, steps + 1.0].map(|step| from + step * (to - from)) } else { [from, to] }
+        let next = self.times.partition_point(|time| *time <= t);
+        if (1..=last).contains(&next) {
+            return [self.times[next - 1], self.times[next]];
+        }
+        let next = next.clamp(1, last);
+        let (from, length) = (self.times[next - 1], self.times[next] - self.times[next - 1]);
+        let border = |step: f64| from + step * length;
+        // The step by the quotient may be one off by rounding.
+        let mut step = libm::floor((t - from) / length);
+        while t < border(step) {
+            step -= 1.0;
+        }
+        while t >= border(step + 1.0) {
+            step += 1.0;
+        }
+        [step, step + 1.0].map(border)
     }
 
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at a time since the start (s).

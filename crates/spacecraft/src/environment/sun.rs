@@ -13,13 +13,15 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::date::{DAY, J2000};
 use super::direction_motion::DirectionMotion;
-use super::phase::remainder_of_product;
 
 /// Word of the scenario for the Sun at the date.
 const EPOCH: &str = "epoch";
 
+/// Rate of the Sun's mean anomaly (1e-7 degrees a day).
+const ANOMALY: f64 = 9_856_003.0;
+
 /// Rate of the Sun's mean anomaly (degrees a day).
-const ANOMALY_RATE: f64 = 0.985_600_3;
+const ANOMALY_RATE: f64 = 1e-7 * ANOMALY;
 
 /// Direction from the body to the Sun.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -126,14 +128,15 @@ fn days_since_j2000(start: f64, t: SplitTime) -> [f64; 2] {
     [whole, ((start - whole * DAY) + t.middle + t.offset) / DAY]
 }
 
-/// Returns an angle (degrees, less whole turns) from its value at J2000, its rate (degrees a day) and whole days with a rest.
+/// Returns an angle (degrees, less whole turns) from its value at J2000, its rate (1e-7 degrees a day) and whole days with a
+/// rest. Products of whole numbers and their remainders are exact.
 fn angle(at_j2000: f64, rate: f64, [whole, rest]: [f64; 2]) -> f64 {
-    at_j2000 + remainder_of_product(rate, whole, 360.0) + rate * rest
+    at_j2000 + (libm::remainder(rate * whole, 360e7) + rate * rest) / 1e7
 }
 
 /// Returns the mean anomaly of the Sun (rad) at `days` after J2000.
 fn anomaly(days: [f64; 2]) -> f64 {
-    angle(357.528, ANOMALY_RATE, days).to_radians()
+    angle(357.528, ANOMALY, days).to_radians()
 }
 
 /// Returns the distance of the Sun in au at `days` after J2000, and its rate (1/s).
@@ -149,7 +152,7 @@ fn distance(days: [f64; 2]) -> [f64; 2] {
 fn almanac(days: [f64; 2]) -> DirectionMotion {
     let anomaly = anomaly(days);
     let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
-    let longitude = angle(280.460, 0.985_647_4, days) + 1.915 * sin + 0.020 * sin_twice;
+    let longitude = angle(280.460, 9_856_474.0, days) + 1.915 * sin + 0.020 * sin_twice;
     // Rate and acceleration of the longitude, from degrees a day and days. The obliquity's rate of 8e-14 rad/s is
     // negligible.
     let mean = ANOMALY_RATE.to_radians();

@@ -142,7 +142,9 @@ impl IntegrationStep<'_> {
         let modal_rate_scale = largest_rate.max(self.h * *largest_force);
         let mut attitudes = NodeAttitudes::default();
         if let Some((surroundings, since)) = self.surroundings {
-            optional.skies = NODES.map(|node| surroundings.sky_at(since + node * self.h));
+            for (sky, node) in optional.skies.iter_mut().zip(NODES) {
+                *sky = surroundings.sky_at(since + node * self.h);
+            }
             attitudes.compute(&state.mean_attitude, &nodes.mean_rates(), self.h);
         }
         let iterations = if scalar {
