@@ -16,9 +16,6 @@ const KEPT: usize = 4;
 /// Length (s) below which an arc is not halved.
 const SHORTEST: f64 = 2.0;
 
-/// Values at an instant.
-pub type Row<const COLUMNS: usize> = [f64; COLUMNS];
-
 /// Time since the start as the sum of two parts (s), so that instants of an arc late in a run are not rounded.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SplitTime {
@@ -62,7 +59,7 @@ pub struct TimeArc<const COLUMNS: usize> {
     /// Inverse of half of the length (1/s).
     scale: f64,
     /// Coefficients of the powers.
-    powers: [Row<COLUMNS>; NODES],
+    powers: [[f64; COLUMNS]; NODES],
 }
 
 /// Interpolation at the nodes.
@@ -129,8 +126,8 @@ impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
         &self,
         t: f64,
         span: impl FnOnce() -> [f64; 2],
-        row: impl Fn(SplitTime) -> Row<COLUMNS>,
-        resolved: impl Fn(&TimeArc<COLUMNS>, &Row<COLUMNS>) -> bool,
+        row: impl Fn(SplitTime) -> [f64; COLUMNS],
+        resolved: impl Fn(&TimeArc<COLUMNS>, &[f64; COLUMNS]) -> bool,
         read: impl FnOnce(&TimeArc<COLUMNS>) -> T,
     ) -> T {
         let mut ring = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -159,7 +156,7 @@ impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
 
 impl<const COLUMNS: usize> TimeArc<COLUMNS> {
     /// Creates the arc from its values; returns the sizes of the last two Chebyshev coefficients too.
-    pub fn new(span: [f64; 2], row: impl Fn(SplitTime) -> Row<COLUMNS>) -> (Self, Row<COLUMNS>) {
+    pub fn new(span: [f64; 2], row: impl Fn(SplitTime) -> [f64; COLUMNS]) -> (Self, [f64; COLUMNS]) {
         let [middle, half] = [0.5 * (span[0] + span[1]), 0.5 * (span[1] - span[0])];
         let Transform { nodes, chebyshev, powers: table } = &*TRANSFORM;
         let mut values = nodes.map(|node| row(SplitTime { middle, offset: half * node }));
@@ -189,7 +186,7 @@ impl<const COLUMNS: usize> TimeArc<COLUMNS> {
 
     /// Returns the values at a time since the start (s).
     #[inline]
-    pub fn at(&self, t: f64) -> Row<COLUMNS> {
+    pub fn at(&self, t: f64) -> [f64; COLUMNS] {
         let x = (t - self.middle) * self.scale;
         let mut sum = self.powers[NODES - 1];
         for power in self.powers[..NODES - 1].iter().rev() {
@@ -201,7 +198,7 @@ impl<const COLUMNS: usize> TimeArc<COLUMNS> {
     }
 
     /// Returns the values in the middle.
-    pub fn in_middle(&self) -> &Row<COLUMNS> {
+    pub fn in_middle(&self) -> &[f64; COLUMNS] {
         &self.powers[0]
     }
 }
@@ -241,7 +238,7 @@ mod tests {
         let arcs = TimeArcs::<1>::default();
         let kink = |t: f64| {
             let row = |t: SplitTime| [(t.middle + t.offset - 20.0).abs()];
-            let resolved = |_: &TimeArc<1>, tail: &Row<1>| tail[0] < 1e-12;
+            let resolved = |_: &TimeArc<1>, tail: &[f64; 1]| tail[0] < 1e-12;
             arcs.read(t, || [0.0, 64.0], row, resolved, |arc| (arc.at(t)[0], arc.span))
         };
         for (t, span) in

@@ -4,7 +4,7 @@
 mod tests;
 
 use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::time_arcs::{Row, SplitTime, TimeArc};
+use flexsc_numerics::time_arcs::{SplitTime, TimeArc};
 
 use super::ground_site::{self, RADIUS};
 use super::magnetic_field::PlanetField;
@@ -29,7 +29,7 @@ const BULGE: usize = 14;
 
 /// Environment at an instant; 0 where there is none.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub(super) struct SkyRow(pub Row<COLUMNS>);
+pub(super) struct SkyRow(pub [f64; COLUMNS]);
 
 impl SkyRow {
     /// Evaluates the environment at a time since the start, with the height above the ellipsoid of the Earth, or without.
@@ -60,7 +60,7 @@ impl SkyRow {
 
     /// Returns true if an arc need not be halved. Position and field are checked on an orbit by rows only: of Kepler elements
     /// the length of the arcs is proved.
-    pub fn is_resolved(arc: &TimeArc<COLUMNS>, tail: &Row<COLUMNS>, has_rows: bool) -> bool {
+    pub fn is_resolved(arc: &TimeArc<COLUMNS>, tail: &[f64; COLUMNS], has_rows: bool) -> bool {
         let middle = Self(*arc.in_middle());
         let largest = |first: usize| tail[first].max(tail[first + 1]).max(tail[first + 2]);
         let is_smooth = tail[HEIGHT] <= TAIL * RADIUS && tail[BULGE] <= TAIL;
