@@ -145,9 +145,9 @@ impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
         let value = read(&arc);
         let place = ring.next;
         if place < ring.arcs.len() {
-            ring.arcs[place] = arc
+            ring.arcs[place] = arc;
         } else {
-            ring.arcs.push(arc)
+            ring.arcs.push(arc);
         }
         ring.next = (place + 1) % KEPT;
         value

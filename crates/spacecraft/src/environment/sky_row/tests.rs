@@ -1,5 +1,7 @@
 //! Arcs against 50 digits, their proved bounds, and the order of calls.
 
+use std::f64::consts::TAU;
+
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Span;
 use flexsc_numerics::time_arcs::{SplitTime, TimeArc};
@@ -91,7 +93,7 @@ fn proved_bounds_hold_on_random_orbits() {
         // Arcs of four times the length have errors that rounding does not hide.
         for length in [length, 4.0 * length] {
             let bounds = orbit.arc_errors(field, length);
-            let to_perigee = (6.283_185_307_179_586 - anomaly) / orbit.anomaly_rate();
+            let to_perigee = (TAU - anomaly) / orbit.anomaly_rate();
             let first = length * libm::floor(to_perigee / length);
             let direct = |t: SplitTime| SkyRow::new((sky.orbit(), field, sky.sun()), false, t).0;
             let (arc, _) = TimeArc::new([first, first + length], direct);
