@@ -55,7 +55,7 @@ fn runs_repeat_to_the_last_bit() {
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0xab1b_b72b_45d7_5b9b),
         ("wheel-friction", " --runs 5:6", "/metrics", 0x7817_906b_2123_3032),
         ("flexible-boom", " --runs 5:6", "/metrics", 0x21c7_3381_6157_3471),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0x27b6_fe0c_0802_0ded),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0xf9c5_8b4d_b403_c661),
         ("wheels-and-jets", "", "/jets", 0x0436_fa26_25e0_b4be),
         ("wheels-and-jets", "", "/metrics", 0xa0d9_d302_63fa_faf0),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),

@@ -3,6 +3,7 @@
 use flexsc_dynamics::three_axis::DriveAngles;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
+use flexsc_numerics::time_arcs::{SplitTime, TimeArc, TimeArcs};
 use flexsc_spacecraft::body::craft::DrivePiece;
 use flexsc_spacecraft::environment::{OrbitEnvironment, SunPath, to_body};
 use nalgebra::{Matrix3, Quaternion};
@@ -47,7 +48,12 @@ pub struct SunTracking {
     pub about: Vector,
     /// Normal that faces the Sun in the axes of the appendage, with the drive at angle 0.
     pub facing: Vector,
+    /// Components of the Sun's direction, with their rates.
+    pub arcs: TimeArcs<4>,
 }
+
+/// Error of the components up to which an arc is not halved.
+const ERROR: f64 = 1e-13;
 
 impl SunTracking {
     /// Returns the components of the direction to the Sun along the normal at drive angle 0 and at a quarter of a turn,
@@ -66,7 +72,18 @@ impl SunTracking {
     /// Returns the angle of the drive (rad) and its rate (rad/s) at a time `t` since the start (s).
     pub fn at(&self, t: f64) -> [f64; 2] {
         let [[x, y], [dx, dy]] = self.sun_components(t);
-        [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
+        angle([x, y, dx, dy])
+    }
+
+    /// Returns the angle of the drive (rad) and its rate (rad/s) at a time `t` since the start (s), from the arc about it.
+    fn near(&self, t: f64) -> [f64; 2] {
+        let components = |t: SplitTime| {
+            let [[x, y], [dx, dy]] = self.sun_components(t.middle + t.offset);
+            [x, y, dx, dy]
+        };
+        let span = || self.sky.span(t);
+        let resolved = |_: &TimeArc<4>, tail: &[f64; 4]| tail[0].max(tail[1]) <= ERROR;
+        angle(self.arcs.read(t, span, components, resolved, |arc| arc.at(t)))
     }
 
     /// Returns the sine of the angle between the Sun and the drive's axis at a time `t` since the start (s).
@@ -76,11 +93,16 @@ impl SunTracking {
     }
 }
 
+/// Returns the angle of a drive (rad) and its rate (rad/s) from the components of the Sun's direction and their rates (1/s).
+fn angle([x, y, dx, dy]: [f64; 4]) -> [f64; 2] {
+    [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
+}
+
 impl DriveProfile {
     /// Returns the angle of the drive (rad) and its rate (rad/s) at a time `t` since the start (s).
     pub fn at(&self, t: f64) -> [f64; 2] {
         match self {
-            Self::Sun(tracking) => tracking.at(t),
+            Self::Sun(tracking) => tracking.near(t),
             Self::Pieces(pieces) => {
                 let past = pieces.partition_point(|[from, ..]| *from <= t);
                 let Some(last) = past.checked_sub(1) else {

@@ -34,4 +34,5 @@ pub mod swing_damped;
 pub mod swing_integral;
 pub mod swing_series;
 pub mod time;
+pub mod time_arcs;
 pub mod trig;

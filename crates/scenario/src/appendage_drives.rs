@@ -7,6 +7,7 @@ use flexsc_control::law::TargetFrame;
 use flexsc_dynamics::three_axis::ArticulatedBody;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time_arcs::TimeArcs;
 use flexsc_spacecraft::body::BodyModel;
 use flexsc_spacecraft::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
 use nalgebra::Quaternion;
@@ -98,6 +99,7 @@ impl ScenarioSpec {
             axes: appendage.turned.matrix(),
             about: drive.axis(),
             facing: drive.sun_facing(),
+            arcs: TimeArcs::default(),
         };
         let least = looks(self.duration).map(|t| following.across(t)).fold(1.0, f64::min);
         if least < ACROSS {

@@ -321,7 +321,7 @@ fn surroundings(
     let mounts = plate_mounts::mounts(written, body.articulation.as_deref())
         .map_err(|fault| fault.within("environment"))?;
     let sky = written.orbit_environment();
-    let around = SurroundingsState::new(environment, sky, [body.inertia, spinning], &centre, mounts);
+    let around = SurroundingsState::new(environment, sky, [body.inertia, spinning], &centre, &mounts);
     Ok(Some(around.with_thermal_bending(bendings)))
 }
 

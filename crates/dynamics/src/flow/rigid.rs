@@ -152,6 +152,7 @@ impl RigidBody {
         // Changes are compared by their squares, because roots would take a quarter of the step.
         let per_size = if size > 0.0 { 1.0 / size } else { 0.0 };
         let largest = 1e-18 / (h * contraction);
+        let around = around.map(|(around, from)| (around, NODES.map(|node| around.sky_at(from + node * h))));
         for _ in 0..PASSES {
             let mut change = 0.0_f64;
             for stage in 0..3 {
@@ -162,8 +163,8 @@ impl RigidBody {
                 let whole = rotors.map_or(here, |rotors| here + rotors[stage]);
                 let mut push = whole.cross(&rate) + torques[stage];
                 let facing = *attitude + (turns[0] * row[0] + turns[1] * row[1] + turns[2] * row[2]) * h;
-                if let Some((around, from)) = around {
-                    push += around.torque(from + NODES[stage] * h, &facing, &self.inertia);
+                if let Some((around, skies)) = &around {
+                    push += around.torque(&skies[stage], &facing, &self.inertia);
                 }
                 let turned = spin(&facing, &rate);
                 // Squared change of the momentum's derivative relative to the momentum.

@@ -42,8 +42,9 @@ impl ThreeAxisMotion {
         let (mut tide, mut thermal) = (None, Vec::new());
         if let Some((surroundings, since)) = surroundings {
             let t = since + self.time;
-            torque += surroundings.torque(t, &view.attitude, &(model.inertia + inertia_change));
-            tide = if model.changes_inertia { surroundings.tidal_tensor(t, &view.attitude) } else { None };
+            let sky = surroundings.sky_at(t);
+            torque += surroundings.torque(&sky, &view.attitude, &(model.inertia + inertia_change));
+            tide = if model.changes_inertia { surroundings.tidal_tensor(&sky, &view.attitude) } else { None };
             let forces = surroundings.thermal_forces().iter().enumerate();
             thermal.extend(forces.map(|(index, of)| (of, surroundings.thermal_level(index, t))));
         }

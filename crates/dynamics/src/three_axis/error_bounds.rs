@@ -54,9 +54,13 @@ impl ThreeAxisMotion {
             rate: view.rate.norm(),
             speeds: (0..bearings_now.rotors.len()).map(speed).collect(),
         };
+        let tide = surroundings.and_then(|(surroundings, since)| {
+            surroundings.tidal_tensor(&surroundings.sky_at(since + self.time), &view.attitude)
+        });
+        let tide = 2.0 * tide.map_or(0.0, |tide| tide.norm());
         let mut assumed = start.clone();
         for _ in 0..MAX_ENLARGEMENTS {
-            let (bounds, reached_values) = self.implied(&assumed, &start, h, surroundings);
+            let (bounds, reached_values) = self.implied(&assumed, &start, h, (surroundings, tide));
             let mut holds = true;
             let mut enlarge = |assumed: &mut f64, reached_values: f64| {
                 if reached_values > *assumed {
@@ -82,13 +86,14 @@ impl ThreeAxisMotion {
         Bounds { second: f64::INFINITY, third: f64::INFINITY, friction }
     }
 
-    /// Returns the bounds that follow from the assumed values, and the largest values then implied within `h` (s).
+    /// Returns the bounds that follow from the assumed values, and the largest values then implied within `h` (s), with the size
+    /// of the tide (1/s²).
     fn implied(
         &self,
         assumed: &Assumed,
         start: &Assumed,
         h: f64,
-        surroundings: TimedSurroundings,
+        (surroundings, tide): (TimedSurroundings, f64),
     ) -> (Bounds, Assumed) {
         let model = &self.model;
         let rotors = self.current_bearings(&self.slips);
@@ -99,10 +104,6 @@ impl ThreeAxisMotion {
             surroundings.map_or(0.0, |(surroundings, _)| surroundings.bound()),
             surroundings.map_or(0.0, |(around, since)| around.frequency_at(since + self.time)) + 2.0 * w0,
         ];
-        let tide = surroundings.and_then(|(surroundings, since)| {
-            surroundings.tidal_tensor(since + self.time, &self.view.attitude)
-        });
-        let tide = 2.0 * tide.map_or(0.0, |tide| tide.norm());
         let each = || rotors.bearings.iter().zip(rotors.rotors).zip(&assumed.speeds);
         let (imbalance, imbalance_torque) = imbalance_waves(&rotors, &assumed.speeds);
         let torque = [

@@ -100,4 +100,4 @@ pub use segment_loads::SegmentLoads;
 pub use shared::SharedSteps;
 pub use state::BodyView;
 pub use step_levels::IMBALANCE_PHASE;
-pub use surroundings::{PanelPlaces, Surroundings, ThermalForces, TimedSurroundings};
+pub use surroundings::{PanelPlaces, SkyAt, Surroundings, ThermalForces, TimedSurroundings};

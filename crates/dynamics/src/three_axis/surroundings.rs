@@ -3,21 +3,46 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{Matrix3, Quaternion};
 
+/// Surroundings of a body at an instant, whatever its attitude: 0 where there is none, or where nothing acts by it.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct SkyAt {
+    /// Torque that acts whatever the attitude, in the body's axes (N m).
+    pub torque: Vector,
+    /// Direction to the planet's centre in inertial axes, a unit vector.
+    pub nadir: Vector,
+    /// Gravity per unit of distance from the centre of mass, mu/R³ (1/s²).
+    pub tide: f64,
+    /// Magnetic field in inertial axes (T).
+    pub field: Vector,
+    /// Direction to the Sun in inertial axes, a unit vector.
+    pub sun: Vector,
+    /// Pressure of sunlight relative to that at 1 au.
+    pub pressure: f64,
+    /// Part of the Sun's disc in view.
+    pub part_in_view: f64,
+    /// Velocity of the body relative to the air in inertial axes (m/s).
+    pub flow: Vector,
+    /// Density of the air (kg/m³).
+    pub density: f64,
+}
+
 /// Torques and forces on a body that depend on time or attitude within a segment: of the environment and of periodic
 /// disturbances.
 pub trait Surroundings {
-    /// Returns the torque in the body's axes (N m) at a time `t` since the start (s), for the attitude of the hub and
-    /// the present inertia of the body (kg m²).
-    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
+    /// Returns the surroundings at a time `t` since the start (s), from which torques follow for any attitude.
+    fn sky_at(&self, t: f64) -> SkyAt;
+
+    /// Returns the torque in the body's axes (N m), for the attitude of the hub and the present inertia of the body (kg m²).
+    fn torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
 
     /// Returns the part of the torque (N m) that depends on where appendages that turn are, in addition to `torque`.
-    fn panel_torque(&self, _t: f64, _attitude: &Quaternion<f64>, _panels: &PanelPlaces<'_>) -> Vector {
+    fn panel_torque(&self, _sky: &SkyAt, _attitude: &Quaternion<f64>, _panels: &PanelPlaces<'_>) -> Vector {
         Vector::zeros()
     }
 
     /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
     /// to the force on the mode; `None` without such a force.
-    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
+    fn tidal_tensor(&self, sky: &SkyAt, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
 
     /// Returns the thermal forces on the modes.
     fn thermal_forces(&self) -> &[ThermalForces] {

@@ -211,7 +211,11 @@ impl ThreeAxisQuantities for OneWayFlow {
         let t = self.body.evaluated_at.seconds();
         let own = self.disturbance.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
         let inertia = self.body.rigid.inertia();
-        Some(self.surroundings.as_ref().map_or(own, |of| own + of.torque(t, self.attitude(), inertia)))
+        Some(
+            self.surroundings
+                .as_ref()
+                .map_or(own, |of| own + of.torque(&of.sky_at(t), self.attitude(), inertia)),
+        )
     }
 
     fn rotational_energy(&self) -> (f64, f64) {

@@ -10,7 +10,7 @@ use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::three_axis::{
     ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, PanelPlaces, RotorObservation, SegmentLoads,
-    SharedSteps, SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
+    SharedSteps, SkyAt, SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_dynamics::wrench::Wrench;
@@ -84,29 +84,37 @@ impl ExternalTorques {
         let acts = self.own.is_some() || self.around.is_some() || !self.sines.is_empty();
         acts.then_some((self as &dyn Surroundings, began))
     }
-}
 
-impl ExternalTorques {
-    /// Returns the torque of the body's own disturbance and of the environment, without the sines (N m).
-    fn surrounding(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
-        self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
+    /// Returns the body's own disturbance and the environment, without the sines, at a time since the start (s).
+    fn surrounding(&self, t: f64) -> SkyAt {
+        let mut sky = self.around.as_ref().map_or_else(SkyAt::default, |around| around.sky_at(t));
+        if let Some(own) = &self.own {
+            sky.torque += own.at(t);
+        }
+        sky
     }
 }
 
 impl Surroundings for ExternalTorques {
-    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let all = self.surrounding(t, attitude, inertia);
-        self.sines.iter().fold(all, |sum, (axis, sine)| sum + axis * sine.at(t))
+    fn sky_at(&self, t: f64) -> SkyAt {
+        let mut sky = self.surrounding(t);
+        for (axis, sine) in &self.sines {
+            sky.torque += axis * sine.at(t);
+        }
+        sky
     }
 
-    fn panel_torque(&self, t: f64, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
+    fn torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        self.around.as_ref().map_or(sky.torque, |around| around.torque(sky, attitude, inertia))
+    }
+
+    fn panel_torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
         let around = self.around.as_ref();
-        around.map_or_else(Vector::zeros, |around| around.panel_torque(t, attitude, panels))
+        around.map_or_else(Vector::zeros, |around| around.panel_torque(sky, attitude, panels))
     }
 
-    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
-        self.around.as_ref()?.tidal_tensor(t, attitude)
+    fn tidal_tensor(&self, sky: &SkyAt, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
+        self.around.as_ref()?.tidal_tensor(sky, attitude)
     }
 
     fn thermal_forces(&self) -> &[ThermalForces] {
@@ -185,13 +193,15 @@ impl TwoWayMotion {
     #[must_use]
     pub fn with_appendages(mut self, drives: Option<&AppendageDrives>) -> Self {
         let Some(AppendageDrives { driven, courses }) = drives else { return self };
+        // Each run has its own arcs: those of runs on other threads are about other times.
+        let courses = Arc::new(DriveProfiles::clone(courses));
         let Some(driving) = ArticulatedMotion::new(driven.clone(), courses.clone()) else { return self };
         self.motion.start_drives(driving);
         self.translation = self.translation.map(|(moving, _)| {
             let [began, _] = moving.position(self.motion.view());
             (moving, began)
         });
-        self.drive_angles = Some((courses.clone(), 0));
+        self.drive_angles = Some((courses, 0));
         self
     }
 
@@ -281,11 +291,12 @@ impl TwoWayMotion {
         let acts = self.outside.around.is_some() || self.outside.own.is_some();
         let (centre, axes) = &self.motion.view().panels;
         acts.then(|| {
-            let rest = self.outside.surrounding(t, self.attitude(), &self.motion.inertia());
+            let sky = self.outside.surrounding(t);
+            let rest = self.outside.torque(&sky, self.attitude(), &self.motion.inertia());
             if axes.is_empty() {
                 return rest;
             }
-            rest + self.outside.panel_torque(t, self.attitude(), &PanelPlaces { centre: *centre, axes })
+            rest + self.outside.panel_torque(&sky, self.attitude(), &PanelPlaces { centre: *centre, axes })
         })
     }
 

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use super::phase::remainder_of_product;
+
 /// Seconds from 1970 to noon of the first day of 2000.
 pub const J2000: f64 = 946_728_000.0;
 
@@ -13,10 +15,11 @@ pub const DAY: f64 = 86_400.0;
 pub fn greenwich(epoch_ns: u64) -> f64 {
     let days = (epoch_ns as f64 / 1e9 - J2000) / DAY;
     let centuries = days / 36_525.0;
-    // Its 876600 hours a century are the days themselves.
+    // Its 876600 hours a century are the days themselves; the next term is reduced to a day without loss.
     let seconds = 67_310.548_41
         + DAY * (days - days.floor())
-        + centuries * (8_640_184.812_866 + centuries * (0.093_104 - centuries * 6.2e-6));
+        + remainder_of_product(8_640_184_812_866.0, days, 36_525e6 * DAY) / 36_525e6
+        + centuries * centuries * (0.093_104 - centuries * 6.2e-6);
     TAU * (seconds / DAY).rem_euclid(1.0)
 }
 

@@ -4,6 +4,8 @@
 //! bulge of the day, which follows the Sun by 30 degrees. Between them the density is rho_m + (rho_M - rho_m) cos^n(psi/2),
 //! with the angle psi to the bulge's apex.
 
+use std::sync::LazyLock;
+
 use flexsc_formats::density_table::DensityTable;
 use flexsc_numerics::attitude::Vector;
 use schemars::JsonSchema;
@@ -56,42 +58,82 @@ const HARRIS_PRIESTER: [[f64; 3]; 50] = [
 /// Lowest height of the model of Harris and Priester (m).
 pub(super) const LOWEST: f64 = 100e3;
 
-/// Returns the value at a height between rows, and beyond them by the ends: exponential in the height.
-fn interpolate(height: f64, rows: usize, row: impl Fn(usize) -> [f64; 2]) -> f64 {
-    let (mut low, mut high) = (0, rows - 1);
-    while high - low > 1 {
-        let middle = usize::midpoint(low, high);
-        if row(middle)[0] <= height { low = middle } else { high = middle }
-    }
-    let [[below, at_below], [above, at_above]] = [row(low), row(high)];
-    at_below * libm::exp((height - below) / (above - below) * libm::log(at_above / at_below))
+/// Densities that are exponential in the height between rows, and beyond them by the ends.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DensityRows<const COLUMNS: usize>(Vec<DensityStretch<COLUMNS>>);
+
+/// Densities from a row to the next.
+#[derive(Copy, Clone, Debug, PartialEq)]
+struct DensityStretch<const COLUMNS: usize> {
+    /// Height of the row (m).
+    height: f64,
+    /// Densities there (kg/m³).
+    densities: [f64; COLUMNS],
+    /// Rates of their logarithms (1/m).
+    slopes: [f64; COLUMNS],
 }
+
+impl<const COLUMNS: usize> DensityRows<COLUMNS> {
+    /// Creates the densities (kg/m³) from at least two rows with increasing heights (m).
+    fn new(rows: &[(f64, [f64; COLUMNS])]) -> Self {
+        let stretch = |pair: &[(f64, [f64; COLUMNS])]| {
+            let ((height, densities), (next, later)) = (pair[0], pair[1]);
+            let slope = |column: usize| libm::log(later[column] / densities[column]) / (next - height);
+            DensityStretch { height, densities, slopes: std::array::from_fn(slope) }
+        };
+        Self(rows.windows(2).map(stretch).collect())
+    }
+
+    /// Returns the densities (kg/m³) at a height (m).
+    pub fn at(&self, height: f64) -> [f64; COLUMNS] {
+        let past = self.0.partition_point(|row| row.height <= height);
+        let row = &self.0[past.clamp(1, self.0.len()) - 1];
+        std::array::from_fn(|column| {
+            row.densities[column] * libm::exp((height - row.height) * row.slopes[column])
+        })
+    }
+}
+
+impl DensityRows<1> {
+    /// Returns the largest density (kg/m³) between two heights (m), at one of them or at a row.
+    pub fn largest(&self, [low, high]: [f64; 2]) -> f64 {
+        let rows = self.0.iter().filter(|row| (low..=high).contains(&row.height)).map(|row| row.densities[0]);
+        rows.chain([low, high].map(|height| self.at(height)[0])).fold(0.0, f64::max)
+    }
+}
+
+static RANGES: LazyLock<DensityRows<2>> = LazyLock::new(|| {
+    let rows = HARRIS_PRIESTER.map(|[height, night, bulge]| (1e3 * height, [1e-12 * night, 1e-12 * bulge]));
+    DensityRows::new(&rows)
+});
 
 /// Returns the least and the largest density (kg/m³) of Harris and Priester at a height (m).
 pub(super) fn harris_priester_range(height: f64) -> [f64; 2] {
-    [1, 2].map(|column| {
-        1e-12
-            * interpolate(height / 1e3, HARRIS_PRIESTER.len(), |row| {
-                [HARRIS_PRIESTER[row][0], HARRIS_PRIESTER[row][column]]
-            })
-    })
+    RANGES.at(height)
 }
 
-/// Returns the density (kg/m³) of Harris and Priester at a height (m) and a position in inertial axes, with the
-/// direction of the Sun and the exponent n of the bulge.
-pub(super) fn harris_priester(height: f64, position: &Vector, sun: &Vector, exponent: f64) -> f64 {
+/// Returns the cosine of the angle between a position in inertial axes and the bulge's apex, with the direction of the Sun.
+pub(super) fn bulge_cosine(position: &Vector, sun: &Vector) -> f64 {
     let (sin, cos) = libm::sincos(LAG);
     let apex = Vector::new(cos * sun.x - sin * sun.y, sin * sun.x + cos * sun.y, sun.z);
-    // cos²(psi/2).
-    let squared = (0.5 + 0.5 * position.dot(&apex) / position.norm()).max(0.0);
-    let [least, largest] = harris_priester_range(height);
-    least + (largest - least) * libm::pow(squared, 0.5 * exponent)
+    position.dot(&apex) / position.norm()
 }
 
-/// Returns the density (kg/m³) of a table at a height (m).
-pub(super) fn tabulated(table: &DensityTable, height: f64) -> f64 {
-    let rows = table.rows();
-    interpolate(height, rows.len(), |row| rows[row])
+/// Returns the density (kg/m³) of Harris and Priester at a height (m) and a cosine of the angle from the bulge, with the
+/// exponent n of the bulge.
+pub(super) fn harris_priester(height: f64, bulge_cosine: f64, exponent: f64) -> f64 {
+    // cos²(psi/2).
+    let squared = (0.5 + 0.5 * bulge_cosine).max(0.0);
+    let [least, largest] = harris_priester_range(height);
+    let part = if exponent == 4.0 { squared * squared } else { libm::pow(squared, 0.5 * exponent) };
+    least + (largest - least) * part
+}
+
+/// Returns the densities (kg/m³) of a table by height.
+pub(super) fn tabulated(table: &DensityTable) -> DensityRows<1> {
+    let rows: Vec<(f64, [f64; 1])> =
+        table.rows().iter().map(|[height, density]| (*height, [*density])).collect();
+    DensityRows::new(&rows)
 }
 
 #[cfg(test)]
@@ -111,7 +153,7 @@ mod tests {
             ([0.0, -7.2e6, 1e5], 5.668_066_129_231_358e-15),
         ] {
             let position = Vector::from(position);
-            let found = harris_priester(ground_site::height(&position), &position, &sun, 6.0);
+            let found = harris_priester(ground_site::height(&position), bulge_cosine(&position, &sun), 6.0);
             assert!((found / density - 1.0).abs() < 1e-6, "{position}: {found:e} {density:e}");
         }
         // Rows of the table, by night and in the bulge.
@@ -122,8 +164,9 @@ mod tests {
     fn tables_are_exponential_between_rows() {
         let table: DensityTable = serde_json::from_str("[[4e5, 4e-12], [5e5, 1e-12], [7e5, 1e-13]]").unwrap();
         assert_eq!(table.fault(), None);
-        assert!((tabulated(&table, 4.5e5) / 2e-12 - 1.0).abs() < 1e-14);
-        assert!((tabulated(&table, 7e5) / 1e-13 - 1.0).abs() < 1e-14);
-        assert!((tabulated(&table, 6e5) / f64::sqrt(1e-25) - 1.0).abs() < 1e-14);
+        let at = |height: f64| tabulated(&table).at(height)[0];
+        assert!((at(4.5e5) / 2e-12 - 1.0).abs() < 1e-14);
+        assert!((at(7e5) / 1e-13 - 1.0).abs() < 1e-14);
+        assert!((at(6e5) / f64::sqrt(1e-25) - 1.0).abs() < 1e-14);
     }
 }

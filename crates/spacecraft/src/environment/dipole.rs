@@ -7,11 +7,10 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Attitude, Vector, vector};
 use flexsc_numerics::quantity::{Finite, Positive};
-use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::{Orbit, to_body};
+use super::orbit::Orbit;
 
 /// A magnetic moment in the field of a dipole.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -94,11 +93,6 @@ impl Dipole {
         }
         let (key, _) = keys.into_iter().find(|(_, is_given)| !is_given)?;
         Some(ConfigError::new(key, "must be given where the environment has no `orbit`"))
-    }
-
-    /// Returns the torque in the body's axes (N m) of a field in inertial axes (T).
-    pub(super) fn torque(&self, field: &Vector, attitude: &Quaternion<f64>) -> Vector {
-        vector(&self.moment).cross(&to_body(attitude, field))
     }
 
     /// Returns an upper bound of the torque (N m), in the dipole's own field or in one of strength `field` (T) at most.

@@ -9,14 +9,15 @@ use flexsc_formats::density_table::DensityTable;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{DensityFactor, Finite, Positive};
-use nalgebra::Quaternion;
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::density::LOWEST;
-use super::orbit::to_body;
-use super::plate_mount::{PlateMounts, PlatePlaces};
-use super::{DensityModel, OrbitKind, OrbitPath, OrbitPosition, density, ground_site};
+use super::density::{DensityRows, LOWEST};
+use super::orbit::transformed;
+use super::plate_mount::{MountedPlate, PlateMounts};
+use super::sky_row::SkyRow;
+use super::{DensityModel, OrbitKind, OrbitPath, density, ground_site};
 
 /// Drag of the atmosphere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -167,78 +168,124 @@ impl Drag {
         table.locate(directory);
         table.read().err().map(|why| ConfigError::new("table", why))
     }
+}
 
-    /// Returns the exponential density (kg/m³) at a distance from the planet's centre (m).
-    fn exponential(&self, distance: f64, orbit: &OrbitPath) -> f64 {
-        let reference = match (self.altitude, orbit) {
-            (Some(altitude), _) => orbit.planet_radius() + altitude.get(),
-            (None, OrbitPath::Kepler(orbit)) => orbit.semi_major_axis.get(),
-            (None, OrbitPath::Sampled(_)) => distance,
-        };
-        let above = distance - reference;
-        let fallen = self.scale_height.map_or(1.0, |height| libm::exp(-above / height.get()));
-        self.density.map_or(0.0, Positive::get) * fallen
+/// Drag on a body during a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct DragLoad {
+    air: Air,
+    /// Factor of the density.
+    scale: f64,
+    coefficient: f64,
+    /// Rotation rate of the atmosphere (rad/s).
+    rotation: f64,
+    plates: Vec<MountedPlate>,
+    /// Largest distance (m) that the centre of mass may move.
+    centre_shift: f64,
+}
+
+/// Density of the atmosphere.
+#[derive(Clone, Debug, PartialEq)]
+enum Air {
+    /// Density (kg/m³) at a distance from the planet's centre (m), if it falls by 1/e in a height (m).
+    Exponential(f64, Option<[f64; 2]>),
+    /// Exponent of the bulge.
+    HarrisPriester(f64),
+    Table(DensityRows<1>),
+}
+
+impl Air {
+    fn new(spec: &Drag, orbit: &OrbitPath) -> Self {
+        match (spec.model, &spec.table) {
+            (DensityModel::HarrisPriester, _) => {
+                Self::HarrisPriester(spec.bulge_exponent.map_or(BULGE_EXPONENT, Positive::get))
+            }
+            (DensityModel::Table, Some(table)) => Self::Table(density::tabulated(table)),
+            _ => {
+                let reference = match (spec.altitude, orbit) {
+                    (Some(altitude), _) => Some(orbit.planet_radius() + altitude.get()),
+                    (None, OrbitPath::Kepler(orbit)) => Some(orbit.semi_major_axis.get()),
+                    (None, OrbitPath::Sampled(_)) => None,
+                };
+                let falls = reference.zip(spec.scale_height.map(Positive::get));
+                Self::Exponential(spec.density.map_or(0.0, Positive::get), falls.map(<[f64; 2]>::from))
+            }
+        }
     }
 
-    /// Returns the density (kg/m³) at a position on an orbit, with the direction of the Sun, if there is one.
-    pub(super) fn density_at(&self, place: &OrbitPosition, orbit: &OrbitPath, sun: Option<&Vector>) -> f64 {
-        let density = match (self.model, &self.table, sun) {
-            (DensityModel::HarrisPriester, _, Some(sun)) => {
-                let exponent = self.bulge_exponent.map_or(BULGE_EXPONENT, Positive::get);
-                density::harris_priester(ground_site::height(&place.position), &place.position, sun, exponent)
-            }
-            (DensityModel::Table, Some(table), _) => {
-                density::tabulated(table, ground_site::height(&place.position))
-            }
-            _ => self.exponential(place.position.norm(), orbit),
-        };
-        density * self.scale.map_or(1.0, DensityFactor::get)
+    /// Returns the density (kg/m³) of the exponential model at a distance from the planet's centre (m).
+    fn exponential(density: f64, falls: Option<[f64; 2]>, distance: f64) -> f64 {
+        density * falls.map_or(1.0, |[reference, height]| libm::exp((reference - distance) / height))
     }
 
     /// Returns an upper bound of the density on an orbit (kg/m³).
-    fn density_bound(&self, orbit: &OrbitPath) -> f64 {
+    fn bound(&self, orbit: &OrbitPath) -> f64 {
         let [low, high] = heights(orbit);
-        let density = match (self.model, &self.table) {
-            (DensityModel::HarrisPriester, _) => density::harris_priester_range(low)[1],
-            (DensityModel::Table, Some(table)) => {
-                let within = table.rows().iter().filter(|[height, _]| (low..=high).contains(height));
-                let ends = [low, high].map(|height| density::tabulated(table, height));
-                within.map(|[_, density]| *density).chain(ends).fold(0.0, f64::max)
+        match self {
+            Self::Exponential(density, falls) => Self::exponential(*density, *falls, orbit.nearest()),
+            Self::HarrisPriester(_) => density::harris_priester_range(low)[1],
+            Self::Table(rows) => rows.largest([low, high]),
+        }
+    }
+}
+
+impl DragLoad {
+    /// Creates the load on plates with these mounts.
+    pub fn new(spec: &Drag, orbit: &OrbitPath, mounts: &PlateMounts) -> Self {
+        let braked = |(index, plate): (usize, &DragPlate)| {
+            let mount = mounts.braked.get(index).and_then(Option::as_ref);
+            MountedPlate::new(mount, [&plate.normal, &plate.at], plate.area, mounts.turn)
+        };
+        Self {
+            air: Air::new(spec, orbit),
+            scale: spec.scale.map_or(1.0, DensityFactor::get),
+            coefficient: spec.coefficient.get(),
+            rotation: spec.rotation.get(),
+            plates: spec.plates.iter().enumerate().map(braked).collect(),
+            centre_shift: mounts.centre_shift,
+        }
+    }
+
+    /// Returns the density (kg/m³).
+    pub fn density(&self, row: &SkyRow) -> f64 {
+        let density = match &self.air {
+            Air::Exponential(density, falls) => Air::exponential(*density, *falls, row.position().norm()),
+            Air::HarrisPriester(exponent) => {
+                density::harris_priester(row.height(), row.bulge_cosine(), *exponent)
             }
-            _ => self.exponential(orbit.nearest(), orbit),
+            Air::Table(rows) => rows.at(row.height())[0],
         };
-        density * self.scale.map_or(1.0, DensityFactor::get)
+        density * self.scale
     }
 
-    /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude in air of a density (kg/m³), in
-    /// its axes (N m).
-    pub(super) fn torque(
+    /// Returns the velocity relative to the air in inertial axes (m/s).
+    pub fn flow(&self, row: &SkyRow) -> Vector {
+        row.velocity() - Vector::z().cross(&row.position()) * self.rotation
+    }
+
+    /// Returns the torque about the centre of mass `centre` (m) on a body whose axes are the rows of `turn` in inertial axes, in
+    /// its axes (N m), in air of a density (kg/m³) and a relative velocity (m/s).
+    pub fn torque(
         &self,
-        density: f64,
-        place: &OrbitPosition,
-        attitude: &Quaternion<f64>,
-        (centre, places): (&Vector, PlatePlaces<'_>),
+        turn: &Matrix3<f64>,
+        (flow, density): (&Vector, f64),
+        (centre, axes): (&Vector, &[Matrix3<f64>]),
     ) -> Vector {
-        let carried = Vector::z().cross(&place.position) * self.rotation.get();
-        let flow = to_body(attitude, &(place.velocity - carried));
-        let factor = -0.5 * self.coefficient.get() * density;
-        self.plates.iter().enumerate().fold(Vector::zeros(), |sum, (index, plate)| {
-            let [normal, at] = places.place(index, &plate.normal, &plate.at);
-            let projected_area = normal.dot(&flow).max(0.0) * plate.area.get();
-            sum + (at - centre).cross(&flow) * (factor * projected_area)
-        })
+        let flow = transformed(turn, flow);
+        let mut sum = Vector::zeros();
+        for plate in &self.plates {
+            let [normal, arm] = plate.place(centre, axes);
+            sum += arm * (normal.dot(&flow).max(0.0) * plate.area);
+        }
+        sum.cross(&flow) * (-0.5 * self.coefficient * density)
     }
 
-    /// Returns an upper bound of the torque (N m).
-    pub(super) fn bound(&self, orbit: &OrbitPath, centre: &Vector, mounts: &PlateMounts) -> f64 {
-        let nearest = orbit.nearest();
-        let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
-        let factor = 0.5 * self.coefficient.get() * self.density_bound(orbit) * speed * speed;
-        let places = PlatePlaces { mounts: &mounts.braked, axes: None };
-        let arm = |(index, plate): (usize, &DragPlate)| {
-            plate.area.get() * (places.arm(index, &plate.at, centre) + mounts.centre_shift)
-        };
-        factor * self.plates.iter().enumerate().map(arm).sum::<f64>()
+    /// Returns an upper bound of the torque (N m) about the centre of mass `centre` (m).
+    pub fn bound(&self, orbit: &OrbitPath, centre: &Vector) -> f64 {
+        let speed = orbit.nearest() * (orbit.fastest() + self.rotation.abs());
+        let factor = 0.5 * self.coefficient * self.scale * self.air.bound(orbit) * speed * speed;
+        let arm = |plate: &MountedPlate| plate.area * (plate.arm(centre) + self.centre_shift);
+        factor * self.plates.iter().map(arm).sum::<f64>()
     }
 }
 
@@ -251,6 +298,7 @@ fn heights(orbit: &OrbitPath) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::environment::orbit::body_axes;
     use flexsc_numerics::attitude::rotation as turned;
 
     #[test]
@@ -264,36 +312,29 @@ mod tests {
         .unwrap();
         assert_eq!(drag.fault(Some(&kind), false), None);
         // At the start the body is on the inertial x axis and moves along y.
-        let place = orbit.at(0.0);
+        let row = SkyRow::new((Some(&orbit), None, None), false, 0.0.into());
         let centre = Vector::new(0.1, 0.0, 0.0);
-        let hub = PlatePlaces { mounts: &[], axes: None };
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
-        let torque = |by: Vector| {
-            drag.torque(drag.density_at(&place, &orbit, None), &place, &turned(&by), (&centre, hub))
+        let torque_on = |drag: &Drag, by: Vector| {
+            let load = DragLoad::new(drag, &orbit, &PlateMounts::default());
+            let found =
+                load.torque(&body_axes(&turned(&by)), (&load.flow(&row), load.density(&row)), (&centre, &[]));
+            assert!(found.norm() <= load.bound(&orbit, &centre) * (1.0 + 1e-12));
+            found
         };
+        let torque = |by: Vector| torque_on(&drag, by);
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
-        assert!(
-            torque(Vector::zeros()).norm()
-                <= drag.bound(&orbit, &centre, &PlateMounts::default()) * (1.0 + 1e-12)
-        );
         // Turned by 60 degrees about z the plate meets half of the flow; by more than 90 degrees, none.
         let third = torque(Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_3));
         assert!((third.norm() - 0.25 * force).abs() < 1e-12 * force, "{third}");
         assert_eq!(torque(Vector::new(0.0, 0.0, 2.0)), Vector::zeros());
         // An atmosphere that turns with the planet changes the relative flow.
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
-        let slower = carried
-            .torque(
-                carried.density_at(&place, &orbit, None),
-                &place,
-                &turned(&Vector::zeros()),
-                (&centre, hub),
-            )
-            .x
-            / (0.5 * force);
+        let slower = torque_on(&carried, Vector::zeros()).x / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");
-        assert!((drag.exponential(6.86e6, &orbit) / 4e-12 - libm::exp(-1.0)).abs() < 1e-15);
+        let fallen = Air::exponential(1.0, Some([6.8e6, 6e4]), 6.86e6);
+        assert!((fallen - libm::exp(-1.0)).abs() < 1e-15);
         assert_eq!(drag.fault(None, false).unwrap().key, "");
     }
 }

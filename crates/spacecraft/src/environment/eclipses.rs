@@ -1,13 +1,18 @@
 //! Eclipses of the Sun by the planet during a run: the instants at which they begin and end, and the part of the Sun's
 //! disc in view.
 
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::shadow::ShadowRegion;
-use super::solar_disc::{ASTRONOMICAL_UNIT, Discs};
+use super::solar_disc::{ASTRONOMICAL_UNIT, Discs, SUN_RADIUS};
+use super::sun::Sunlight;
 use super::{OrbitPath, SunPath};
+
+/// Distance from the edge of a shadow, relative to the planet's radius, beyond which the part in view needs no angles.
+const CLEAR: f64 = 1e-3;
 
 /// Shape of the planet's shadow.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -83,11 +88,27 @@ fn interval_at(intervals: &[[Instant; 2]], t: f64) -> Option<[Instant; 2]> {
 
 /// Returns the part of the Sun's disc in view at a time since the start (s), from 0 to 1.
 pub(super) fn part_in_view(orbit: &OrbitPath, sun: &SunPath, t: f64) -> f64 {
-    let (position, planet, [distance, _]) = (orbit.at(t).position, orbit.planet_radius(), sun.distance(t));
-    let sun = sun.direction(t) * (distance * ASTRONOMICAL_UNIT);
+    let [position, _] = orbit.state(t.into());
+    part_at(&position, orbit.planet_radius(), &sun.light(t.into()))
+}
+
+/// Returns the part of the Sun's disc in view at a position (m) beside a planet of a radius (m), from 0 to 1.
+pub(super) fn part_at(position: &Vector, planet: f64, light: &Sunlight) -> f64 {
     // No shadow reaches the Sun's side of the planet by more than 0.11 of its radius.
-    if position.dot(&sun) > 0.11 * planet * sun.norm() {
+    let along = position.dot(&light.direction);
+    if along > 0.11 * planet {
         return 1.0;
     }
-    Discs::from_position(&position, &sun, planet).part_in_view()
+    // Outside of the penumbra's cone all of the Sun is in view, and within the umbra's nothing of it.
+    let distance = ASTRONOMICAL_UNIT / f64::sqrt(light.pressure);
+    let across = f64::sqrt((position.norm_squared() - along * along).max(0.0));
+    let from_cone = |slant: f64| across * f64::sqrt(1.0 - slant * slant) - planet + slant * along;
+    if from_cone((SUN_RADIUS + planet) / distance) > CLEAR * planet {
+        return 1.0;
+    }
+    let slant = (planet - SUN_RADIUS) / distance;
+    if from_cone(slant) < -CLEAR * planet {
+        return 0.0;
+    }
+    Discs::from_position(position, &(light.direction * distance), planet).part_in_view()
 }

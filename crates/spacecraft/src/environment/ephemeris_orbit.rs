@@ -134,7 +134,7 @@ impl EphemerisOrbit {
             let why = if of_dates { "has dates" } else { "is along axes of 2000" };
             format!("{why}: a scenario without a date of its own needs an `epoch`")
         })?;
-        let [from, to] = orbit.span();
+        let [from, to] = orbit.range();
         if from > 0.0 || to < duration {
             return Err(format!("must have rows from 0 to {duration} s of the run, got {from} to {to} s"));
         }

@@ -7,12 +7,12 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Attitude, Vector};
 use flexsc_numerics::quantity::Positive;
-use nalgebra::{Matrix3, Quaternion};
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::{Orbit, to_body};
-use super::{OrbitEnvironment, OrbitPosition};
+use super::OrbitEnvironment;
+use super::orbit::{Orbit, transformed};
 
 /// Gravity gradient.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,28 +39,22 @@ impl GravityGradient {
         Some(ConfigError::new(key, "follows from the environment's `orbit`: leave it out"))
     }
 
-    /// Returns the direction to the planet in the axes of a body of the given attitude, and n² or mu/R³ (1/s²).
-    pub(super) fn direction_and_strength(
-        &self,
-        t: f64,
-        attitude: &Quaternion<f64>,
-        place: Option<&OrbitPosition>,
-    ) -> (Vector, f64) {
-        match (self.orbit_rate, place) {
-            (Some(rate), _) => (Orbit::new(rate, self.local).nadir(t, attitude), rate.get() * rate.get()),
-            (None, Some(place)) => (to_body(attitude, &place.local[2]), place.tide),
-            (None, None) => (Vector::zeros(), 0.0),
-        }
+    /// Returns the direction to the planet in inertial axes and n² (1/s²) at a time since the start (s), on an orbit of its own.
+    pub(super) fn own_pull(&self, t: f64) -> Option<(Vector, f64)> {
+        let rate = self.orbit_rate?;
+        Some((Orbit::new(rate, self.local).to_inertial(t, &Vector::z()), rate.get() * rate.get()))
     }
 
     /// Returns the torque in the body's axes (N m), from the nadir direction and n² (1/s²).
     pub(super) fn torque((nadir, tide): (Vector, f64), inertia: &Matrix3<f64>) -> Vector {
-        nadir.cross(&(inertia * nadir)) * (3.0 * tide)
+        nadir.cross(&transformed(inertia, &nadir)) * (3.0 * tide)
     }
 
     /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode.
     pub(super) fn modal_tensor((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
-        (Matrix3::identity() - nadir * nadir.transpose() * 3.0) * (0.5 * tide)
+        let (half, [x, y, z]) = (0.5 * tide, nadir.into());
+        let (a, b, c) = (-3.0 * half * x, -3.0 * half * y, -3.0 * half * z);
+        Matrix3::new(half + a * x, a * y, a * z, a * y, half + b * y, b * z, a * z, b * z, half + c * z)
     }
 
     /// Returns an upper bound of the torque on a body of this inertia (N m).

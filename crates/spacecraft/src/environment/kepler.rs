@@ -9,15 +9,15 @@
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::TAU;
-
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, shortest};
+use flexsc_numerics::time_arcs::SplitTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Oblateness;
+use super::phase::{Phase, product};
 
 /// A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -122,6 +122,24 @@ impl Kepler {
         self.mean_motion() + self.secular_rates().anomaly
     }
 
+    /// Returns the mean anomaly over time. Its rate is exact: rounded, it would err by 5e-12 rad after a year.
+    fn mean_anomaly(&self) -> Phase {
+        let (a, gravity, motion, drift) = (
+            self.semi_major_axis.get(),
+            self.gravity.get(),
+            self.mean_motion(),
+            self.secular_rates().anomaly,
+        );
+        // Step of Newton's method for n with (n a)² a = mu.
+        let [speed, speed_rest] = product(motion, a);
+        let [squared, squared_rest] = product(speed, speed);
+        let [pull, pull_rest] = product(squared, a);
+        let rest = pull_rest + (squared_rest + 2.0 * speed * speed_rest) * a;
+        let more = motion * ((gravity - pull) - rest) / (2.0 * gravity);
+        let rate = motion + drift;
+        Phase { start: self.anomaly.get(), rate: [rate, (motion - rate) + drift + more] }
+    }
+
     /// Returns true if the elements drift.
     pub fn drifts(&self) -> bool {
         !self.j2.is_zero()
@@ -167,18 +185,19 @@ impl Kepler {
         acceleration / (haste * least - turn * farthest).max(0.0)
     }
 
-    /// Returns the unit vectors P, Q and along the orbit's normal at `t` seconds after the start.
-    pub(super) fn plane(&self, t: f64) -> [Vector; 3] {
+    /// Returns the unit vectors P, Q and along the orbit's normal at a time since the start.
+    pub(super) fn plane(&self, t: SplitTime) -> [Vector; 3] {
         let drift = self.secular_rates();
-        let (node, perigee) = (self.node.get() + drift.node * t, self.perigee.get() + drift.perigee * t);
+        let at = |start: Finite, rate: f64| Phase { start: start.get(), rate: [rate, 0.0] }.at(t);
+        let (node, perigee) = (at(self.node, drift.node), at(self.perigee, drift.perigee));
         let [(si, ci), (sn, cn), (sp, cp)] = [self.inclination.get(), node, perigee].map(libm::sincos);
         let ahead =
             |sin: f64, cos: f64| Vector::new(cn * cos - sn * ci * sin, sn * cos + cn * ci * sin, si * sin);
         [ahead(sp, cp), ahead(cp, -sp), Vector::new(sn * si, -cn * si, ci)]
     }
 
-    /// Returns the rotation rate of P and Q in inertial axes (rad/s) at `t` seconds after the start.
-    pub(super) fn plane_rotation(&self, t: f64) -> Vector {
+    /// Returns the rotation rate of P and Q in inertial axes (rad/s) at a time since the start.
+    pub(super) fn plane_rotation(&self, t: SplitTime) -> Vector {
         let drift = self.secular_rates();
         if self.drifts() {
             Vector::z() * drift.node + self.plane(t)[2] * drift.perigee
@@ -189,13 +208,18 @@ impl Kepler {
 
     /// Returns the orbit's normal with its first two derivatives, about an oblate planet.
     pub(super) fn normal_motion(&self, t: f64) -> [Vector; 3] {
-        let (normal, turn) = (self.plane(t)[2], Vector::z() * self.secular_rates().node);
+        let (normal, turn) = (self.plane(t.into())[2], Vector::z() * self.secular_rates().node);
         let rate = turn.cross(&normal);
         [normal, rate, turn.cross(&rate)]
     }
 
     /// Returns the position on the orbit at `t` seconds after the start.
     pub fn at(&self, t: f64) -> OrbitPosition {
+        self.place(t.into())
+    }
+
+    /// Returns the position on the orbit at a time since the start.
+    pub(super) fn place(&self, t: SplitTime) -> OrbitPosition {
         let place = self.in_plane(t);
         if self.drifts() { self.turned(place, t) } else { place }
     }
@@ -203,7 +227,7 @@ impl Kepler {
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
     /// start.
     pub fn motion(&self, t: f64) -> [Vector; 4] {
-        let place = self.in_plane(t);
+        let place = self.in_plane(t.into());
         let (position, velocity) = (place.position, place.velocity);
         let climb = 3.0 * position.dot(&velocity) / position.norm_squared();
         let jerk = (position * climb - velocity) * place.tide;
@@ -214,7 +238,7 @@ impl Kepler {
         // Derivatives along the ellipse, on which the anomaly moves by `haste`, and those of the ellipse that turns by w.
         let haste = self.haste();
         let own = [velocity * haste, acceleration * (haste * haste), jerk * (haste * haste * haste)];
-        let (drift, w) = (self.secular_rates(), self.plane_rotation(t));
+        let (drift, w) = (self.secular_rates(), self.plane_rotation(t.into()));
         let [_, normal_rate, normal_change] = self.normal_motion(t);
         let (dw, ddw) = (normal_rate * drift.perigee, normal_change * drift.perigee);
         let velocity = own[0] + w.cross(&position);
@@ -230,11 +254,11 @@ impl Kepler {
         [position, velocity, acceleration, jerk]
     }
 
-    /// Returns the position on the ellipse at `t` seconds after the start, with velocity and rates as if the mean anomaly
+    /// Returns the position on the ellipse at a time since the start, with velocity and rates as if the mean anomaly
     /// moved at the mean motion and the ellipse stood still.
-    fn in_plane(&self, t: f64) -> OrbitPosition {
+    fn in_plane(&self, t: SplitTime) -> OrbitPosition {
         let (a, e, gravity) = (self.semi_major_axis.get(), self.eccentricity.get(), self.gravity.get());
-        let anomaly = eccentric(libm::fmod(self.anomaly.get() + self.anomaly_rate() * t, TAU), e);
+        let anomaly = eccentric(self.mean_anomaly().at(t), e);
         let (sin, cos) = libm::sincos(anomaly);
         let [p, q, normal] = self.plane(t);
         let minor = f64::sqrt(1.0 - e * e);
@@ -257,7 +281,7 @@ impl Kepler {
     }
 
     /// Returns a position with the velocity and rates that it has as the elements drift.
-    fn turned(&self, place: OrbitPosition, t: f64) -> OrbitPosition {
+    fn turned(&self, place: OrbitPosition, t: SplitTime) -> OrbitPosition {
         let (drift, haste) = (self.secular_rates(), self.haste());
         let [rate, acceleration] = place.turning;
         let axis = Vector::from_iterator(place.local.iter().map(|axis| axis.z));

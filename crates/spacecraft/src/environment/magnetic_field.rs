@@ -9,11 +9,13 @@ use flexsc_formats::harmonic_table::HarmonicTable;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::time::Span;
+use flexsc_numerics::time_arcs::SplitTime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::FieldModel;
 use super::date::{greenwich, year};
+use super::phase::Phase;
 use super::spherical_harmonics::SphericalHarmonics;
 
 /// Magnetic field of the orbit's planet: a model of the Earth's, or a tilted dipole, B = (a/R)³ (3 (g.r) r - g) with r
@@ -191,10 +193,15 @@ impl PlanetField {
         Self { source, ..*self }
     }
 
+    /// Returns sine and cosine of the angle from the inertial x to the prime meridian at a time since the start.
+    fn turned(&self, t: SplitTime) -> (f64, f64) {
+        libm::sincos(Phase { start: self.meridian, rate: [self.rotation, 0.0] }.at(t))
+    }
+
     /// Returns the field (T) at a position from the planet's centre (m), both in inertial axes, at a time since the
-    /// start (s).
-    pub fn at(&self, position: &Vector, t: f64) -> Vector {
-        let (sin, cos) = libm::sincos(self.meridian + self.rotation * t);
+    /// start.
+    pub fn at(&self, position: &Vector, t: impl Into<SplitTime>) -> Vector {
+        let (sin, cos) = self.turned(t.into());
         match &self.source {
             FieldSource::Dipole(coefficients, radius) => {
                 let [x, y, z] = (*coefficients).into();
@@ -214,7 +221,7 @@ impl PlanetField {
     /// Returns the field (T) with its first two derivatives in inertial axes, from position (m), velocity and acceleration in
     /// inertial axes, at a time since the start (s).
     pub fn motion(&self, motion: [Vector; 3], t: f64) -> [Vector; 3] {
-        let (sin, cos) = libm::sincos(self.meridian + self.rotation * t);
+        let (sin, cos) = self.turned(t.into());
         let turn = Vector::z() * self.rotation;
         let [position, velocity, acceleration] =
             motion.map(|v| Vector::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z));
@@ -242,6 +249,12 @@ impl PlanetField {
                 Arc::new(SphericalHarmonics::new(*radius, 1, rows.into_iter()))
             }
         }
+    }
+
+    /// Returns an upper bound of the field's size (T) where time, and with it the position, has an imaginary part: as for
+    /// [`SphericalHarmonics::complex_bound`], without the planet's rotation.
+    pub fn complex_bound(&self, distance: f64, stretch: f64) -> f64 {
+        self.harmonics().complex_bound(distance, stretch)
     }
 
     /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.

@@ -1,6 +1,7 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
 mod altitude_orbit;
+mod arc_length;
 mod bright_body;
 mod date;
 mod deep_space;
@@ -19,13 +20,13 @@ mod igrf_14;
 mod kepler;
 mod local_time;
 mod magnetic_field;
-mod memo;
 mod moon;
 mod oblateness;
 mod orbit;
 mod orbit_environment;
 mod orbit_kind;
 mod orbit_path;
+mod phase;
 mod plate_mount;
 mod precession;
 mod resonance;
@@ -33,6 +34,7 @@ mod row_departure;
 mod sampled_orbit;
 mod sgp4;
 mod shadow;
+mod sky_row;
 mod solar_disc;
 mod solar_pressure;
 mod spherical_harmonics;

@@ -3,13 +3,15 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::time_arcs::TimeArcs;
 
+use super::arc_length::LONGEST;
 use super::date::greenwich;
 use super::deferred::Deferred;
 use super::eclipses::{self, Eclipses};
 use super::magnetic_field::PlanetField;
-use super::memo::Memo;
-use super::{Environment, OrbitPath, OrbitPosition, ShadowShape, SunPath, moon};
+use super::sky_row::{self, SkyRow};
+use super::{DensityModel, Environment, OrbitPath, OrbitPosition, ShadowShape, SunPath, moon};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,12 +29,11 @@ pub struct OrbitEnvironment {
     date: Option<f64>,
     /// Duration of the run (s).
     duration: f64,
-    /// Positions on the orbit at the last times.
-    positions: Memo<OrbitPosition>,
-    /// Magnetic fields in inertial axes (T) at the last times.
-    fields: Memo<Option<Vector>>,
-    /// Parts of the Sun's disc in view at the last times.
-    parts: Memo<f64>,
+    /// True if the density of the atmosphere follows from the height above the Earth's ellipsoid.
+    has_height: bool,
+    /// Length of the arcs on an orbit by Kepler elements (s).
+    arc_length: Deferred<f64>,
+    arcs: TimeArcs<{ sky_row::COLUMNS }>,
 }
 
 /// Observable environment at an instant, in inertial axes.
@@ -59,15 +60,15 @@ impl OrbitEnvironment {
             greenwich: epoch_ns.map_or(0.0, greenwich),
             date: epoch_ns.map(moon::since_j2000),
             duration: duration.seconds(),
-            positions: Memo::default(),
-            fields: Memo::default(),
-            parts: Memo::default(),
+            has_height: environment.drag.as_ref().is_some_and(|drag| drag.model != DensityModel::Exponential),
+            arc_length: Deferred::default(),
+            arcs: TimeArcs::default(),
         }
     }
 
     /// Returns the position at `t` seconds after the start, if the body is on an orbit.
     pub fn position(&self, t: f64) -> Option<OrbitPosition> {
-        self.orbit.as_ref().map(|orbit| self.positions.get_or(t, || orbit.at(t)))
+        self.orbit.as_ref().map(|orbit| orbit.at(t))
     }
 
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
@@ -133,12 +134,47 @@ impl OrbitEnvironment {
     /// Returns the part of the Sun's disc that the planet leaves in view at a time since the start (s), from 0 to 1.
     pub fn part_in_view(&self, t: f64) -> f64 {
         match (self.shadow, &self.orbit, &self.sun) {
-            (ShadowShape::Cone, Some(orbit), Some(sun)) => {
-                self.parts.get_or(t, || eclipses::part_in_view(orbit, sun, t))
-            }
+            (ShadowShape::Cone, Some(orbit), Some(sun)) => eclipses::part_in_view(orbit, sun, t),
             _ if self.eclipses().is_some_and(|eclipses| eclipses.is_within(t)) => 0.0,
             _ => 1.0,
         }
+    }
+
+    /// Returns the part of the Sun's disc in view at a time since the start (s) whose row is known.
+    pub(super) fn part_in_row(&self, row: &SkyRow, t: f64) -> f64 {
+        match (self.shadow, &self.orbit, &self.sun) {
+            (ShadowShape::Cone, Some(orbit), Some(_)) => {
+                eclipses::part_at(&row.position(), orbit.planet_radius(), &row.light())
+            }
+            _ => self.part_in_view(t),
+        }
+    }
+
+    /// Returns the times (s) about one on which position, magnetic field and Sun are polynomials, or arcs that are halved for them:
+    /// on an orbit by rows from one to the next.
+    pub fn span(&self, t: f64) -> [f64; 2] {
+        let length = match &self.orbit {
+            None => LONGEST,
+            Some(OrbitPath::Kepler(orbit)) => {
+                *self.arc_length.get_or(|| orbit.arc_length(self.field.as_ref()))
+            }
+            Some(OrbitPath::Sampled(orbit)) => return orbit.span(t),
+        };
+        let index = libm::floor(t / length);
+        [index * length, (index + 1.0) * length]
+    }
+
+    /// Returns position, magnetic field and Sun at a time since the start (s), from the arc about it.
+    pub(super) fn row(&self, t: f64) -> SkyRow {
+        let parts = (self.orbit.as_ref(), self.field.as_ref(), self.sun.as_ref());
+        let has_rows = matches!(self.orbit, Some(OrbitPath::Sampled(_)));
+        SkyRow(self.arcs.read(
+            t,
+            || self.span(t),
+            |t| SkyRow::new(parts, self.has_height, t).0,
+            |arc, tail| SkyRow::is_resolved(arc, tail, has_rows),
+            |arc| arc.at(t),
+        ))
     }
 
     /// Returns the rate (rad/s) with which the part of the Sun's disc in view varies at a time since the start (s).
@@ -202,7 +238,14 @@ impl OrbitEnvironment {
     /// Returns the environment with the degrees of the magnetic field up to `degree`.
     #[must_use]
     pub fn with_field_degree(&self, degree: usize) -> Self {
-        Self { field: self.field.as_ref().map(|field| field.truncated(degree)), ..self.clone() }
+        let field = self.field.as_ref().map(|field| field.truncated(degree));
+        Self { field, arc_length: Deferred::default(), arcs: TimeArcs::default(), ..self.clone() }
+    }
+
+    /// Returns the magnetic field in the planet's axes.
+    #[cfg(test)]
+    pub(super) fn field(&self) -> Option<&PlanetField> {
+        self.field.as_ref()
     }
 
     /// Returns the rotation rate of the planet whose magnetic field turns with it (rad/s); 0 without a field.
@@ -212,8 +255,7 @@ impl OrbitEnvironment {
 
     /// Returns the magnetic field at the body in inertial axes (T) at a time since the start (s).
     pub fn field_at(&self, t: f64) -> Option<Vector> {
-        let field = self.field.as_ref()?;
-        self.fields.get_or(t, || Some(field.at(&self.position(t)?.position, t)))
+        (self.orbit.is_some() && self.is_magnetic()).then(|| self.row(t).field())
     }
 
     /// Returns the magnetic field at the body in inertial axes (T) with its first two derivatives at a time since the start
@@ -234,11 +276,15 @@ impl OrbitEnvironment {
 
     /// Returns the observable environment at a time since the start (s).
     pub fn observation(&self, t: f64) -> EnvironmentObservation {
-        let sun = self.sun.as_ref().filter(|_| self.is_lit(t));
+        if self.orbit.is_none() && self.sun.is_none() {
+            return EnvironmentObservation::default();
+        }
+        let row = self.row(t);
+        let sun = self.sun.as_ref().filter(|_| self.part_in_row(&row, t) >= 0.5);
         EnvironmentObservation {
-            field: self.field_at(t),
-            sun: sun.map(|sun| sun.direction(t)),
-            nadir: self.position(t).map(|place| place.local[2]),
+            field: self.field.as_ref().map(|_| row.field()),
+            sun: sun.map(|_| row.light().direction),
+            nadir: self.orbit.as_ref().map(|_| -row.position().normalize()),
         }
     }
 }
@@ -255,7 +301,7 @@ mod tests {
                 .unwrap();
         let sky = OrbitEnvironment::new(&around, Span::from_seconds(1e5), Some(1_795_478_400_000_000_000));
         let copy = sky.clone();
-        assert!(sky.position(5.0).is_some() && !sky.eclipses.is_known());
+        assert!(sky.observation(5.0).nadir.is_some() && !sky.eclipses.is_known());
         assert!(sky.shadow_edges().count() > 60);
         assert!(copy == sky && copy.eclipses.is_known());
     }

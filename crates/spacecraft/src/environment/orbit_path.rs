@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time_arcs::SplitTime;
 
 use super::{Kepler, OrbitPosition, SampledOrbit};
 
@@ -52,6 +53,20 @@ of_each! {
 }
 
 impl OrbitPath {
+    /// Returns position (m) and velocity in inertial axes at a time since the start.
+    pub(super) fn state(&self, t: SplitTime) -> [Vector; 2] {
+        match self {
+            Self::Kepler(orbit) => {
+                let place = orbit.place(t);
+                [place.position, place.velocity]
+            }
+            Self::Sampled(orbit) => {
+                let [position, velocity, ..] = orbit.motion_at(t);
+                [position, velocity]
+            }
+        }
+    }
+
     /// Returns the gravitational parameter of the planet (m³/s²).
     pub fn gravity(&self) -> f64 {
         match self {

@@ -1,7 +1,7 @@
 //! Appendages on which plates are mounted, with which they turn.
 
 use flexsc_numerics::attitude::{Vector, vector};
-use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Matrix3;
 
 /// Appendage of a plate.
@@ -28,27 +28,48 @@ pub struct PlateMounts {
     pub centre_shift: f64,
 }
 
-/// Mounts of plates with the present rotations of the appendages; those at rest where none turns.
-#[derive(Copy, Clone)]
-pub(super) struct PlatePlaces<'a> {
-    pub mounts: &'a [Option<PlateMount>],
-    pub axes: Option<&'a [Matrix3<f64>]>,
+/// Plate with its constants during a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct MountedPlate {
+    /// Appendage with which it turns, if it does.
+    mount: Option<PlateMount>,
+    /// Unit normal and position (m) in the axes of the appendage that turns, else of the body.
+    normal: Vector,
+    at: Vector,
+    /// Area (m²).
+    pub area: f64,
 }
 
-impl PlatePlaces<'_> {
-    /// Returns the unit normal and the position (m) of a plate in the body's axes.
-    pub fn place(&self, plate: usize, normal: &[Finite; 3], at: &[Finite; 3]) -> [Vector; 2] {
-        let (normal, at) = (vector(normal).normalize(), vector(at));
-        let Some(mount) = self.mounts.get(plate).copied().flatten() else { return [normal, at] };
-        let axes = self.axes.and_then(|axes| axes.get(mount.panel)).unwrap_or(&mount.axes);
-        [axes * normal, mount.root + axes * at]
+impl MountedPlate {
+    /// Creates the plate from its normal of any length, its position (m) and its area (m²), on its appendage that `turns` or not.
+    pub fn new(
+        mount: Option<&PlateMount>,
+        [normal, at]: [&[Finite; 3]; 2],
+        area: Positive,
+        turns: bool,
+    ) -> Self {
+        let (normal, at, area) = (vector(normal).normalize(), vector(at), area.get());
+        match mount {
+            Some(mount) if !turns => {
+                Self { mount: None, normal: mount.axes * normal, at: mount.root + mount.axes * at, area }
+            }
+            _ => Self { mount: mount.copied(), normal, at, area },
+        }
     }
 
-    /// Returns the largest distance (m) of a plate from a point.
-    pub fn arm(&self, plate: usize, at: &[Finite; 3], point: &Vector) -> f64 {
-        match self.mounts.get(plate).copied().flatten() {
-            None => (vector(at) - point).norm(),
-            Some(mount) => (mount.root - point).norm() + vector(at).norm(),
+    /// Returns the unit normal, and the position (m) from a point, in the body's axes, with the rotations of the appendages.
+    #[inline]
+    pub fn place(&self, point: &Vector, axes: &[Matrix3<f64>]) -> [Vector; 2] {
+        let Some(mount) = &self.mount else { return [self.normal, self.at - point] };
+        let axes = axes.get(mount.panel).unwrap_or(&mount.axes);
+        [axes * self.normal, mount.root + axes * self.at - point]
+    }
+
+    /// Returns the largest distance (m) of the plate from a point, however its appendage turns.
+    pub fn arm(&self, point: &Vector) -> f64 {
+        match &self.mount {
+            None => (self.at - point).norm(),
+            Some(mount) => (mount.root - point).norm() + self.at.norm(),
         }
     }
 }

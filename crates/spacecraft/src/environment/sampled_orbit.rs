@@ -2,6 +2,7 @@
 //! and the four after an instant, whose derivatives are velocity, acceleration and its rate of change.
 
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time_arcs::SplitTime;
 
 use super::OrbitPosition;
 
@@ -85,7 +86,7 @@ impl SampledOrbit {
     }
 
     /// Returns the times (s) of the first and the last row.
-    pub(super) fn span(&self) -> [f64; 2] {
+    pub(super) fn range(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
@@ -145,9 +146,37 @@ impl SampledOrbit {
         next.saturating_sub(ROWS / 2).min(self.times.len() - ROWS)
     }
 
+    /// Returns the times (s) about an instant between which the orbit is one polynomial: of two rows, and beyond the rows in
+    /// steps of the last two.
+    pub(super) fn span(&self, t: f64) -> [f64; 2] {
+        let last = self.times.len() - 1;
+        let next = self.times.partition_point(|time| *time <= t);
+        if (1..=last).contains(&next) {
+            return [self.times[next - 1], self.times[next]];
+        }
+        let next = next.clamp(1, last);
+        let (from, length) = (self.times[next - 1], self.times[next] - self.times[next - 1]);
+        let border = |step: f64| from + step * length;
+        // The step by the quotient may be one off by rounding.
+        let mut step = libm::floor((t - from) / length);
+        while t < border(step) {
+            step -= 1.0;
+        }
+        while t >= border(step + 1.0) {
+            step += 1.0;
+        }
+        [step, step + 1.0].map(border)
+    }
+
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at a time since the start (s).
     pub fn motion(&self, t: f64) -> [Vector; 4] {
-        let first = self.first_row(t);
+        self.motion_at(t.into())
+    }
+
+    /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at a time since the start, by the
+    /// polynomial of its middle.
+    pub(super) fn motion_at(&self, t: SplitTime) -> [Vector; 4] {
+        let first = self.first_row(t.middle);
         let times = &self.times[first..first + ROWS];
         // Newton's form: differences of the positions, divided by those of the times.
         let mut divided: [Vector; ROWS] = std::array::from_fn(|row| self.positions[first + row]);
@@ -159,7 +188,7 @@ impl SampledOrbit {
         // Value and derivatives by Horner's rule, with factorials last.
         let mut motion = [divided[ROWS - 1], Vector::zeros(), Vector::zeros(), Vector::zeros()];
         for row in (0..ROWS - 1).rev() {
-            let past = t - times[row];
+            let past = t.since(times[row]);
             motion[3] = motion[3] * past + motion[2];
             motion[2] = motion[2] * past + motion[1];
             motion[1] = motion[1] * past + motion[0];

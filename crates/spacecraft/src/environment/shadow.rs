@@ -189,8 +189,9 @@ impl Kepler {
 
     /// Returns the Sun in the axes of the orbit's plane at a time since the start (s), where E increases by 1 in `pace` (s).
     fn sun_along(&self, region: ShadowRegion, sun: &SunPath, t: f64, pace: f64) -> SunAlong {
-        let (motion, [distance, climb], drift) = (sun.motion(t), sun.distance(t), self.plane_rotation(t));
-        let [p, q, _] = self.plane(t);
+        let (motion, [distance, climb], drift) =
+            (sun.motion(t), sun.distance(t), self.plane_rotation(t.into()));
+        let [p, q, _] = self.plane(t.into());
         let change = motion.rate + motion.direction.cross(&drift);
         let slant = region.slant(self.planet_radius.get()) / (distance * ASTRONOMICAL_UNIT);
         SunAlong {

@@ -9,13 +9,12 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::time::{Instant, Span};
-use nalgebra::Quaternion;
+use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::to_body;
-use super::plate_mount::{PlateMounts, PlatePlaces};
-use super::sun::Sunlight;
+use super::orbit::transformed;
+use super::plate_mount::{MountedPlate, PlateMounts};
 
 /// Pressure of sunlight: one `force` at a point, or `plates`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -109,44 +108,85 @@ impl SolarPressure {
         let why = format!("must be [from, to] (s) with `to` later than `from`, got [{from}, {to}]");
         Some(ConfigError::new(format!("shadow[{index}]"), why))
     }
+}
 
-    /// Returns the torque in sunlight about the centre of mass `centre` (m) on a body of the given attitude, in its
-    /// axes (N m); `light` has its direction in inertial axes.
-    pub(super) fn torque(
-        &self,
-        attitude: &Quaternion<f64>,
-        light: Option<Sunlight>,
-        centre: &Vector,
-        places: PlatePlaces<'_>,
-    ) -> Vector {
-        if let (Some(force), Some(position)) = (&self.force, &self.at) {
-            return (vector(position) - centre).cross(&to_body(attitude, &vector(force)));
-        }
-        let Some(light) = light else { return Vector::zeros() };
-        let sun = to_body(attitude, &light.direction);
-        let pressure = self.pressure() * light.pressure;
-        self.plates.iter().enumerate().fold(Vector::zeros(), |sum, (index, plate)| {
-            let [normal, at] = places.place(index, &plate.normal, &plate.at);
-            sum + (at - centre).cross(&(plate.force(&normal, &sun) * pressure))
-        })
-    }
+/// Pressure of sunlight on a body during a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SunlightLoad {
+    /// Force in inertial axes (N) and its point (m), without plates.
+    single: Option<[Vector; 2]>,
+    /// Pressure at 1 au (N/m²).
+    pressure: f64,
+    plates: Vec<LitPlate>,
+    /// Largest distance (m) that the centre of mass may move.
+    centre_shift: f64,
+}
 
-    /// Returns an upper bound of the torque (N m); `nearest` is the largest pressure relative to that at 1 au.
-    pub(super) fn bound(&self, centre: &Vector, nearest: f64, mounts: &PlateMounts) -> f64 {
-        let shift = mounts.centre_shift;
-        if let (Some(force), Some(position)) = (&self.force, &self.at) {
-            return vector(force).norm() * ((vector(position) - centre).norm() + shift);
-        }
-        let places = PlatePlaces { mounts: &mounts.lit, axes: None };
-        let most = |(index, plate): (usize, &SolarPlate)| {
-            let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();
-            part * plate.area.get() * (places.arm(index, &plate.at, centre) + shift)
+/// Plate in sunlight, with the parts of the force -P A c (absorbed s + (specular c + diffuse) n).
+#[derive(Clone, Debug, PartialEq)]
+struct LitPlate {
+    plate: MountedPlate,
+    absorbed: f64,
+    specular: f64,
+    diffuse: f64,
+}
+
+impl SunlightLoad {
+    /// Creates the load on plates with these mounts.
+    pub fn new(spec: &SolarPressure, mounts: &PlateMounts) -> Self {
+        let lit = |(index, plate): (usize, &SolarPlate)| {
+            let (specular, diffuse) = (plate.specular.get(), plate.diffuse.get());
+            let mount = mounts.lit.get(index).and_then(Option::as_ref);
+            LitPlate {
+                plate: MountedPlate::new(mount, [&plate.normal, &plate.at], plate.area, mounts.turn),
+                absorbed: 1.0 - specular,
+                specular: 2.0 * specular,
+                diffuse: 2.0 / 3.0 * diffuse,
+            }
         };
-        self.pressure() * nearest * self.plates.iter().enumerate().map(most).sum::<f64>()
+        let single = spec.force.as_ref().zip(spec.at.as_ref());
+        Self {
+            single: single.map(|(force, at)| [vector(force), vector(at)]),
+            pressure: spec.pressure.map_or(AT_EARTH, Positive::get),
+            plates: spec.plates.iter().enumerate().map(lit).collect(),
+            centre_shift: mounts.centre_shift,
+        }
     }
 
-    fn pressure(&self) -> f64 {
-        self.pressure.map_or(AT_EARTH, Positive::get)
+    /// Returns the torque (N m) of sunlight about the centre of mass `centre` (m) on a body whose axes are the rows of `turn` in
+    /// inertial axes, in its axes; `strength` is the pressure relative to that at 1 au, and `part` the part of the Sun in view.
+    pub fn torque(
+        &self,
+        turn: &Matrix3<f64>,
+        (sun, strength, part): (&Vector, f64, f64),
+        (centre, axes): (&Vector, &[Matrix3<f64>]),
+    ) -> Vector {
+        if let Some([force, at]) = &self.single {
+            return (at - centre).cross(&transformed(turn, force)) * part;
+        }
+        let sun = transformed(turn, sun);
+        let mut sum = Vector::zeros();
+        for LitPlate { plate, absorbed, specular, diffuse } in &self.plates {
+            let [normal, arm] = plate.place(centre, axes);
+            let faced = normal.dot(&sun);
+            if faced > 0.0 {
+                let force = sun * *absorbed + normal * (specular * faced + diffuse);
+                sum += arm.cross(&force) * (plate.area * faced);
+            }
+        }
+        sum * -(self.pressure * strength * part)
+    }
+
+    /// Returns an upper bound of the torque (N m) about the centre of mass `centre` (m); `nearest` is the largest pressure
+    /// relative to that at 1 au.
+    pub fn bound(&self, centre: &Vector, nearest: f64) -> f64 {
+        if let Some([force, at]) = &self.single {
+            return force.norm() * ((at - centre).norm() + self.centre_shift);
+        }
+        let most = |LitPlate { plate, absorbed, specular, diffuse }: &LitPlate| {
+            (absorbed + specular + diffuse) * plate.area * (plate.arm(centre) + self.centre_shift)
+        };
+        self.pressure * nearest * self.plates.iter().map(most).sum::<f64>()
     }
 }
 
@@ -162,14 +202,6 @@ impl SolarPlate {
         let why = || format!("and `diffuse` must be at most 1 together, got {reflected}");
         (reflected > 1.0).then(|| ConfigError::new(format!("plates[{index}].specular"), why()))
     }
-
-    /// Returns the force per unit of pressure (m²) for the unit normal and the direction to the Sun in the body's axes.
-    fn force(&self, normal: &Vector, sun: &Vector) -> Vector {
-        let faced = normal.dot(sun).max(0.0);
-        let (specular, diffuse) = (self.specular.get(), self.diffuse.get());
-        (sun * (1.0 - specular) + normal * (2.0 * (specular * faced + diffuse / 3.0)))
-            * (-self.area.get() * faced)
-    }
 }
 
 fn at(time: Time) -> Instant {
@@ -179,6 +211,7 @@ fn at(time: Time) -> Instant {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::environment::orbit::body_axes;
     use flexsc_numerics::attitude::rotation;
 
     fn pressed(keys: &str) -> SolarPressure {
@@ -189,15 +222,14 @@ mod tests {
     fn plates_absorb_and_reflect() {
         // Plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
         let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
-        let light = Sunlight { direction: sun, pressure: 1.0 };
         let centre = Vector::new(0.1, 0.0, 0.0);
-        let hub = PlatePlaces { mounts: &[], axes: None };
         let torque = |parts: &str, by: Vector| {
             let keys = format!("plates = [{{ area = 2, normal = [0, 0, 4], at = [0.6, 0, 0] {parts} }}]");
             let pressure = pressed(&keys);
             assert_eq!(pressure.fault(true), None);
-            let found = pressure.torque(&rotation(&by), Some(light), &centre, hub);
-            assert!(found.norm() <= pressure.bound(&centre, 1.0, &PlateMounts::default()));
+            let load = SunlightLoad::new(&pressure, &PlateMounts::default());
+            let found = load.torque(&body_axes(&rotation(&by)), (&sun, 1.0, 1.0), (&centre, &[]));
+            assert!(found.norm() <= load.bound(&centre, 1.0));
             found / (4.539_807_335_646_65e-6 * 2.0 * 0.5)
         };
         let arm = Vector::new(0.5, 0.0, 0.0);

@@ -161,6 +161,23 @@ impl SphericalHarmonics {
         f64::sqrt(2.0 / 3.0) * sum / distance
     }
 
+    /// Returns an upper bound of the field's size (T), the root of the sum of the squares of its complex components, at a
+    /// complex position r: for |r.r| at least the square of `distance` (m), and sum |r|² at most `stretch` times |r.r|.
+    ///
+    /// By the addition theorem, an identity of polynomials that holds at complex points too, the squares of the field of
+    /// degree n are at most those at that distance times the Legendre polynomial of degree n + 1 at `stretch`.
+    pub fn complex_bound(&self, distance: f64, stretch: f64) -> f64 {
+        let ratio = self.radius / distance;
+        let mut power = ratio * ratio;
+        let (mut before, mut legendre) = (1.0, stretch);
+        self.bounds.iter().enumerate().fold(0.0, |sum, (index, bound)| {
+            let n = (index + 1) as f64;
+            power *= ratio;
+            (before, legendre) = (legendre, ((2.0 * n + 1.0) * stretch * legendre - n * before) / (n + 1.0));
+            sum + bound * power * f64::sqrt(legendre)
+        })
+    }
+
     /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.
     pub fn bound(&self, distance: f64) -> f64 {
         let ratio = self.radius / distance;

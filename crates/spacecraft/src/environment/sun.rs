@@ -5,6 +5,7 @@ use std::fmt;
 
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::time_arcs::SplitTime;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
@@ -16,8 +17,11 @@ use super::direction_motion::DirectionMotion;
 /// Word of the scenario for the Sun at the date.
 const EPOCH: &str = "epoch";
 
+/// Rate of the Sun's mean anomaly (1e-7 degrees a day).
+const ANOMALY: f64 = 9_856_003.0;
+
 /// Rate of the Sun's mean anomaly (degrees a day).
-const ANOMALY_RATE: f64 = 0.985_600_3;
+const ANOMALY_RATE: f64 = 1e-7 * ANOMALY;
 
 /// Direction from the body to the Sun.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -72,7 +76,7 @@ impl SunPath {
     pub fn direction(&self, t: f64) -> Vector {
         match self {
             Self::Fixed(direction) => *direction,
-            Self::Dated(start) => almanac(start + t).direction,
+            Self::Dated(_) => self.motion(t).direction,
         }
     }
 
@@ -80,7 +84,7 @@ impl SunPath {
     pub fn motion(&self, t: f64) -> DirectionMotion {
         match self {
             Self::Fixed(direction) => DirectionMotion::fixed(*direction),
-            Self::Dated(start) => almanac(start + t),
+            Self::Dated(start) => almanac(days_since_j2000(*start, t.into())),
         }
     }
 
@@ -97,16 +101,19 @@ impl SunPath {
     /// Returns the distance of the Sun at a time since the start (s) in au, and its rate (1/s).
     pub(super) fn distance(&self, t: f64) -> [f64; 2] {
         let Self::Dated(start) = self else { return [1.0, 0.0] };
-        let anomaly = anomaly((start + t) / DAY);
-        let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
-        let distance = 1.000_14 - 0.016_71 * cos - 0.000_14 * cos_twice;
-        [distance, (0.016_71 * sin + 0.000_28 * sin_twice) * ANOMALY_RATE.to_radians() / DAY]
+        distance(days_since_j2000(*start, t.into()))
     }
 
-    /// Returns the light of the Sun at a time since the start (s).
-    pub(super) fn light(&self, t: f64) -> Sunlight {
-        let [distance, _] = self.distance(t);
-        Sunlight { direction: self.direction(t), pressure: 1.0 / (distance * distance) }
+    /// Returns the light of the Sun at a time since the start.
+    pub(super) fn light(&self, t: SplitTime) -> Sunlight {
+        match self {
+            Self::Fixed(direction) => Sunlight { direction: *direction, pressure: 1.0 },
+            Self::Dated(start) => {
+                let days = days_since_j2000(*start, t);
+                let [distance, _] = distance(days);
+                Sunlight { direction: almanac(days).direction, pressure: 1.0 / (distance * distance) }
+            }
+        }
     }
 
     /// Returns an upper bound of the pressure of sunlight relative to that at 1 au.
@@ -115,25 +122,44 @@ impl SunPath {
     }
 }
 
-/// Returns the mean anomaly of the Sun (rad) at `days` after J2000.
-fn anomaly(days: f64) -> f64 {
-    (357.528 + ANOMALY_RATE * days).to_radians()
+/// Returns the whole days from J2000 to a time since a start that is this long (s) after J2000, and the rest of a day.
+fn days_since_j2000(start: f64, t: SplitTime) -> [f64; 2] {
+    let whole = libm::floor((start + t.middle) / DAY);
+    [whole, ((start - whole * DAY) + t.middle + t.offset) / DAY]
 }
 
-/// Returns the direction to the Sun at `seconds` after J2000, within 0.01 degrees from 1950 to 2050: the low-precision
-/// formulas of \[AstronomicalAlmanac\].
-fn almanac(seconds: f64) -> DirectionMotion {
-    let days = seconds / DAY;
+/// Returns an angle (degrees, less whole turns) from its value at J2000, its rate (1e-7 degrees a day) and whole days with a
+/// rest. Products of whole numbers and their remainders are exact.
+fn angle(at_j2000: f64, rate: f64, [whole, rest]: [f64; 2]) -> f64 {
+    at_j2000 + (libm::remainder(rate * whole, 360e7) + rate * rest) / 1e7
+}
+
+/// Returns the mean anomaly of the Sun (rad) at `days` after J2000.
+fn anomaly(days: [f64; 2]) -> f64 {
+    angle(357.528, ANOMALY, days).to_radians()
+}
+
+/// Returns the distance of the Sun in au at `days` after J2000, and its rate (1/s).
+fn distance(days: [f64; 2]) -> [f64; 2] {
     let anomaly = anomaly(days);
     let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
-    let longitude = 280.460 + 0.985_647_4 * days + 1.915 * sin + 0.020 * sin_twice;
+    let distance = 1.000_14 - 0.016_71 * cos - 0.000_14 * cos_twice;
+    [distance, (0.016_71 * sin + 0.000_28 * sin_twice) * ANOMALY_RATE.to_radians() / DAY]
+}
+
+/// Returns the direction to the Sun at `days` after J2000, within 0.01 degrees from 1950 to 2050: the low-precision
+/// formulas of \[AstronomicalAlmanac\].
+fn almanac(days: [f64; 2]) -> DirectionMotion {
+    let anomaly = anomaly(days);
+    let [(sin, cos), (sin_twice, cos_twice)] = [libm::sincos(anomaly), libm::sincos(2.0 * anomaly)];
+    let longitude = angle(280.460, 9_856_474.0, days) + 1.915 * sin + 0.020 * sin_twice;
     // Rate and acceleration of the longitude, from degrees a day and days. The obliquity's rate of 8e-14 rad/s is
     // negligible.
     let mean = ANOMALY_RATE.to_radians();
     let rate = (0.985_647_4 + mean * (1.915 * cos + 0.040 * cos_twice)).to_radians() / DAY;
     let acceleration = (-mean * mean * (1.915 * sin + 0.080 * sin_twice)).to_radians() / (DAY * DAY);
     let (sin, cos) = libm::sincos(longitude.to_radians());
-    let (up, along) = libm::sincos((23.439 - 4e-7 * days).to_radians());
+    let (up, along) = libm::sincos((23.439 - 4e-7 * (days[0] + days[1])).to_radians());
     let direction = Vector::new(cos, along * sin, up * sin);
     let ahead = Vector::new(-sin, along * cos, up * cos);
     DirectionMotion {
@@ -226,13 +252,13 @@ mod tests {
             let (path, t) = (path(start), (seconds - start) as f64);
             let off = (path.direction(t) - Vector::from(direction)).norm();
             assert!(off < 2e-4, "{seconds}: {off:e}");
-            let pressure = path.light(t).pressure * distance * distance;
+            let pressure = path.light(t.into()).pressure * distance * distance;
             assert!(
-                (pressure - 1.0).abs() < 1e-4 && path.light(t).pressure <= path.most_pressure(),
+                (pressure - 1.0).abs() < 1e-4 && path.light(t.into()).pressure <= path.most_pressure(),
                 "{pressure}"
             );
         }
-        assert_eq!(SunPath::Fixed(Vector::x()).light(1e7).pressure, 1.0);
+        assert_eq!(SunPath::Fixed(Vector::x()).light(1e7.into()).pressure, 1.0);
     }
 
     #[test]

@@ -1,17 +1,18 @@
 //! Run-time state of the environment of one body.
 
-use flexsc_dynamics::three_axis::{PanelPlaces, Surroundings, ThermalForces};
+use flexsc_dynamics::three_axis::{PanelPlaces, SkyAt, Surroundings, ThermalForces};
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::time::Instant;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::AxialDipole;
-use super::orbit::to_body;
-use super::plate_mount::{PlateMounts, PlatePlaces};
+use super::drag::DragLoad;
+use super::orbit::{body_axes, to_body, transformed};
+use super::plate_mount::PlateMounts;
+use super::solar_pressure::SunlightLoad;
 use super::thermal_response::ThermalResponse;
 use super::{
-    Environment, EnvironmentObservation, GravityGradient, OrbitEnvironment, OrbitPath, OrbitPosition,
-    SolarPressure, SunPath,
+    Environment, EnvironmentObservation, GravityGradient, OrbitEnvironment, OrbitPath, SolarPressure, SunPath,
 };
 use crate::body::craft::Bending;
 
@@ -26,7 +27,14 @@ pub struct SurroundingsState {
     spinning: Matrix3<f64>,
     /// Centre of mass from the origin of positions (m).
     centre: Vector,
-    mounts: PlateMounts,
+    /// Forces on plates, and true if appendages turn with some of them.
+    sunlight: Option<SunlightLoad>,
+    drag: Option<DragLoad>,
+    plates_turn: bool,
+    /// Magnetic moment of the body (A m²).
+    dipole: Vector,
+    /// True if a torque depends on the position on the orbit, the field or the Sun, whatever the torquers do.
+    follows_sky: bool,
     /// Torque that is constant in inertial axes (N m).
     torque: Vector,
     /// Thermal bending of the appendages, and their levels over time.
@@ -47,19 +55,21 @@ impl SurroundingsState {
         sky: OrbitEnvironment,
         [inertia, spinning]: [Matrix3<f64>; 2],
         centre: &Vector,
-        mounts: PlateMounts,
+        mounts: &PlateMounts,
     ) -> Self {
         let nearest = sky.sun().map_or(1.0, SunPath::most_pressure);
-        let pressed = environment
-            .solar_pressure
-            .as_ref()
-            .map_or(0.0, |pressure| pressure.bound(centre, nearest, &mounts));
+        let sunlight = environment.solar_pressure.as_ref().map(|spec| SunlightLoad::new(spec, mounts));
+        let pressed = sunlight.as_ref().map_or(0.0, |load| load.bound(centre, nearest));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
         let push = dipole.map_or(0.0, |dipole| dipole.bound(sky.field_bound()));
-        let drag = environment.drag.as_ref().zip(sky.orbit());
-        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre, &mounts));
+        let drag = environment.drag.as_ref().zip(sky.orbit()).map(|(spec, orbit)| {
+            let load = DragLoad::new(spec, orbit, mounts);
+            let bound = load.bound(orbit, centre);
+            (load, bound)
+        });
+        let braked = drag.as_ref().map_or(0.0, |(_, bound)| *bound);
         let axial = dipole.and_then(super::Dipole::own_field);
         let own =
             gradient.and_then(|gradient| gradient.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
@@ -70,7 +80,14 @@ impl SurroundingsState {
             axial,
             spinning,
             centre: *centre,
-            mounts,
+            follows_sky: gradient.is_some_and(|gradient| gradient.orbit_rate.is_none())
+                || (dipole.is_some() && axial.is_none())
+                || drag.is_some()
+                || (sunlight.is_some() && (sky.orbit().is_some() || sky.sun().is_some())),
+            sunlight,
+            drag: drag.map(|(load, _)| load),
+            plates_turn: mounts.turn,
+            dipole: dipole.map_or_else(Vector::zeros, |dipole| vector(&dipole.moment)),
             bound: torque.norm() + pressed + pull + push + braked,
             // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle; a field of
             // degree n is of order n + 1.
@@ -116,30 +133,18 @@ impl SurroundingsState {
         self.sky.observation(t)
     }
 
-    /// Adds the torques of sunlight and drag (N m) at a time (s) and an attitude, about the centre of mass (m) and with the rotations
-    /// of the appendages.
-    fn add_plate_torques(
-        &self,
-        torque: &mut Vector,
-        (t, attitude): (f64, &Quaternion<f64>),
-        place: Option<&OrbitPosition>,
-        (centre, axes): (&Vector, Option<&[Matrix3<f64>]>),
-    ) {
-        let Environment { solar_pressure, drag, .. } = &self.environment;
-        if let Some(pressure) = solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t)) {
-            let part = self.sky.part_in_view(t);
-            if part > 0.0 {
-                let light = self.sky.sun().map(|sun| sun.light(t));
-                let places = PlatePlaces { mounts: &self.mounts.lit, axes };
-                *torque += pressure.torque(attitude, light, centre, places) * part;
-            }
+    /// Returns the torques of sunlight and drag (N m) on a body with the rotation `turn` of inertial vectors to its axes, about
+    /// the centre of mass (m) and with the rotations of the appendages.
+    #[inline]
+    fn plate_torque(&self, sky: &SkyAt, turn: &Matrix3<f64>, places: (&Vector, &[Matrix3<f64>])) -> Vector {
+        let mut torque = Vector::zeros();
+        if let Some(load) = self.sunlight.as_ref().filter(|_| sky.part_in_view > 0.0) {
+            torque += load.torque(turn, (&sky.sun, sky.pressure, sky.part_in_view), places);
         }
-        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), place) {
-            let sun = self.sky.sun().map(|sun| sun.direction(t));
-            let density = drag.density_at(place, orbit, sun.as_ref());
-            let places = PlatePlaces { mounts: &self.mounts.braked, axes };
-            *torque += drag.torque(density, place, attitude, (centre, places));
+        if let Some(load) = &self.drag {
+            torque += load.torque(turn, (&sky.flow, sky.density), places);
         }
+        torque
     }
 
     /// Returns true if sunlight acts on the body.
@@ -155,50 +160,64 @@ impl SurroundingsState {
 }
 
 impl Surroundings for SurroundingsState {
-    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
-        let Environment { gravity_gradient, dipole, .. } = &self.environment;
-        let mut torque = to_body(attitude, &self.torque);
-        let place = self.sky.position(t);
-        if let Some(gradient) = gravity_gradient {
-            let pull = gradient.direction_and_strength(t, attitude, place.as_ref());
-            torque += GravityGradient::torque(pull, &(inertia + self.spinning));
+    fn sky_at(&self, t: f64) -> SkyAt {
+        let Environment { gravity_gradient, solar_pressure, .. } = &self.environment;
+        let is_lit = solar_pressure.as_ref().is_some_and(|pressure| pressure.is_lit(t));
+        let mut sky = SkyAt { part_in_view: f64::from(is_lit), ..SkyAt::default() };
+        if self.follows_sky || self.held != Vector::zeros() {
+            let row = self.sky.row(t);
+            if let Some(orbit) = self.sky.orbit() {
+                let position = row.position();
+                let distance = position.norm();
+                sky.nadir = position / -distance;
+                sky.tide = orbit.gravity() / (distance * distance * distance);
+            }
+            sky.field = row.field();
+            if is_lit {
+                let light = row.light();
+                (sky.sun, sky.pressure) = (light.direction, light.pressure);
+                sky.part_in_view = self.sky.part_in_row(&row, t);
+            }
+            if let Some(drag) = &self.drag {
+                (sky.flow, sky.density) = (drag.flow(&row), drag.density(&row));
+            }
         }
-        if !self.mounts.turn {
-            self.add_plate_torques(&mut torque, (t, attitude), place.as_ref(), (&self.centre, None));
+        if let Some(pull) = gravity_gradient.as_ref().and_then(|gradient| gradient.own_pull(t)) {
+            (sky.nadir, sky.tide) = pull;
         }
-        let is_held = self.held != Vector::zeros();
-        let field = if is_held || dipole.is_some() { self.sky.field_at(t) } else { None };
-        if let Some(dipole) = dipole {
-            let field = self.axial.map(|own| own.at(t)).or(field).unwrap_or_default();
-            torque += dipole.torque(&field, attitude);
+        if let Some(own) = &self.axial {
+            sky.field = own.at(t);
         }
-        if let Some(field) = field.filter(|_| is_held) {
-            torque += self.held.cross(&to_body(attitude, &field));
-        }
-        torque
+        sky
     }
 
-    fn panel_torque(&self, t: f64, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
-        let mut torque = Vector::zeros();
-        if self.mounts.turn {
-            let place = self.sky.position(t);
-            self.add_plate_torques(
-                &mut torque,
-                (t, attitude),
-                place.as_ref(),
-                (&panels.centre, Some(panels.axes)),
+    fn torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        let turn = body_axes(attitude);
+        let mut torque = sky.torque + transformed(&turn, &self.torque);
+        if self.environment.gravity_gradient.is_some() {
+            torque += GravityGradient::torque(
+                (transformed(&turn, &sky.nadir), sky.tide),
+                &(inertia + self.spinning),
             );
         }
-        torque
+        if !self.plates_turn {
+            torque += self.plate_torque(sky, &turn, (&self.centre, &[]));
+        }
+        // The body's own dipole along the axis of a circular orbit is the only field there, so torquers have none.
+        let moment = if self.axial.is_some() { self.dipole } else { self.dipole + self.held };
+        torque + moment.cross(&transformed(&turn, &sky.field))
     }
 
-    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
-        let gradient = self.environment.gravity_gradient.as_ref()?;
-        Some(GravityGradient::modal_tensor(gradient.direction_and_strength(
-            t,
-            attitude,
-            self.sky.position(t).as_ref(),
-        )))
+    fn panel_torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, panels: &PanelPlaces<'_>) -> Vector {
+        if !self.plates_turn {
+            return Vector::zeros();
+        }
+        self.plate_torque(sky, &body_axes(attitude), (&panels.centre, panels.axes))
+    }
+
+    fn tidal_tensor(&self, sky: &SkyAt, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
+        self.environment.gravity_gradient.as_ref()?;
+        Some(GravityGradient::modal_tensor((transformed(&body_axes(attitude), &sky.nadir), sky.tide)))
     }
 
     fn thermal_forces(&self) -> &[ThermalForces] {

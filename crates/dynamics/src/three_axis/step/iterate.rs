@@ -16,6 +16,7 @@ use super::{IntegrationStep, MAX_ITERATIONS, ModeMemory};
 use crate::three_axis::constants::{centrifugal_terms, tensor};
 use crate::three_axis::small_rotation::SmallRotationLanes;
 use crate::three_axis::state::IntegratorState;
+use crate::three_axis::surroundings::SkyAt;
 use crate::three_axis::vectors::{StoredVectors, Vectors, vector};
 
 /// Inner iterations between momentum and rates in each iteration.
@@ -43,6 +44,8 @@ fn momentum<R: LaneFloat>(kind: R, from: &Vector, momentum_rate: &StoredVectors,
 pub struct NodeIteration<'a> {
     pub step: &'a IntegrationStep<'a>,
     pub state: &'a IntegratorState,
+    /// Surroundings at the nodes.
+    pub skies: &'a [SkyAt; 3],
     pub modes: &'a mut [ModeMemory],
     pub nodes: &'a mut NodeValues,
     pub attitudes: &'a mut NodeAttitudes,
@@ -71,14 +74,15 @@ impl SimdTask for NodeIteration<'_> {
 
     #[inline(always)]
     fn run<R: LaneFloat>(self, kind: R) -> u32 {
-        let Self { step, state, modes, nodes, attitudes, modal_rate_scale } = self;
+        let Self { step, state, skies, modes, nodes, attitudes, modal_rate_scale } = self;
         let momentum_scale = step.momentum_scale(state);
         let (uses_attitude, varying) = (step.surroundings.is_some(), step.has_varying_forces());
         let (mut previous, mut iterations) = (0.0, 0);
         while iterations < MAX_ITERATIONS {
             iterations += 1;
             let deformations = deformations(kind, step, varying, modes);
-            let (forcing, mut change) = evaluate(kind, step, (state, &*attitudes), &deformations, nodes);
+            let (forcing, mut change) =
+                evaluate(kind, step, (state, &*attitudes, skies), &deformations, nodes);
             change.modal_force = update_modal_forcing(kind, step, (&forcing, varying), modes);
             change.inertia_change = largest_norm_squared(&deformations.inertia_change);
             change.rate = largest_of_nodes(forcing.rate.dot(forcing.rate));
@@ -166,7 +170,7 @@ fn deformations<R: LaneFloat>(
 fn evaluate<R: LaneFloat>(
     kind: R,
     step: &IntegrationStep<'_>,
-    (state, attitudes): (&IntegratorState, &NodeAttitudes),
+    (state, attitudes, skies): (&IntegratorState, &NodeAttitudes, &[SkyAt; 3]),
     deformations: &NodeDeformations<R>,
     nodes: &mut NodeValues,
 ) -> (NodeForcing<R>, IterationChange) {
@@ -201,7 +205,7 @@ fn evaluate<R: LaneFloat>(
         torque = torque + deformations.arm_torque;
     }
     if step.surroundings.is_some() {
-        torque = torque + environment_torque(kind, step, (state, attitudes), deformations, &mut tides);
+        torque = torque + environment_torque(kind, step, (state, attitudes, skies), deformations, &mut tides);
     }
     let mut mean_rate = hub_to_mean.to_mean_axes(rigid_rate + hub_to_mean.rate_correction(rate - rigid_rate));
     let torque_mean = hub_to_mean.to_mean_axes(torque);
@@ -245,7 +249,7 @@ fn evaluate<R: LaneFloat>(
 fn environment_torque<R: LaneFloat>(
     kind: R,
     step: &IntegrationStep<'_>,
-    (state, attitudes): (&IntegratorState, &NodeAttitudes),
+    (state, attitudes, skies): (&IntegratorState, &NodeAttitudes, &[SkyAt; 3]),
     deformations: &NodeDeformations<R>,
     tides: &mut [Option<Matrix3<f64>>; 3],
 ) -> Vectors<R> {
@@ -259,7 +263,7 @@ fn environment_torque<R: LaneFloat>(
         let at = attitudes.at(&state.mean_attitude, node, step.h);
         let inertia_change = tensor(inertia_change.map(|of| of[node]));
         let (change, tide) =
-            step.environment_at(NODES[node] * step.h, &at, &vector(&elastic_rotation, node), &inertia_change);
+            step.environment_at(&skies[node], &at, &vector(&elastic_rotation, node), &inertia_change);
         for axis in 0..3 {
             torque.0[axis][node] = change[axis];
         }
@@ -334,19 +338,18 @@ impl IntegrationStep<'_> {
         change
     }
 
-    /// Returns the environment torque (N m) and the tidal tensor `t` (s) after the start of the step, given the
-    /// attitude of the mean axes, the elastic rotation of the hub `elastic_rotation` and the change of the inertia.
+    /// Returns the environment torque (N m) and the tidal tensor under a sky, given the attitude of the mean axes, the elastic rotation of the hub `elastic_rotation` and the change of the inertia.
     pub(super) fn environment_at(
         &self,
-        t: f64,
+        sky: &SkyAt,
         attitude: &Quaternion<f64>,
         elastic_rotation: &Vector,
         inertia_change: &Matrix3<f64>,
     ) -> (Vector, Option<Matrix3<f64>>) {
-        let Some((surroundings, since)) = self.surroundings else { return (Vector::zeros(), None) };
+        let Some((surroundings, _)) = self.surroundings else { return (Vector::zeros(), None) };
         let hub = attitude * rotation(elastic_rotation);
-        let torque = surroundings.torque(since + t, &hub, &(self.model.inertia + inertia_change));
-        let tide = if self.model.changes_inertia { surroundings.tidal_tensor(since + t, &hub) } else { None };
+        let torque = surroundings.torque(sky, &hub, &(self.model.inertia + inertia_change));
+        let tide = if self.model.changes_inertia { surroundings.tidal_tensor(sky, &hub) } else { None };
         (torque, tide)
     }
 }

@@ -212,13 +212,14 @@ impl IntegrationStep<'_> {
         }
         if let Some((surroundings, since)) = self.surroundings {
             let hub = attitude * rotation(&deformation.elastic_rotation);
-            torque += surroundings.torque(since + t, &hub, &inertia);
+            let started = (stage == 0).then(|| surroundings.sky_at(since + t));
+            let sky = started.as_ref().unwrap_or_else(|| &optional.skies[stage - 1]);
+            torque += surroundings.torque(sky, &hub, &inertia);
             if self.appendages.is_some() {
-                torque +=
-                    surroundings.panel_torque(since + t, &hub, &optional.appendages.panel_places(stage));
+                torque += surroundings.panel_torque(sky, &hub, &optional.appendages.panel_places(stage));
             }
             tide = if model.changes_inertia || self.appendages.is_some() {
-                surroundings.tidal_tensor(since + t, &hub)
+                surroundings.tidal_tensor(sky, &hub)
             } else {
                 None
             };

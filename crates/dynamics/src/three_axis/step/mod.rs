@@ -25,7 +25,7 @@ use crate::three_axis::appendages::{ArticulatedMotion, StageScratch};
 use crate::three_axis::constants::{BodyConstants, centrifugal_terms, tensor};
 use crate::three_axis::rotors::{BearingLoads, GimbalMomentum, RotorStage};
 use crate::three_axis::state::{IntegratorState, ModalSums, SumModes};
-use crate::three_axis::surroundings::TimedSurroundings;
+use crate::three_axis::surroundings::{SkyAt, TimedSurroundings};
 use crate::three_axis::vectors::{length, vector};
 
 use attitude_nodes::{NodeAttitudes, inertial};
@@ -70,9 +70,11 @@ pub struct IntegrationStep<'a> {
     pub appendages: Option<(&'a ArticulatedMotion, f64)>,
 }
 
-/// Working memory of a step for rotors in bearings and articulated appendages.
+/// Working memory of a step for surroundings, rotors in bearings and articulated appendages.
 #[derive(Clone, Debug, Default)]
 pub struct OptionalStages {
+    /// Surroundings at the nodes.
+    pub skies: [SkyAt; 3],
     pub rotors: RotorStage,
     pub appendages: StageScratch,
 }
@@ -139,7 +141,10 @@ impl IntegrationStep<'_> {
         lanes.run(Predictor { step: self, state, start: stage, modes, nodes });
         let modal_rate_scale = largest_rate.max(self.h * *largest_force);
         let mut attitudes = NodeAttitudes::default();
-        if self.surroundings.is_some() {
+        if let Some((surroundings, since)) = self.surroundings {
+            for (sky, node) in optional.skies.iter_mut().zip(NODES) {
+                *sky = surroundings.sky_at(since + node * self.h);
+            }
             attitudes.compute(&state.mean_attitude, &nodes.mean_rates(), self.h);
         }
         let iterations = if scalar {
@@ -156,6 +161,7 @@ impl IntegrationStep<'_> {
             lanes.run(NodeIteration {
                 step: self,
                 state,
+                skies: &optional.skies,
                 modes,
                 nodes,
                 attitudes: &mut attitudes,
