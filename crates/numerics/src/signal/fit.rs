@@ -11,15 +11,17 @@ const COSINES: [f64; 5] =
 /// Length (s) of a part that is not halved.
 const SHORTEST: f64 = 1e-7;
 
-/// Fits several functions of time (s) on an interval, each to within its tolerance; `evaluate` returns their values at
-/// increasing times, or `None` where there are none. Passes the start and length of each part (s) and the polynomials of all
+/// Values of several functions at increasing times (s), those of each time together; `None` where there are none.
+pub type Evaluation<'a> = dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>> + 'a;
+
+/// Fits several functions of time (s) on an interval, each to within its tolerance. Passes the start and length of each part (s) and the polynomials of all
 /// functions there to `take`; returns false if there were no values.
 ///
 /// The functions may not change faster than the parts of a ninth of the interval show.
 pub fn fit(
     [from, to]: [f64; 2],
     tolerances: &[f64],
-    evaluate: &mut dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>>,
+    evaluate: &mut Evaluation<'_>,
     take: &mut dyn FnMut(f64, f64, &[Polynomial]),
 ) -> bool {
     let length = to - from;

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::polynomial::{Polynomial, ROUNDING};
+use crate::polynomial::Polynomial;
+
+/// Part of a value by which rounding of a time may change one that is equal.
+const TIE: f64 = 1e-12;
 
 /// Polynomial over a part of the time.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,7 +153,7 @@ impl Piece {
         let Shape::Curve { ahead, .. } = &self.shape else {
             let own = self.at(from);
             // The turn of a window counts before its edge, which reaches the same value.
-            let is_turn = own.at > to && own.value <= most + ROUNDING * most.abs();
+            let is_turn = own.at > to && own.value <= most + TIE * most.abs();
             return (own.value < most || is_turn).then_some(Witnessed { at: own.at.max(from), ..own });
         };
         if self.bounds().0 >= most {

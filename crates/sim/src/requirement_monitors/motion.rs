@@ -65,7 +65,7 @@ impl RequirementMonitors {
     }
 
     /// Returns true if no requirement depends on the motion up to `to` (s) while each quantity stays within its range.
-    fn ignore(&self, to: f64, ranges: &[[f64; 2]]) -> bool {
+    pub(super) fn ignore(&self, to: f64, ranges: &[[f64; 2]]) -> bool {
         let of_motion = |place: &usize| self.quantities[*place].quantity.is_of_motion();
         self.monitors.iter().all(|(_, monitor, places)| {
             !places.iter().any(of_motion) || monitor.ignores(to, places.iter().map(|place| ranges[*place]))
