@@ -190,6 +190,7 @@ mod repeated_runs;
 mod report;
 mod reproduce;
 mod requirements;
+mod requirements_over_time;
 mod run_figures;
 #[cfg(unix)]
 mod sanitizers;

@@ -13,8 +13,8 @@ LAYERS = {
     "engine": "_native _numpy",
     "values": """
         _analysis _answer _arrow _columns _equality _fmi_library _handover _html _keys _laws _missing _modes
-        _named _one_copy _own_part _part _part_reader _progress _quantities _roles _run_lock _signal
-        _signature _topic _units _values parts scenario
+        _named _one_copy _own_part _part _part_reader _progress _quantities _requirement _roles _run_lock
+        _signal _signature _topic _units _values parts scenario
     """,
     "results": """
         _axes_look _controllers _damping _design _flight_code _frequency_response _linear _margins

@@ -88,6 +88,8 @@ pub struct CampaignJob<'a> {
     pub selection: Selection,
     /// True if the first failed run ends the campaign.
     pub fail_fast: bool,
+    /// True if the campaign ends where its other runs cannot change a verdict.
+    pub until_decided: bool,
     /// Prefix of the tables' names, if several campaigns share a directory.
     pub prefix: Option<&'a str>,
     /// True if tables of another campaign, or another file, are replaced.
@@ -208,7 +210,7 @@ fn table(
         campaign.for_each_run(range, threads, work, report)
     };
     let CampaignPrinter { all, only, failed, points, values, .. } = printer;
-    if let Err(failure) = done {
+    if let Err(Some(failure)) = done {
         return Err(match (&failure, table) {
             (CliError::Interrupted(_) | CliError::Write { .. } | CliError::First { .. }, Some(table)) => {
                 table.interrupt(campaign, failure)
@@ -218,7 +220,11 @@ fn table(
     }
     let mut table = table.map(|table| table.finish(campaign)).transpose()?;
     let only = only.filter(|_| all.runs() == 1);
-    let (runs, statistics, requirements) = (runs as usize, all.finish(), values.verdicts());
+    let made = values.count();
+    if made < runs {
+        say!("decided after {made} of {runs} runs");
+    }
+    let (runs, statistics, requirements) = (made as usize, all.finish(), values.verdicts());
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
         if !requirements.is_empty() {
@@ -299,7 +305,15 @@ struct CampaignPrinter<'a> {
 }
 
 impl CampaignPrinter<'_> {
-    fn report(&mut self, outcome: Option<RunOutcome>) -> Result<(), CliError> {
+    /// Takes the outcome of a run. Fails without an error where the others cannot change a verdict.
+    fn report(&mut self, outcome: Option<RunOutcome>) -> Result<(), Option<CliError>> {
+        let is_run = outcome.is_some();
+        self.take(outcome)?;
+        let total = self.job.range.end - self.job.range.start;
+        if is_run && self.job.until_decided && self.values.are_decided(total) { Err(None) } else { Ok(()) }
+    }
+
+    fn take(&mut self, outcome: Option<RunOutcome>) -> Result<(), CliError> {
         if let Some(table) = &mut self.table {
             table.flush_if_due()?;
         }

@@ -6,7 +6,7 @@ use flexsc_core::answer::Answer;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::formats::text_columns::columns;
-use flexsc_core::requirement_verdict::{Decision, RequirementVerdict};
+use flexsc_core::requirement_verdict::RequirementVerdict;
 use serde_json::Value as Json;
 
 use crate::error::CliError;
@@ -19,7 +19,7 @@ pub fn lines(verdicts: &[RequirementVerdict], units: ReaderUnits) -> Vec<String>
     }
     let mut rows = vec![["", "requirement", "limit", "worst", "met"].map(str::to_owned).to_vec()];
     for verdict in verdicts {
-        let RequirementVerdict { requirement, decision, runs, runs_met, worst: (run, worst), .. } = verdict;
+        let RequirementVerdict { requirement, decision, worst: (run, worst), .. } = verdict;
         let written = requirement.written_limit.as_deref();
         let unit = units.as_written(written, requirement.limit, requirement.unit);
         let worst =
@@ -29,7 +29,7 @@ pub fn lines(verdicts: &[RequirementVerdict], units: ReaderUnits) -> Vec<String>
             requirement.name.clone(),
             format!("at most {}", unit.limit(requirement.limit, written)),
             format!("{worst}, run {run}"),
-            format!("{runs_met} of {runs}"),
+            verdict.met_text(),
         ]);
     }
     let mut lines = columns(&rows, |_| true);
@@ -43,7 +43,7 @@ pub fn json(verdicts: &[RequirementVerdict]) -> Json {
 }
 
 /// Names of the columns of the table of verdicts, which are those of the objects as well.
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 17] = [
     "name",
     "verdict",
     "value",
@@ -54,6 +54,8 @@ const COLUMNS: [&str; 15] = [
     "share",
     "runs",
     "runs_met",
+    "runs_undecided",
+    "runs_not_exercised",
     "interval",
     "confidence",
     "confidence_wanted",
@@ -97,8 +99,8 @@ pub fn write_table(path: &Path, verdicts: &[RequirementVerdict]) -> Result<(), C
 pub fn validate_answers(answers: &[(String, Answer)]) -> Result<(), CliError> {
     let all = answers.iter().map(|(_, answer)| answer.requirements.len()).sum();
     let missed = |(scenario, answer): &(String, Answer)| -> Vec<String> {
-        let missed = answer.requirements.iter().filter(|own| !own.met);
-        missed.map(|own| format!("{scenario}: {} is missed", own.name)).collect()
+        let missed = answer.requirements.iter().filter(|own| own.decision.fails());
+        missed.map(|own| format!("{scenario}: {} is {}", own.name, own.decision.word())).collect()
     };
     unmet(&answers.iter().flat_map(missed).collect::<Vec<_>>(), all)
 }
@@ -111,7 +113,7 @@ pub fn validate<'a>(
     let mut unmet = Vec::new();
     for (scenario, verdicts) in scenarios {
         all += verdicts.len();
-        let open = verdicts.iter().filter(|verdict| verdict.decision != Decision::Met);
+        let open = verdicts.iter().filter(|verdict| verdict.decision.fails());
         unmet.extend(open.map(|verdict| {
             format!("{scenario}: {} is {}", verdict.requirement.name, verdict.decision.word())
         }));

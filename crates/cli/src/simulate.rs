@@ -66,6 +66,9 @@ pub struct SimulateArgs {
     json: bool,
     #[command(flatten)]
     answer: AnswerArgs,
+    /// Stop as soon as the other runs cannot change whether the requirements are met; without tables
+    #[arg(long, requires = "runs", conflicts_with = "out", help_heading = "Campaigns")]
+    until_decided: bool,
     #[command(flatten)]
     options: CampaignOptions,
     #[command(flatten)]
@@ -293,6 +296,7 @@ fn several(
         kind: place.kind,
         selection: selection.clone(),
         fail_fast: args.options.fail_fast,
+        until_decided: args.until_decided,
         prefix: prefixed.then_some(campaign.scenario().name.as_str()),
         force: args.force,
         jobs: args.jobs,

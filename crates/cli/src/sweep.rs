@@ -234,6 +234,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         kind,
         selection,
         fail_fast: args.options.fail_fast,
+        until_decided: false,
         prefix: None,
         force: args.force,
         jobs: args.jobs,

@@ -22,5 +22,6 @@ pub mod orientation;
 pub mod part;
 pub mod quantity;
 pub mod requirement;
+pub mod robustness;
 pub mod sensor;
 pub mod state_estimate;

@@ -6,9 +6,9 @@ use flexsc_formats::reader_units::{percent, percent_beside};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use crate::metrics::{MetricValue, Metrics, MetricsCollector};
+use crate::metrics::{MetricValue, Metrics, MetricsCollector, is_not_exercised};
 use crate::statistics::wilson;
-use flexsc_numerics::order_statistics::{confidence, order_statistic, runs_needed};
+use flexsc_numerics::order_statistics::{confidence, order_rank, order_statistic, runs_needed};
 use flexsc_scenario::{AssessedRequirement, Interpretation, RequirementSource, Scenario};
 
 /// Part of a level by which a mean of shares may be below it because of rounding.
@@ -26,10 +26,14 @@ pub struct RequirementVerdict {
     pub value: f64,
     /// Mean over the runs of the share of values within the limit; NaN if a run has no value.
     pub share: f64,
-    /// Number of runs.
+    /// Number of runs in which something was to meet the requirement.
     pub runs: u64,
     /// Number of runs whose own value is within the limit.
     pub runs_met: u64,
+    /// Number of runs that end before they decide.
+    pub runs_undecided: u64,
+    /// Number of the other runs, which `runs` does not count.
+    pub runs_not_exercised: u64,
     /// Confidence of a level below 1 of the ensemble.
     pub confidence: Option<Confidence>,
     /// Run with the largest value, or the first one without a value: its number, and the value.
@@ -42,10 +46,12 @@ pub struct RequirementVerdict {
 pub enum Decision {
     /// Value within the limit, with the wanted confidence.
     Met,
-    /// Value within the limit, by too few runs for the wanted confidence.
+    /// Value within the limit, by too few runs for the wanted confidence; over time, a run that ends too early.
     Undecided,
     /// Value beyond the limit, or no value.
     Missed,
+    /// No run in which anything was to meet the requirement.
+    NotExercised,
 }
 
 impl Decision {
@@ -55,7 +61,13 @@ impl Decision {
             Self::Met => "met",
             Self::Undecided => "undecided",
             Self::Missed => "missed",
+            Self::NotExercised => "not exercised",
         }
+    }
+
+    /// Returns true if the requirement is missed or undecided.
+    pub fn fails(self) -> bool {
+        matches!(self, Self::Missed | Self::Undecided)
     }
 
     /// Returns the mark of the decision before a line.
@@ -64,6 +76,7 @@ impl Decision {
             Self::Met => "✓",
             Self::Undecided => "?",
             Self::Missed => "✗",
+            Self::NotExercised => "-",
         }
     }
 }
@@ -103,6 +116,17 @@ impl RequirementRuns {
         &self.values[requirement]
     }
 
+    /// Returns true if the run in a row meets a requirement, or nothing in it was to meet it.
+    pub fn is_met(&self, requirement: usize, row: usize) -> bool {
+        self.values[requirement][row] <= self.requirements[requirement].limit
+            || self.is_not_exercised(requirement, row)
+    }
+
+    /// Returns true if nothing in the run in a row was to meet a requirement.
+    fn is_not_exercised(&self, requirement: usize, row: usize) -> bool {
+        is_not_exercised(self.values[requirement][row], self.shares[requirement][row])
+    }
+
     /// Returns the numbers of the runs.
     pub fn numbers(&self) -> &[u64] {
         &self.runs
@@ -131,6 +155,32 @@ impl RequirementRuns {
         }
     }
 
+    /// Returns true if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
+    pub fn are_decided(&self, total: u64) -> bool {
+        let decided = |(index, requirement): (usize, &AssessedRequirement)| {
+            let level = match requirement.interpretation {
+                Interpretation::Mixed => return false,
+                Interpretation::Temporal => 1.0,
+                Interpretation::Ensemble => requirement.level,
+            };
+            let exercised = (0..self.runs.len()).filter(|row| !self.is_not_exercised(index, *row));
+            let (mut runs, mut beyond) = (0, 0);
+            for row in exercised {
+                runs += 1;
+                beyond += u64::from(!self.is_met(index, row));
+            }
+            let remaining = total - self.runs.len() as u64;
+            let all = runs + remaining;
+            let holds = |beyond: u64| {
+                let shown = |wanted: f64| confidence(level, beyond, all) >= wanted;
+                beyond + order_rank(level, all) <= all
+                    && (level == 1.0 || requirement.confidence.is_none_or(shown))
+            };
+            holds(beyond) == holds(beyond + remaining)
+        };
+        self.requirements.iter().enumerate().all(decided)
+    }
+
     /// Returns the verdicts, in the order of the requirements; none without a run.
     pub fn finish(self) -> Vec<RequirementVerdict> {
         if self.runs.is_empty() {
@@ -149,7 +199,7 @@ impl RequirementRuns {
 pub fn validate_metrics(scenario: &Scenario) -> Result<(), ConfigError> {
     let metric = |requirement: &AssessedRequirement| match &requirement.source {
         RequirementSource::Metric(name, _) => Some((requirement.name.clone(), name.clone())),
-        RequirementSource::Error(_) => None,
+        RequirementSource::Error(_) | RequirementSource::Formula(_) => None,
     };
     let mut limited = scenario.study.requirements.iter().filter_map(metric).peekable();
     if limited.peek().is_none() {
@@ -179,13 +229,21 @@ pub fn run_verdicts(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVe
 fn verdict(
     requirement: AssessedRequirement,
     numbers: &[u64],
-    (mut values, shares): (Vec<f64>, &[f64]),
+    (values, shares): (Vec<f64>, &[f64]),
 ) -> RequirementVerdict {
     let (limit, level) = (requirement.limit, requirement.level);
+    let all = values.len() as u64;
+    let exercised = numbers.iter().zip(&values).zip(shares);
+    let exercised = exercised.filter(|((_, value), share)| !is_not_exercised(**value, **share));
+    let (exercised, shares): (Vec<(u64, f64)>, Vec<f64>) =
+        exercised.map(|((number, value), share)| ((*number, *value), *share)).unzip();
+    let (numbers, mut values): (Vec<u64>, Vec<f64>) = exercised.into_iter().unzip();
     let runs = values.len() as u64;
+    let is_timed = matches!(requirement.source, RequirementSource::Formula(_));
+    let undecided = values.iter().filter(|value| is_timed && value.is_nan()).count() as u64;
     let runs_met = values.iter().filter(|value| **value <= limit).count() as u64;
     let share = shares.iter().sum::<f64>() / runs as f64;
-    let mut worst = (0, f64::NEG_INFINITY);
+    let mut worst = (0, if runs == 0 { f64::NAN } else { f64::NEG_INFINITY });
     for (number, value) in numbers.iter().zip(&values) {
         // A run without a value is the worst.
         if *value > worst.1 || value.is_nan() && !f64::is_nan(worst.1) {
@@ -195,8 +253,13 @@ fn verdict(
     // A run without a value is beyond every limit.
     values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = f64::INFINITY);
     values.sort_by(f64::total_cmp);
+    // The value if all runs that end too early meet the limit.
+    let mut decided = values.clone();
+    decided.iter_mut().filter(|value| is_timed && **value == f64::INFINITY).for_each(|value| *value = limit);
+    decided.sort_by(f64::total_cmp);
     let (value, is_within) = match requirement.interpretation {
         Interpretation::Mixed if runs > 1 => (f64::NAN, share >= level * (1.0 - ROUNDING)),
+        _ if runs == 0 => (f64::NAN, false),
         Interpretation::Ensemble => {
             let value = order_statistic(&values, level);
             (value, value <= limit)
@@ -216,16 +279,42 @@ fn verdict(
     let decision = match (is_within, is_shown) {
         (true, true) => Decision::Met,
         (true, false) => Decision::Undecided,
+        _ if runs == 0 => Decision::NotExercised,
+        _ if undecided > 0 && order_statistic(&decided, level) <= limit => Decision::Undecided,
         (false, _) => Decision::Missed,
     };
     let value = if value.is_finite() { value } else { f64::NAN };
-    RequirementVerdict { requirement, decision, value, share, runs, runs_met, confidence, worst }
+    RequirementVerdict {
+        requirement,
+        decision,
+        value,
+        share,
+        runs,
+        runs_met,
+        runs_undecided: undecided,
+        runs_not_exercised: all - runs,
+        confidence,
+        worst,
+    }
 }
 
 impl RequirementVerdict {
     /// Returns the 95 % interval of the probability that a run meets the requirement (Wilson).
     pub fn interval(&self) -> [f64; 2] {
         wilson(self.runs_met, self.runs).into()
+    }
+
+    /// Returns how many runs meet the requirement, of those in which something was to meet it, and how many are undecided.
+    pub fn met_text(&self) -> String {
+        let idle = match self.runs_not_exercised {
+            0 => String::new(),
+            count => format!(", {count} not exercised"),
+        };
+        let open = match self.runs_undecided {
+            0 => String::new(),
+            count => format!(", {count} undecided"),
+        };
+        format!("{} of {}{open}{idle}", self.runs_met, self.runs)
     }
 
     /// Returns a line on the level of the ensemble or on the share of all values, if the requirement has one.
@@ -275,6 +364,8 @@ impl RequirementVerdict {
             "share": share,
             "runs": runs,
             "runs_met": runs_met,
+            "runs_undecided": self.runs_undecided,
+            "runs_not_exercised": self.runs_not_exercised,
             "interval": self.interval(),
             "confidence": confidence.map(|shown| shown.reached),
             "confidence_wanted": requirement.confidence,

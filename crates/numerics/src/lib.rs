@@ -29,6 +29,7 @@ pub mod quadrature;
 pub mod quantity;
 pub mod random;
 pub mod scalar_search;
+pub mod signal;
 pub mod simplex;
 pub mod swing_damped;
 pub mod swing_integral;

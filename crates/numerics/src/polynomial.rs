@@ -79,9 +79,14 @@ impl Polynomial {
 
     /// Returns the largest value, or `floor` if that is larger.
     pub fn maximum(&self, floor: f64) -> f64 {
-        let mut best = floor;
-        self.climb(&mut best, DEPTH);
-        best
+        self.peak(floor).map_or(floor, |(value, _)| value)
+    }
+
+    /// Returns the largest value and its point; `None` unless it is above `floor`.
+    pub fn peak(&self, floor: f64) -> Option<(f64, f64)> {
+        let mut best = (floor, f64::NAN);
+        self.climb(&mut best, (0.0, 1.0), DEPTH);
+        (!best.1.is_nan()).then_some(best)
     }
 
     /// Returns the largest absolute value, or `floor` if that is larger.
@@ -147,11 +152,18 @@ impl Polynomial {
         [first, second]
     }
 
-    /// Raises `best` to the largest value.
-    fn climb(&self, best: &mut f64, depth: u32) {
-        *best = best.max(self.0[0]).max(self.at(1.0));
+    /// Raises `best` to the largest value and its point, of this part between `ends` of the whole polynomial.
+    fn climb(&self, best: &mut (f64, f64), ends: (f64, f64), depth: u32) {
+        let (from, to) = ends;
+        let mut raise = |value: f64, s: f64| {
+            if value > best.0 {
+                *best = (value, from + (to - from) * s);
+            }
+        };
+        raise(self.0[0], 0.0);
+        raise(self.at(1.0), 1.0);
         let size = self.size();
-        if self.bounds().1 <= *best + ROUNDING * size || !size.is_finite() {
+        if self.bounds().1 <= best.0 + ROUNDING * size || !size.is_finite() {
             return;
         }
         let slope = self.derivative();
@@ -162,10 +174,17 @@ impl Polynomial {
         let (least, most) = slope.derivative().bounds();
         if most < 0.0 {
             if slope.0[0] > 0.0 && slope.at(1.0) < 0.0 {
-                *best = best.max(self.at(slope.root()));
+                let s = slope.root();
+                let value = self.at(s);
+                if value > best.0 {
+                    *best = (value, from + (to - from) * s);
+                }
             }
         } else if least <= 0.0 && depth > 0 {
-            self.halves().iter().for_each(|half| half.climb(best, depth - 1));
+            let middle = 0.5 * (from + to);
+            let [first, second] = self.halves();
+            first.climb(best, (from, middle), depth - 1);
+            second.climb(best, (middle, to), depth - 1);
         }
     }
 

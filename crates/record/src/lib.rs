@@ -53,7 +53,10 @@ pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Pr
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
-pub use requirement_errors::{RequirementError, RequirementErrors};
+pub use requirement_errors::{
+    RequirementError, RequirementErrors, RequirementRobustness, RequirementScope, RequirementScopes,
+    RobustnessOfRequirements,
+};
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
 pub use stop_flag::StopFlag;

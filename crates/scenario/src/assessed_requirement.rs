@@ -1,5 +1,6 @@
 //! Requirement of a scenario as it is assessed: what is sampled, how often, and against which limit.
 
+use flexsc_control::operation::{Comparison, Expression, ModeQuantity, TimeWindow, Timed};
 use flexsc_numerics::time::{Instant, Span};
 
 use super::requirement::{ErrorAxis, Interpretation, PointingIndex, WindowConvention};
@@ -32,6 +33,59 @@ pub enum RequirementSource {
     Metric(String, Option<usize>),
     /// Pointing index of a sampled error.
     Error(SampledError),
+    /// Robustness of an expression over time.
+    Formula(Box<RequirementFormula>),
+}
+
+/// Expression over time, and the value of a requirement on it: the limit less the robustness times a scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequirementFormula {
+    /// Expression in words.
+    pub text: String,
+    /// Expression.
+    pub expression: Expression,
+    /// Scale, in the unit of the value.
+    pub scale: f64,
+}
+
+impl RequirementFormula {
+    /// Returns the quantity, if the expression has one upper limit.
+    pub fn limited_quantity(&self) -> Option<ModeQuantity> {
+        match self.expression.measured()[..] {
+            [Expression::Compared { quantity, comparison: Comparison::Below | Comparison::AtMost, .. }] => {
+                Some(*quantity)
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the time (s) in which the expression counts, as far as it is fixed, and the index of its mode, if it has one.
+    pub fn span(&self) -> ([f64; 2], Option<usize>) {
+        let (window, inner) = match &self.expression {
+            Expression::Timed(timed) => match &**timed {
+                Timed::Always(window, inner) => (*window, inner),
+                _ => (TimeWindow::REST, &self.expression),
+            },
+            inner => (TimeWindow::REST, inner),
+        };
+        let mode = match inner {
+            Expression::Timed(timed) => match &**timed {
+                Timed::While(condition, _) => mode_of(condition),
+                _ => None,
+            },
+            _ => None,
+        };
+        ([window.from, window.to.unwrap_or(f64::INFINITY)], mode)
+    }
+}
+
+/// Returns the index of the mode in which alone a condition is met.
+pub fn mode_of(condition: &Expression) -> Option<usize> {
+    match condition {
+        Expression::Flag(ModeQuantity::Mode(index)) => Some(*index),
+        Expression::All(all) => all.iter().find_map(mode_of),
+        _ => None,
+    }
 }
 
 /// Sampled error and its pointing index.
@@ -51,6 +105,8 @@ pub struct SampledError {
     pub to: Instant,
     /// Number of samples from `from` to `to`.
     pub samples: u64,
+    /// Condition at which samples count, with its words; `None` if all do.
+    pub scope: Option<(Expression, String)>,
 }
 
 /// Sampled quantity.
@@ -149,6 +205,7 @@ impl AssessedRequirement {
             RequirementSource::Metric(name, None) => name.clone(),
             RequirementSource::Metric(name, Some(index)) => format!("{name}[{index}]"),
             RequirementSource::Error(error) => error.description(),
+            RequirementSource::Formula(formula) => formula.text.clone(),
         };
         if self.level < 1.0 {
             format!("{of}, {} % {}", trimmed(100.0 * self.level), self.interpretation.word())
@@ -205,6 +262,7 @@ impl SampledError {
         let [from, to] = [self.from, self.to].map(|at| trimmed(at.seconds()));
         let part =
             if self.from > self.to { format!("from {from} s on") } else { format!("from {from} to {to} s") };
-        format!("{index} of {quantity}{axis}, {part}")
+        let scope = self.scope.as_ref().map_or_else(String::new, |(_, words)| format!(", {words}"));
+        format!("{index} of {quantity}{axis}, {part}{scope}")
     }
 }

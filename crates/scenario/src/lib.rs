@@ -19,6 +19,7 @@ mod estimator_context;
 mod failures;
 mod fast_path;
 mod file_name;
+mod formula_checks;
 mod line_of_sight;
 mod log;
 mod logged_scenario;
@@ -58,7 +59,8 @@ use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::AppendageDrives;
 pub use assessed_requirement::{
-    AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
+    AssessedRequirement, IndexWindow, RequirementFormula, RequirementSource, SampledError, SampledQuantity,
+    mode_of,
 };
 pub use bound::BoundSpec;
 pub use cost::{Cost, MOST_RUNS};
@@ -258,7 +260,7 @@ impl Scenario {
     pub fn has_goal(&self) -> bool {
         let limits_goal = |requirement: &AssessedRequirement| match &requirement.source {
             RequirementSource::Metric(name, _) => metric_descriptions::needs_goal(name),
-            RequirementSource::Error(_) => false,
+            RequirementSource::Error(_) | RequirementSource::Formula(_) => false,
         };
         self.reference.band.is_some()
             || self.requirement.is_empty()

@@ -216,7 +216,10 @@ impl<'a> Magnitudes<'a> {
         let first = assessed.len() - written.len();
         for (place, of) in assessed.iter().enumerate().filter(|(_, of)| of.unit == "rad") {
             let own = place.checked_sub(first);
-            let lacks_unit = own.is_some_and(|index| matches!(written[index].limit, Limit::Number(_)));
+            if own.is_some_and(|index| written[index].limit.is_none()) {
+                continue;
+            }
+            let lacks_unit = own.is_some_and(|index| matches!(written[index].limit, Some(Limit::Number(_))));
             let most = if lacks_unit { UNITLESS_POINTING } else { POINTING };
             if of.limit > most {
                 let (limit, angle) = (shortest(of.limit), digits(of.limit.to_degrees()));

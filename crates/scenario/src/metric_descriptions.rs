@@ -199,7 +199,9 @@ metrics! {
     REQUIREMENT_VALUES = "requirement_values", "",
         "Value of each requirement, in its own unit: reference.pointing.rms first, then the [[requirement]] tables; null without values";
     REQUIREMENT_SHARES = "requirement_shares", "",
-        "Fraction of the values of each requirement within its limit, in the order of requirement_values; null without values";
+        "Fraction of the values of each requirement within its limit, in the order of requirement_values; null without values, and 1 for a requirement without a value that nothing in the run was to meet";
+    REQUIREMENT_TIMES = "requirement_times_s", "s",
+        "Time of the value that decides on each requirement over time, in the order of requirement_values; null for others";
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
         "Root mean square reading of each accelerometer (norm over its axes)";
     TRACKER_BLINDED = "tracker_blinded_s", "s",

@@ -28,7 +28,7 @@ impl ScenarioSpec {
         self.validate_mode_targets(model, errors);
         let kinds: Vec<&str> = self.sensor.iter().map(SensorKind::kind).collect();
         let names = self.mode.iter().map(|mode| mode.name.as_str()).collect();
-        let known = Vocabulary { sensors: kinds.clone(), modes: names, numbers: None };
+        let known = Vocabulary { sensors: kinds.clone(), modes: names, ..Vocabulary::default() };
         if let Some(error) = OperatingMode::fault(&self.mode, &kinds) {
             // Sensors in use and conditions are found by their names.
             errors.push(error.within("mode"));
@@ -128,46 +128,7 @@ impl ScenarioSpec {
         offers: &Offers,
     ) -> Vec<ConfigError> {
         let in_use = self.sensors_in_use(index);
-        let used = |wanted: &dyn Fn(&SensorKind) -> bool| {
-            self.sensor.iter().zip(&in_use).any(|(sensor, in_use)| *in_use && wanted(sensor))
-        };
-        let knows_motion =
-            self.estimator.is_some() || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
-        let filters = self.estimator.as_ref().is_some_and(|estimator| estimator.filters_measurements());
-        let stores = |kind: &str| offers.actuators.iter().any(|member| member.kind == kind);
-        let why = |quantity: ModeQuantity| -> Option<&'static str> {
-            match quantity {
-                ModeQuantity::Rate | ModeQuantity::RateError | ModeQuantity::AttitudeError => (!knows_motion)
-                    .then_some("reads the estimated motion, and no sensor of attitude or rates is in use in this mode"),
-                ModeQuantity::Momentum => (!stores("wheels") && !stores("control_moment_gyros"))
-                    .then_some("reads a stored momentum, and there are neither `wheels` nor `control_moment_gyros`"),
-                ModeQuantity::WheelSpeed => {
-                    (!stores("wheels")).then_some("reads the speeds of `wheels`, and there are none")
-                }
-                ModeQuantity::Field | ModeQuantity::FieldRate => (!used(&|sensor: &SensorKind| sensor.measures_field()))
-                    .then_some("reads the measured field, and no `magnetometer` is in use in this mode"),
-                ModeQuantity::Sunlight | ModeQuantity::TrueSunlight => {
-                    (!offers.environment.sun).then_some("reads the light of `environment.sun`, and there is none")
-                }
-                ModeQuantity::Elevation(mode) | ModeQuantity::TrueElevation(mode) => {
-                    let site = self.mode[mode].target.as_ref().and_then(ModeTarget::site);
-                    site.is_none().then_some("reads the elevation at the `site` in the target of a mode, and that one has none")
-                }
-                ModeQuantity::LockLost => (!filters)
-                    .then_some("reads the lock of a Kalman filter about each axis, and there is none"),
-                ModeQuantity::Silent(sensor) => {
-                    let of = &self.sensor[sensor];
-                    if !in_use[sensor] {
-                        Some("names a sensor that is not in use in this mode")
-                    } else if of.is_continuous() || !of.measures_motion() {
-                        Some("names a sensor without readings at samples")
-                    } else {
-                        None
-                    }
-                }
-                _ => None,
-            }
-        };
+        let why = |quantity| self.unknown_quantity(quantity, &in_use, offers);
         let samples = offers.law_period.or(offers.sample_period).is_some();
         let leave = mode.leave.iter().enumerate();
         let errors = leave.filter_map(|(place, exit)| {
@@ -179,5 +140,65 @@ impl ScenarioSpec {
             error.map(|why| ConfigError::new(format!("leave[{place}].when"), why))
         });
         errors.collect()
+    }
+
+    /// Returns why a quantity is not known with the sensors that are in use; `None` if it is.
+    pub(super) fn unknown_quantity(
+        &self,
+        quantity: ModeQuantity,
+        in_use: &[bool],
+        offers: &Offers,
+    ) -> Option<&'static str> {
+        let used = |wanted: &dyn Fn(&SensorKind) -> bool| {
+            self.sensor.iter().zip(in_use).any(|(sensor, in_use)| *in_use && wanted(sensor))
+        };
+        let knows_motion =
+            self.estimator.is_some() || used(&|sensor| sensor.measures_motion() && !sensor.measures_vector());
+        let filters = self.estimator.as_ref().is_some_and(|estimator| estimator.filters_measurements());
+        let stores = |kind: &str| offers.actuators.iter().any(|member| member.kind == kind);
+        match quantity {
+            ModeQuantity::Rate | ModeQuantity::RateError | ModeQuantity::AttitudeError => (!knows_motion)
+                .then_some(
+                    "reads the estimated motion, and no sensor of attitude or rates is in use in this mode",
+                ),
+            ModeQuantity::Momentum => (!stores("wheels") && !stores("control_moment_gyros")).then_some(
+                "reads a stored momentum, and there are neither `wheels` nor `control_moment_gyros`",
+            ),
+            ModeQuantity::WheelSpeed => {
+                (!stores("wheels")).then_some("reads the speeds of `wheels`, and there are none")
+            }
+            ModeQuantity::Field | ModeQuantity::FieldRate => {
+                (!used(&|sensor: &SensorKind| sensor.measures_field()))
+                    .then_some("reads the measured field, and no `magnetometer` is in use in this mode")
+            }
+            ModeQuantity::Sunlight | ModeQuantity::TrueSunlight => {
+                (!offers.environment.sun).then_some("reads the light of `environment.sun`, and there is none")
+            }
+            ModeQuantity::Elevation(mode) | ModeQuantity::TrueElevation(mode) => {
+                let site = self.mode[mode].target.as_ref().and_then(ModeTarget::site);
+                site.is_none().then_some(
+                    "reads the elevation at the `site` in the target of a mode, and that one has none",
+                )
+            }
+            ModeQuantity::Blinded(sensor) => self
+                .sensor
+                .exclusions()
+                .all(|(excluding, ..)| excluding != sensor)
+                .then_some("names a sensor without exclusion angles, which nothing blinds"),
+            ModeQuantity::LockLost => {
+                (!filters).then_some("reads the lock of a Kalman filter about each axis, and there is none")
+            }
+            ModeQuantity::Silent(sensor) => {
+                let of = &self.sensor[sensor];
+                if !in_use[sensor] {
+                    Some("names a sensor that is not in use in this mode")
+                } else if of.is_continuous() || !of.measures_motion() {
+                    Some("names a sensor without readings at samples")
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        }
     }
 }

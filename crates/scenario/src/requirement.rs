@@ -1,4 +1,4 @@
-//! Table `[[requirement]]`: a limit on a pointing index or on a metric, and how it is judged.
+//! Table `[[requirement]]`: a limit on a pointing index or on a metric, or an expression over time, and how it is judged.
 
 use std::fmt;
 
@@ -9,15 +9,35 @@ use flexsc_numerics::time::Span;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Requirement: the largest accepted value of a quantity.
+/// Requirement: the largest accepted value of a quantity, or what holds over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Requirement {
     /// Name of the requirement.
     pub name: String,
+    /// What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of `quantity` and `limit`;
+    /// without an operator over time, always.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds: Option<String>,
+    /// Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that becomes true.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<String>,
+    /// Longest time (s) after the event, or after the start, at which `holds` begins to hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<Time>,
+    /// Time (s) for which `holds` then holds.
+    #[serde(default, rename = "for", skip_serializing_if = "Option::is_none")]
+    pub held: Option<Time>,
+    /// Mode of operation in which the requirement counts; default: all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode: Option<String>,
+    /// Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or `"blinded(star_tracker)"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub during: Option<String>,
     /// Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
     /// `fuel_axes_kg[2]`; of a list without an index, its largest element.
-    pub quantity: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quantity: Option<String>,
     /// Point of the line of sight, which is a `[[line_of_sight]]` of the scenario.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
@@ -47,7 +67,8 @@ pub struct Requirement {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub to: Option<Time>,
     /// Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2 arcsec".
-    pub limit: Limit,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Limit>,
     /// Probability at which the value is at most the limit; default: 1, always and in every run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub level: Option<Share>,

@@ -8,6 +8,7 @@ use flexsc_spacecraft::body::BodyModel;
 use super::assessed_requirement::{
     AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
 };
+use super::formula_checks::{FormulaLimit, formula, scope, scope_words};
 use super::requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement};
 use super::spec::ScenarioSpec;
 use crate::metric_descriptions;
@@ -81,19 +82,27 @@ impl Context<'_> {
             let verb = if others.len() == 1 { "is" } else { "are" };
             return at(first, format!("is missing, and so {verb} `{}`", others.join("`, `")));
         }
-        let (source, unit) = self.source(requirement)?;
-        let limit = requirement.limit.in_unit(unit).map_err(|why| ConfigError::new("limit", why))?;
+        let FormulaLimit { source, unit, limit, written } = match &requirement.holds {
+            Some(text) => {
+                if let Some((key, _)) = keys_of_a_quantity(requirement).into_iter().find(|(_, given)| *given)
+                {
+                    return at(
+                        key,
+                        "must be left out beside `holds`, which has a quantity and its limit".to_owned(),
+                    );
+                }
+                formula(self.written, self.model, requirement, text)?
+            }
+            None => self.limited(requirement)?,
+        };
         if limit.is_nan() || limit < 0.0 && matches!(source, RequirementSource::Error(_)) {
             return at("limit", format!("must be 0 or more, got {limit}"));
         }
         let level = requirement.level.map_or(1.0, Share::get);
-        let is_metric = matches!(source, RequirementSource::Metric(..));
+        let is_metric = !matches!(source, RequirementSource::Error(_));
         let interpretation = match requirement.interpretation {
             Some(word) if is_metric && word != Interpretation::Ensemble => {
-                let why = format!(
-                    "of a metric, which has one value in each run, is `ensemble`, got `{}`",
-                    word.word()
-                );
+                let why = format!("of a value that each run has once, is `ensemble`, got `{}`", word.word());
                 return at("interpretation", why);
             }
             None if !is_metric && level < 1.0 => {
@@ -121,19 +130,50 @@ impl Context<'_> {
             source,
             unit,
             limit,
-            written_limit: match &requirement.limit {
-                Limit::Text(text) => Some(text.clone()),
-                Limit::Number(_) => None,
-            },
+            written_limit: written,
             level,
             interpretation,
             confidence: requirement.confidence.map(flexsc_numerics::quantity::Fraction::get),
         })
     }
 
-    /// Returns the origin of the values and their unit.
-    fn source(&self, requirement: &Requirement) -> Result<(RequirementSource, &'static str), ConfigError> {
-        let quantity = match requirement.quantity.as_str() {
+    /// Returns the origin, the unit and the limit of a requirement on a quantity.
+    fn limited(&self, requirement: &Requirement) -> Result<FormulaLimit, ConfigError> {
+        let missing =
+            |key: &str, other: &str| ConfigError::new(key, format!("is missing: a requirement has {other}"));
+        let Some(quantity) = &requirement.quantity else {
+            return Err(missing("quantity", "a `quantity` with its `limit`, or `holds`"));
+        };
+        let Some(limit) = &requirement.limit else {
+            return Err(missing("limit", "a `limit` on its `quantity`"));
+        };
+        let of_formula = [
+            ("after", requirement.after.is_some()),
+            ("within", requirement.within.is_some()),
+            ("for", requirement.held.is_some()),
+        ];
+        if let Some((key, _)) = of_formula.into_iter().find(|(_, given)| *given) {
+            let why = format!(
+                "is for `holds`: write `holds = \"{quantity} < LIMIT\"` in place of `quantity` and `limit`"
+            );
+            return Err(ConfigError::new(key, why));
+        }
+        let (source, unit) = self.source(requirement, quantity)?;
+        let value = limit.in_unit(unit).map_err(|why| ConfigError::new("limit", why))?;
+        let written = match limit {
+            Limit::Text(text) => Some(text.clone()),
+            Limit::Number(_) => None,
+        };
+        Ok(FormulaLimit { source, unit, limit: value, written })
+    }
+
+    /// Returns the origin of the values of a quantity and their unit.
+    fn source(
+        &self,
+        requirement: &Requirement,
+        name: &str,
+    ) -> Result<(RequirementSource, &'static str), ConfigError> {
+        let quantity = match name {
             "pointing_error" => SampledQuantity::PointingError,
             "rate_error" => SampledQuantity::RateError,
             "line_of_sight" => self.line_of_sight(requirement)?,
@@ -141,7 +181,7 @@ impl Context<'_> {
         };
         let unit = if quantity == SampledQuantity::RateError { "rad/s" } else { "rad" };
         if requirement.point.is_some() && !matches!(quantity, SampledQuantity::LineOfSight(..)) {
-            let why = format!("is that of a `line_of_sight`, and the quantity is `{}`", requirement.quantity);
+            let why = format!("is that of a `line_of_sight`, and the quantity is `{name}`");
             return Err(ConfigError::new("point", why));
         }
         if let Some(axis) =
@@ -220,7 +260,9 @@ impl Context<'_> {
             return at(if requirement.period.is_some() { "period" } else { "quantity" }, why);
         }
         let index = index_window(requirement, period.seconds())?;
-        Ok(SampledError { quantity, axis: requirement.axis, index, period, from, to, samples })
+        let scope = scope(self.written, self.model, requirement)?;
+        let scope = scope.map(|scope| (scope, scope_words(requirement)));
+        Ok(SampledError { quantity, axis: requirement.axis, index, period, from, to, samples, scope })
     }
 }
 
@@ -232,8 +274,9 @@ fn count(span: Span, period: Span) -> u64 {
 
 /// Returns the keys that a requirement on an error needs and does not have.
 fn absent_keys(requirement: &Requirement) -> Vec<&'static str> {
-    let is_sight = requirement.quantity == "line_of_sight";
-    if !is_sight && !["pointing_error", "rate_error"].contains(&requirement.quantity.as_str()) {
+    let quantity = requirement.quantity.as_deref().unwrap_or_default();
+    let is_sight = quantity == "line_of_sight";
+    if !is_sight && !["pointing_error", "rate_error"].contains(&quantity) {
         return Vec::new();
     }
     let index = requirement.index.unwrap_or(PointingIndex::Absolute);
@@ -324,7 +367,21 @@ fn metric_source(
     if metric_descriptions::is_word(list) || list.starts_with("requirement") {
         return at("quantity", format!("must be a number to have a limit, and `{list}` is none"));
     }
-    let given = [
+    let scope = [("mode", requirement.mode.is_some()), ("during", requirement.during.is_some())];
+    let [_, _, given @ ..] = keys_of_a_quantity(requirement);
+    let mut given = given.into_iter().chain(scope);
+    if let Some((key, _)) = given.find(|(_, is_given)| *is_given) {
+        let why = format!("is for `{}`, and the quantity is the metric `{list}`", SAMPLED.join("`, `"));
+        return at(key, why);
+    }
+    Ok((RequirementSource::Metric(list.to_owned(), element), meaning.unit))
+}
+
+/// Returns the keys that go with a quantity, and whether they are given.
+fn keys_of_a_quantity(requirement: &Requirement) -> [(&'static str, bool); 11] {
+    [
+        ("quantity", requirement.quantity.is_some()),
+        ("limit", requirement.limit.is_some()),
         ("point", requirement.point.is_some()),
         ("axis", requirement.axis.is_some()),
         ("index", requirement.index.is_some()),
@@ -334,10 +391,5 @@ fn metric_source(
         ("period", requirement.period.is_some()),
         ("from", requirement.from.is_some()),
         ("to", requirement.to.is_some()),
-    ];
-    if let Some((key, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-        let why = format!("is for `{}`, and the quantity is the metric `{list}`", SAMPLED.join("`, `"));
-        return at(key, why);
-    }
-    Ok((RequirementSource::Metric(list.to_owned(), element), meaning.unit))
+    ]
 }

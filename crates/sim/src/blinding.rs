@@ -10,12 +10,9 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::environment::{BrightBody, OrbitEnvironment, to_body};
 
+use super::motion_limits::{MotionLimits, RESERVE, modal_rotation};
 use super::plant::Plant;
 use flexsc_scenario::Scenario;
-
-/// Reserve in the bound of the rates, for motions that the free modes at the start of a step do not describe: drives,
-/// hinges, gimbals, and changes of the inertia.
-const RESERVE: f64 = 2.0;
 
 /// Shortest step of the search (s): a shorter passage through an exclusion angle may be missed.
 const SHORTEST: f64 = 1e-5;
@@ -56,26 +53,13 @@ struct Watch {
     margin: f64,
 }
 
-/// Constants of the body for the bound of its rates.
-#[derive(Copy, Clone, Debug, Default)]
-struct MotionLimits {
-    /// Inverse of the least moment of inertia (1/(kg m²)).
-    inverse_inertia: f64,
-    /// Norm of the modal rotations at the point where torques act (rad/(m sqrt(kg))).
-    modal_torque: f64,
-}
-
 impl Blinding {
     /// Creates the exclusion angles of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
-        let (Some(body), study) = (scenario.model.three_axis(), &scenario.study) else {
+        let (Some(model), study) = (scenario.model.three_axis(), &scenario.study) else {
             return Self::default();
         };
         let sky = scenario.orbit_environment();
-        let norm = |point: &str| {
-            let squares = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm_squared());
-            f64::sqrt(squares.sum())
-        };
         let mut watches = Vec::new();
         for (index, boresight, exclusion) in scenario.sensor.exclusions() {
             for (body, limit) in exclusion.limits() {
@@ -84,14 +68,15 @@ impl Blinding {
                     boresight,
                     limit,
                     body_rate: sky.angle_rate(body),
-                    modal_rotation: study.sensor_points.get(index).map_or(0.0, |point| norm(point)),
+                    modal_rotation: study
+                        .sensor_points
+                        .get(index)
+                        .map_or(0.0, |point| modal_rotation(model, point)),
                     margin: 0.0,
                 });
             }
         }
-        let least = body.inertia.symmetric_eigenvalues().min();
-        let limits = MotionLimits { inverse_inertia: 1.0 / least, modal_torque: norm(&study.torque_point) };
-        Self { sky, watches, limits, next: None }
+        Self { sky, watches, limits: MotionLimits::new(scenario, model), next: None }
     }
 
     /// Returns true if no star tracker has an exclusion angle.
@@ -156,15 +141,9 @@ impl Blinding {
     /// Returns a bound of the rate (rad/s) at which the mount of a tracker turns within `h` (s) of the plant's state: that
     /// of the body and of its modes, all in phase, and the growth of both under the torques.
     fn rate_bound(&self, watch: &Watch, plant: &Plant, torque: f64, h: f64) -> f64 {
-        let Some(motion) = plant.quantities().three_axis() else { return 0.0 };
         let rate = Vector::from(plant.truth().rigid_rate).norm();
-        let (_, momentum) = motion.rotational_energy();
-        let torque =
-            torque + motion.surroundings().map_or(0.0, flexsc_dynamics::three_axis::Surroundings::bound);
-        let elastic = watch.modal_rotation * f64::sqrt(2.0 * motion.elastic_energies().0.max(0.0));
-        let growth = self.limits.inverse_inertia * (torque + rate * momentum)
-            + watch.modal_rotation * self.limits.modal_torque * torque;
-        RESERVE * (rate + elastic + growth * h)
+        let elastic = MotionLimits::elastic_rate(plant, watch.modal_rotation);
+        RESERVE * (rate + elastic + self.limits.growth(plant, watch.modal_rotation, torque) * h)
     }
 }
 

@@ -217,6 +217,16 @@ impl Guidance {
         self.reference(now).map_or_else(Vector::zeros, |motion| motion.in_body_axes(error)[0])
     }
 
+    /// Returns the start of the next target of three axes.
+    pub fn next_target(&self, now: Instant) -> Option<Instant> {
+        self.profile.as_ref().and_then(|way| way.next(now))
+    }
+
+    /// Returns the size of the acceleration of the reference attitude (rad/s²).
+    pub fn reference_acceleration(&self, now: Instant) -> f64 {
+        self.reference(now).map_or(0.0, |motion| motion.acceleration.norm())
+    }
+
     /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the
     /// start of the next target.
     pub fn next_change(&self, now: Instant) -> Option<Instant> {

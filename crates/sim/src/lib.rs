@@ -15,6 +15,7 @@ mod exposures;
 mod guidance;
 mod loads;
 mod mode_sky;
+mod motion_limits;
 mod objective;
 mod operation;
 mod plant;
@@ -23,6 +24,7 @@ mod quantity_reader;
 mod recorder;
 mod relay_kernel;
 pub mod relay_setup;
+mod requirement_monitors;
 mod run_to;
 mod run_view;
 mod sensor_schedule;
@@ -40,6 +42,7 @@ use flexsc_record::Record;
 
 use flexsc_scenario::Scenario;
 use relay_setup::RunSetup;
+use requirement_monitors::RequirementMonitors;
 
 pub use control_trace::{ControlCall, ControlDecision, ModeTrial, SensorSample};
 pub use error::SimulationError;
@@ -71,6 +74,7 @@ pub struct Simulation {
     operation: Operation,
     loads: Loads,
     recorder: Recorder,
+    requirements: RequirementMonitors,
     /// True if the scenario has custom parts.
     has_custom_parts: bool,
     /// Initial setup for the relay kernel, if it can simulate this run.
@@ -81,19 +85,22 @@ impl Simulation {
     /// Creates the run number `run` of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
-        let guidance = Guidance::new(scenario);
+        let (guidance, operation) = (Guidance::new(scenario), Operation::new(scenario));
+        let requirements = RequirementMonitors::new(scenario, operation.sky());
         Self {
             clock: Clock::new(scenario),
             plant: Plant::new(scenario),
             sensors: Sensors::new(scenario, seed),
             estimation: Estimation::new(scenario, &guidance, seed),
             laws: ControlLaws::new(scenario, seed),
-            operation: Operation::new(scenario),
+            operation,
             loads: Loads::new(scenario, seed),
             recorder: Recorder::new(scenario, &guidance, run),
             guidance,
             has_custom_parts: scenario.has_custom_parts(),
-            kernel_setup: relay_setup::single(scenario).map(Box::new),
+            // The kernel has no pieces of the motion.
+            kernel_setup: relay_setup::single(scenario).filter(|_| requirements.is_empty()).map(Box::new),
+            requirements,
         }
     }
 
@@ -190,16 +197,19 @@ impl Simulation {
     fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         // 6. and 7. The estimates are predicted, the laws decide, the actuator takes the commands: a new segment.
-        if self.laws.external_command_pending || self.must_decide(event) {
+        let decides = self.laws.external_command_pending || self.must_decide(event);
+        if decides {
             self.control_step(event, record)?;
         }
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
+            self.end_required_segment();
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
             self.loads.apply_due_changes(now, self.plant.truth().rigid_rate);
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
+        self.observe_requirements(decides || self.sensors.has_sampled(now));
         // 9. Cycle of three axes, and the rows of the record.
         let is_cycle = self.clock.cycle_is_due();
         if is_cycle {
@@ -232,6 +242,7 @@ impl Simulation {
     fn control_step(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         self.clock.count_decision()?;
+        self.end_required_segment();
         self.estimation.predict(now, &self.plant, &self.sensors);
         self.update_mode(record)?;
         let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid_rate);
@@ -264,7 +275,31 @@ impl Simulation {
         self.estimation.begin_segment(now, &self.plant, &self.loads);
         self.plant.begin_segment(self.loads.wrench(now));
         self.laws.objective.add_torque(now, axes, &self.loads);
+        if !self.requirements.is_empty() {
+            let mut requirements = std::mem::take(&mut self.requirements);
+            requirements.begin_segment(&self.read_view());
+            self.requirements = requirements;
+        }
         self.find_crossing(record)
+    }
+
+    /// Hands the motion up to the current instant to the requirements over time, before anything of it changes.
+    #[inline]
+    fn end_required_segment(&mut self) {
+        if !self.requirements.is_empty() {
+            let Self { clock, plant, guidance, loads, requirements, .. } = self;
+            requirements.end_segment(clock.now(), plant, guidance, loads);
+        }
+    }
+
+    /// Hands what has changed at the current instant to the requirements over time.
+    #[inline]
+    fn observe_requirements(&mut self, has_sampled: bool) {
+        if !self.requirements.is_empty() {
+            let mut requirements = std::mem::take(&mut self.requirements);
+            requirements.observe(&self.read_view(), has_sampled);
+            self.requirements = requirements;
+        }
     }
 
     /// Finds the first guard crossing of the segment that begins; with a sampled sensor, guards are tested at the
@@ -309,13 +344,13 @@ impl Simulation {
 
     /// Returns the parts of the run for reading, and the recorder, which reads them.
     fn view(&mut self) -> (RunView<'_>, &mut Recorder) {
-        let Self { clock, plant, sensors, estimation, guidance, laws, loads, recorder, .. } = self;
-        (RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads }, recorder)
+        let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, recorder, .. } = self;
+        (RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, operation }, recorder)
     }
 
     /// Returns the parts of the run for reading.
     fn read_view(&self) -> RunView<'_> {
-        let Self { clock, plant, sensors, estimation, guidance, laws, loads, .. } = self;
-        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads }
+        let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, .. } = self;
+        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, operation }
     }
 }

@@ -17,9 +17,9 @@ pub struct ModeSky {
 }
 
 impl ModeSky {
-    /// Creates the sky of a scenario; an empty one without modes.
+    /// Creates the sky of a scenario; an empty one without modes and requirements.
     pub fn new(scenario: &Scenario) -> Self {
-        if scenario.mode.is_empty() {
+        if scenario.mode.is_empty() && scenario.requirement.is_empty() {
             return Self::default();
         }
         let site = |target: &Option<ModeTarget>| target.as_ref().and_then(ModeTarget::site);
@@ -27,6 +27,16 @@ impl ModeSky {
             sky: scenario.orbit_environment(),
             sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect(),
         }
+    }
+
+    /// Iterates over the instants at which a shadow begins or ends.
+    pub fn edges(&self) -> impl Iterator<Item = Instant> {
+        self.sky.shadow_edges()
+    }
+
+    /// Returns true if a quantity stays as it is at a time (s) until the next edge of a shadow.
+    pub fn is_steady(&self, quantity: ModeQuantity, t: f64) -> bool {
+        quantity == ModeQuantity::TrueSunlight && self.sky.light_rate(t) == 0.0
     }
 
     /// Returns a quantity of the sky in its unit at a time since the start (s); NaN of any other quantity.

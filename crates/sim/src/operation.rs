@@ -5,15 +5,18 @@ use std::sync::Arc;
 
 use flexsc_control::actuator::ActuatorEvent;
 use flexsc_control::flight_quantity::FlightQuantity;
-use flexsc_control::operation::{ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence};
+use flexsc_control::operation::{
+    Expression, ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence,
+};
 use flexsc_flight::mode_readings::{distance, largest_size, norm};
 use flexsc_flight::mode_supervisor::MOST_CHANGES;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample};
 
+use super::blinding::BlindingState;
 use super::mode_sky::ModeSky;
-use super::run_view::RunView;
+use super::run_view::{RunView, motion_error};
 use super::{Simulation, SimulationError};
 use flexsc_scenario::Scenario;
 
@@ -30,7 +33,7 @@ pub struct Operation {
 /// Quantities of a run at an instant, as the conditions read them.
 struct KnownQuantities<'a> {
     run: RunView<'a>,
-    sequence: &'a ModeSequence,
+    sequence: Option<&'a ModeSequence>,
     sky: &'a ModeSky,
 }
 
@@ -50,6 +53,15 @@ impl Operation {
     #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.sequence.as_ref().and_then(ModeSequence::due)
+    }
+
+    /// Returns the sky of the conditions.
+    pub fn sky(&self) -> &Arc<ModeSky> {
+        &self.sky
+    }
+
+    fn quantities<'a>(&'a self, run: &RunView<'a>) -> KnownQuantities<'a> {
+        KnownQuantities { run: *run, sequence: self.sequence.as_ref(), sky: &self.sky }
     }
 
     /// Returns the row of the first mode, at the start of a run with modes.
@@ -96,7 +108,7 @@ impl Simulation {
         let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
         let (before, sky) = (sequence.active(), &self.operation.sky);
         let readings =
-            sequence.read(now, &KnownQuantities { run: self.read_view(), sequence: &sequence, sky });
+            sequence.read(now, &KnownQuantities { run: self.read_view(), sequence: Some(&sequence), sky });
         let change = sequence.test(now, &readings);
         self.trace_mode(now, sequence.active(), readings);
         self.operation.sequence = Some(sequence);
@@ -145,8 +157,23 @@ impl ModeReadings for KnownQuantities<'_> {
         }
         match quantity {
             ModeQuantity::Silent(sensor) => run.sensors.silence(run.now, sensor).seconds(),
-            // The supervisor counts entries itself.
-            ModeQuantity::Entries(_) => f64::NAN,
+            ModeQuantity::Entries(mode) => {
+                self.sequence.map_or(f64::NAN, |sequence| sequence.entries(mode) as f64)
+            }
+            ModeQuantity::Mode(mode) => {
+                f64::from(u8::from(self.sequence.is_some_and(|sequence| sequence.active() == mode)))
+            }
+            ModeQuantity::Blinded(sensor) => {
+                let is_blind = |state: BlindingState| state.sensor == sensor && state.is_blinded;
+                f64::from(u8::from(run.sensors.blinding_states().any(is_blind)))
+            }
+            ModeQuantity::TrueRate => norm(&run.plant.truth().rigid_rate),
+            ModeQuantity::PointingError | ModeQuantity::TrueRateError => {
+                let is_rate = quantity == ModeQuantity::TrueRateError;
+                norm(&motion_error(run.plant, run.guidance, run.now, is_rate))
+            }
+            // Not known at one instant.
+            ModeQuantity::LineOfSight(_) | ModeQuantity::Metric(..) => f64::NAN,
             ModeQuantity::LockLost => {
                 f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
             }
@@ -160,11 +187,22 @@ impl ModeReadings for KnownQuantities<'_> {
 
     fn clock(&self, quantity: ModeQuantity) -> Span {
         let is_of_mode = matches!(quantity, ModeQuantity::Time | ModeQuantity::TrueTime);
-        self.run.now.since(if is_of_mode { self.sequence.entered() } else { Instant::START })
+        let entered = self.sequence.filter(|_| is_of_mode).map_or(Instant::START, ModeSequence::entered);
+        self.run.now.since(entered)
     }
 }
 
 impl RunView<'_> {
+    /// Returns the value of a quantity of a requirement; 1 or 0 of a flag, NaN while it is not known.
+    pub(super) fn quantity(&self, quantity: ModeQuantity) -> f64 {
+        self.operation.quantities(self).value(quantity)
+    }
+
+    /// Returns true if a condition of a requirement is met.
+    pub(super) fn meets(&self, condition: &Expression) -> bool {
+        condition.holds(&self.operation.quantities(self))
+    }
+
     /// Returns a vector or list that the control system knows; nothing for those that no condition reads.
     pub(super) fn known(&self, quantity: FlightQuantity) -> Vec<f64> {
         let estimates = self.estimation.estimates.iter();

@@ -1,11 +1,14 @@
 //! Parts of a run at one instant, as the record and the observation read them.
 
+use flexsc_control::sensor::Orientation;
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 
 use super::controllers::ControlLaws;
 use super::estimation::Estimation;
 use super::guidance::Guidance;
 use super::loads::Loads;
+use super::operation::Operation;
 use super::plant::Plant;
 use super::sensors::Sensors;
 
@@ -20,4 +23,21 @@ pub struct RunView<'a> {
     pub guidance: &'a Guidance,
     pub laws: &'a ControlLaws,
     pub loads: &'a Loads,
+    pub operation: &'a Operation,
+}
+
+/// Returns the error of the attitude (rad) or of the rate (rad/s) about the body's axes.
+pub fn motion_error(plant: &Plant, guidance: &Guidance, now: Instant, is_rate: bool) -> [f64; 3] {
+    let truth = plant.truth();
+    if plant.quantities().one_axis().is_some() {
+        let (angle, rate) = guidance.manoeuvre_state(now);
+        let of_angle = || truth.orientation.error_from(&Orientation::Angle(angle));
+        return if is_rate { [truth.rate[0] - rate, 0.0, 0.0] } else { of_angle() };
+    }
+    let error = truth.orientation.error_from(&guidance.origin(now));
+    if !is_rate {
+        return error;
+    }
+    let reference = guidance.reference_rate(now, &Vector::from(error));
+    (Vector::from(truth.rigid_rate) - reference).into()
 }

@@ -100,6 +100,12 @@ impl Sensors {
         earlier(self.next, self.exposures.due())
     }
 
+    /// Returns true if a sensor in use gave a reading at `now`.
+    #[inline]
+    pub fn has_sampled(&self, now: Instant) -> bool {
+        self.last_readings.contains(&now)
+    }
+
     /// Returns true if a sample is due at `now`, or was read ahead for it.
     #[inline]
     pub fn sample_is_due(&self, now: Instant) -> bool {

@@ -34,9 +34,9 @@ impl ScenarioMeasure {
         };
         match all[index].source {
             RequirementSource::Error(_) => Ok(Self::Index(index)),
-            RequirementSource::Metric(..) => {
-                let why = "limits a metric: a tuning needs a pointing index, which the linear loop has";
-                Err(ConfigError::new(format!("requirement[{index}].quantity"), why))
+            RequirementSource::Metric(..) | RequirementSource::Formula(_) => {
+                let why = "limits no pointing index: a tuning of the linear loop needs one; `--minimise requirement` tunes on runs";
+                Err(ConfigError::new(format!("requirement[{index}]"), why))
             }
         }
     }

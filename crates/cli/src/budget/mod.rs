@@ -131,7 +131,7 @@ impl CampaignSetup {
     ) -> Result<Budgets, CliError> {
         let name = scenario.name.clone();
         let samples = |source: &RequirementSource| match source {
-            RequirementSource::Metric(..) => 0,
+            RequirementSource::Metric(..) | RequirementSource::Formula(_) => 0,
             RequirementSource::Error(error) => error.index.values(error.samples),
         };
         let values: u64 = scenario.study.requirements.iter().map(|of| samples(&of.source)).sum();
@@ -198,7 +198,7 @@ impl CampaignSetup {
         let requirements = scenario.study.requirements.iter().enumerate();
         let indices: Vec<_> = requirements
             .filter_map(|(place, requirement)| match &requirement.source {
-                RequirementSource::Metric(..) => None,
+                RequirementSource::Metric(..) | RequirementSource::Formula(_) => None,
                 RequirementSource::Error(error) => Some((place, requirement, error)),
             })
             .collect();

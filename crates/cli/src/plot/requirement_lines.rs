@@ -1,10 +1,11 @@
 //! Limits of requirements as lines over the time in which they count, with their values as they were written.
 
 use flexsc_core::answer::requirement_id;
+use flexsc_core::control::operation::ModeQuantity;
 use flexsc_core::formats::reader_units::percent;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::scenario::{
-    AssessedRequirement, ErrorAxis, IndexWindow, Interpretation, RequirementSource, SampledQuantity,
+    AssessedRequirement, ErrorAxis, IndexWindow, Interpretation, RequirementSource, SampledQuantity, mode_of,
 };
 use flexsc_figure::{Layer, LayerShape, Note, Panel, colour};
 
@@ -31,11 +32,25 @@ pub fn limits(
     axis: Option<ErrorAxis>,
 ) -> Vec<LimitOverTime> {
     let limit = |(index, own): (usize, &AssessedRequirement)| {
-        let RequirementSource::Error(error) = &own.source else { return None };
-        if error.index != IndexWindow::Absolute || error.axis != axis || !is_quantity(&error.quantity) {
-            return None;
-        }
-        let [from, to] = [error.from, error.to].map(Instant::seconds);
+        let (span, mode) = match &own.source {
+            RequirementSource::Error(error)
+                if error.index == IndexWindow::Absolute
+                    && error.axis == axis
+                    && is_quantity(&error.quantity) =>
+            {
+                let scope = error.scope.as_ref().and_then(|(condition, _)| mode_of(condition));
+                ([error.from, error.to].map(Instant::seconds), scope)
+            }
+            RequirementSource::Formula(formula)
+                if axis.is_none()
+                    && is_quantity(&SampledQuantity::PointingError)
+                    && formula.limited_quantity() == Some(ModeQuantity::PointingError) =>
+            {
+                formula.span()
+            }
+            _ => return None,
+        };
+        let [from, to] = span;
         let required = RequiredLimit::new(own);
         let level = match own.interpretation {
             _ if own.level >= 1.0 => String::new(),
@@ -45,10 +60,19 @@ pub fn limits(
             }
         };
         let words = format!("{}: {}{level}", requirement_id(index), required.text);
-        let windows = vec![[from, if from > to { story.end } else { to.min(story.end) }]];
+        let whole = [from, if from > to { story.end } else { to.min(story.end) }];
+        let windows = mode.map_or_else(|| vec![whole], |mode| in_mode(story, mode, whole));
         Some(LimitOverTime { required, windows, words })
     };
     story.scenario.study.requirements.iter().enumerate().filter_map(limit).collect()
+}
+
+/// Returns the parts of an interval (s) in a mode of operation.
+fn in_mode(story: &RunEvents, mode: usize, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+    let ends = story.modes.iter().skip(1).map(|start| start.time).chain([story.end]);
+    let of_mode = story.modes.iter().zip(ends).filter(|(start, _)| start.index == mode);
+    let parts = of_mode.map(|(start, end)| [start.time.max(from), end.min(to)]);
+    parts.filter(|[from, to]| from < to).collect()
 }
 
 /// Adds limits to a panel over time: a line over each window, or a mark where it is short, and the words once.

@@ -53,8 +53,8 @@ fn table(requirements: &[CampaignRequirement]) -> String {
         let mut cells = vec![cell(&own.id), cell(&own.name), cell(&text.limit)];
         cells.extend(has_nominal.then(|| cell(&text.nominal)));
         cells.extend([&text.median, &text.p95, &text.worst, &text.margin].map(|text| cell(text)));
-        cells.push(cell(&text.met).small(&text.share_interval).hot(!own.met));
-        HtmlRow { cells, is_missed: !own.met }
+        cells.push(cell(&text.met).small(&text.share_interval).hot(own.decision.fails()));
+        HtmlRow { cells, is_missed: own.decision.fails() }
     };
     HtmlTable { heads, rows: requirements.iter().map(row).collect(), is_cards: true }.html()
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use flexsc_core::requirement_verdict::Decision;
+
 /// Returns a text for HTML.
 pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
@@ -57,9 +59,13 @@ pub fn cell(text: &str) -> HtmlCell {
 
 impl HtmlCell {
     /// Returns the cell of a verdict.
-    pub fn verdict(is_met: bool) -> Self {
-        let word = if is_met { "met" } else { "missed" };
-        Self { html: format!("<span class=\"v {word}\">{word}</span>"), class: "" }
+    pub fn verdict(decision: Decision) -> Self {
+        let class = match decision {
+            Decision::Met => "met",
+            Decision::NotExercised => "",
+            Decision::Missed | Decision::Undecided => "missed",
+        };
+        Self { html: format!("<span class=\"v {class}\">{}</span>", decision.word()), class: "" }
     }
 
     /// Returns the cell with a second line in small letters.

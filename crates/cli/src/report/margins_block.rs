@@ -6,6 +6,7 @@ use flexsc_core::analysis::margins::SignalMargins;
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::settling_time::SettlingTime;
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
+use flexsc_core::requirement_verdict::Decision;
 use flexsc_core::worst_case::{MarginKind, MarginSearch};
 
 use super::html::{HtmlCell, HtmlRow, HtmlTable, cell, command, head, number_head, paragraph, picture};
@@ -71,7 +72,8 @@ impl LeastMargins {
             text(self.phase_deg).hot(self.phase_deg < mask.phase_deg),
         ];
         cells.extend(shows_delay.then(|| text(self.delay_s)));
-        cells.extend([text(self.modulus), text(self.settling_s), HtmlCell::verdict(self.is_clear)]);
+        let verdict = if self.is_clear { Decision::Met } else { Decision::Missed };
+        cells.extend([text(self.modulus), text(self.settling_s), HtmlCell::verdict(verdict)]);
         HtmlRow { cells, is_missed: !self.is_clear }
     }
 }

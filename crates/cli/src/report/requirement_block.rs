@@ -34,15 +34,15 @@ fn row(own: &RequirementAnswer, has_instants: bool, campaign: Option<&CampaignAn
         cell(&text.value),
         cell(&text.limit),
         cell(&text.margin),
-        HtmlCell::verdict(own.met),
+        HtmlCell::verdict(own.decision),
     ];
     cells.extend(has_instants.then_some(worst));
-    let mut is_missed = !own.met;
+    let mut is_missed = own.decision.fails();
     if let Some(campaign) = campaign {
         let runs = campaign.requirements.iter().find(|other| other.id == own.id);
-        is_missed |= runs.is_some_and(|runs| !runs.met);
+        is_missed |= runs.is_some_and(|runs| runs.decision.fails());
         cells.push(runs.map_or_else(HtmlCell::default, |runs| {
-            cell(&runs.text.met).small(&runs.text.share_interval).hot(!runs.met)
+            cell(&runs.text.met).small(&runs.text.share_interval).hot(runs.decision.fails())
         }));
     }
     HtmlRow { cells, is_missed }

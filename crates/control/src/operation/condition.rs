@@ -1,4 +1,4 @@
-//! Condition of a mode's end as it is read, and whether it holds.
+//! Condition of a mode's end or of a requirement as it is read, and whether it holds.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,6 +7,7 @@ use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 
 use super::quantity::ModeQuantity;
+use super::timed::Timed;
 
 /// Part of a condition that cannot be read, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +27,17 @@ pub struct Vocabulary<'a> {
     pub modes: Vec<&'a str>,
     /// Numbers by name, in the units of the quantities that they are compared with.
     pub numbers: Option<&'a BTreeMap<String, Finite>>,
+    /// Further names of a requirement, which may have operators over time; `None` of a condition of a mode.
+    pub requirement: Option<RequirementNames<'a>>,
+}
+
+/// Names that only requirements may use.
+#[derive(Clone, Debug, Default)]
+pub struct RequirementNames<'a> {
+    /// Points of the lines of sight, in their order.
+    pub points: Vec<&'a str>,
+    /// Names and units of the metrics.
+    pub metrics: Vec<(&'a str, &'a str)>,
 }
 
 /// Comparison of a quantity with a number.
@@ -61,6 +73,8 @@ pub enum Expression {
     All(Vec<Expression>),
     /// True if any of them is.
     Any(Vec<Expression>),
+    /// Expression over time, which only a requirement has.
+    Timed(Box<Timed>),
 }
 
 /// Access to the quantities at one instant.
@@ -97,16 +111,30 @@ impl Expression {
             Self::Not(inner) => !inner.holds(readings),
             Self::All(inner) => inner.iter().all(|inner| inner.holds(readings)),
             Self::Any(inner) => inner.iter().any(|inner| inner.holds(readings)),
+            Self::Timed(_) => false,
         }
     }
 
     /// Returns the comparisons and flags, each with its quantity and, of a comparison, its number.
     pub fn leaves(&self) -> Vec<(ModeQuantity, Option<f64>)> {
+        let number =
+            |(quantity, compared): (_, Option<(_, f64)>)| (quantity, compared.map(|(_, limit)| limit));
+        self.comparisons().into_iter().map(number).collect()
+    }
+
+    /// Returns the comparisons and flags, each with its quantity and, of a comparison, its number.
+    pub fn comparisons(&self) -> Vec<(ModeQuantity, Option<(Comparison, f64)>)> {
         match self {
-            Self::Compared { quantity, limit, .. } => vec![(*quantity, Some(*limit))],
+            Self::Compared { quantity, comparison, limit } => vec![(*quantity, Some((*comparison, *limit)))],
             Self::Flag(quantity) => vec![(*quantity, None)],
-            Self::Not(inner) => inner.leaves(),
-            Self::All(inner) | Self::Any(inner) => inner.iter().flat_map(Self::leaves).collect(),
+            Self::Not(inner) => inner.comparisons(),
+            Self::All(inner) | Self::Any(inner) => inner.iter().flat_map(Self::comparisons).collect(),
+            Self::Timed(timed) => match &**timed {
+                Timed::Always(_, inner) => inner.comparisons(),
+                Timed::Until(one, _, other) | Timed::When(one, other) | Timed::While(one, other) => {
+                    [one.comparisons(), other.comparisons()].concat()
+                }
+            },
         }
     }
 

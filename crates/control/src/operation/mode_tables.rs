@@ -57,7 +57,7 @@ impl ModeTables {
         let known = Vocabulary {
             sensors: sensors.to_vec(),
             modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
-            numbers: None,
+            ..Vocabulary::default()
         };
         let mut tables = Self::default();
         for (index, mode) in modes.iter().enumerate() {
@@ -144,6 +144,8 @@ impl ModeTables {
             Expression::Not(inner) => self.add_steps(inner, unmet, met),
             Expression::All(list) => self.add_list(list, |next| (next, unmet), (met, unmet)),
             Expression::Any(list) => self.add_list(list, |next| (met, next), (met, unmet)),
+            // No mode has one.
+            Expression::Timed(_) => {}
         }
     }
 

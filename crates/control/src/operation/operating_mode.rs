@@ -200,7 +200,7 @@ impl OperatingMode {
         let known = Vocabulary {
             sensors: sensors.to_vec(),
             modes: modes.iter().map(|mode| mode.name.as_str()).collect(),
-            numbers: None,
+            ..Vocabulary::default()
         };
         modes.iter().enumerate().find_map(|(index, mode)| {
             let named = known.modes[..index].contains(&mode.name.as_str());

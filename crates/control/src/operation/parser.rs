@@ -1,4 +1,7 @@
-//! Parser of conditions: comparisons joined by `and` and `or`, `not`, and brackets.
+//! Parser of conditions and requirements: comparisons joined by `and` and `or`, `not`, and brackets; of requirements also
+//! `implies`, and the operators over time.
+
+mod timed;
 
 use std::ops::Range;
 
@@ -18,23 +21,41 @@ const COMPARISONS: [(&str, Comparison); 4] = [
     (">", Comparison::Above),
 ];
 
+/// Words that end a number.
+const JOINTS: [&str; 4] = ["and", "or", "until", "implies"];
 /// Signs by which programming languages join and negate conditions, the longer ones first, with the words for them.
 const FOREIGN_SIGNS: [(&str, &str); 5] =
     [("&&", "and"), ("&", "and"), ("||", "or"), ("|", "or"), ("!", "not")];
 
-/// Reads a condition.
+/// Reads a condition, or a requirement if the vocabulary is that of one.
 pub(super) fn parse(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
+    whole(text, known, Parser::formula)
+}
+
+/// Reads an event after which a requirement holds: `mode enters NAME`, or a condition that becomes true.
+///
+/// # Errors
+/// The first part that is no event, and the reason.
+pub fn parse_trigger(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
+    whole(text, known, Parser::trigger)
+}
+
+fn whole<'a>(
+    text: &'a str,
+    known: &'a Vocabulary<'a>,
+    read: impl FnOnce(&mut Parser<'a>) -> Result<Expression, ConditionFault>,
+) -> Result<Expression, ConditionFault> {
     if text.len() > LONGEST {
         let why = format!("has at most {LONGEST} bytes, and this one has {}", text.len());
         return Err(ConditionFault { part: 0..text.len(), why });
     }
-    let mut parser = Parser { text, at: 0, known, depth: 0 };
-    let condition = parser.any()?;
+    let mut parser = Parser { text, at: 0, known, depth: 0, place: Place::Outermost };
+    let condition = read(&mut parser)?;
     parser.skip_spaces();
     if parser.at < text.len() {
         let part = parser.next_part();
         let found = &text[part.clone()];
-        return Err(fault(part, format!("must end or go on with `and` or `or`, got `{found}`")));
+        return Err(fault(part, format!("must end or go on with {}, got `{found}`", parser.joints())));
     }
     Ok(condition)
 }
@@ -50,6 +71,18 @@ struct Parser<'a> {
     at: usize,
     known: &'a Vocabulary<'a>,
     depth: usize,
+    place: Place,
+}
+
+/// Place of a part in a requirement, which decides on the operators over time that it may have.
+#[derive(Copy, Clone, PartialEq, Eq)]
+enum Place {
+    /// Any.
+    Outermost,
+    /// `always` and `eventually`.
+    Window,
+    /// None.
+    Event,
 }
 
 impl<'a> Parser<'a> {
@@ -80,6 +113,23 @@ impl<'a> Parser<'a> {
         comes
     }
 
+    /// Returns the words that may follow a condition.
+    fn joints(&self) -> &'static str {
+        match self.known.requirement {
+            Some(_) => "`and`, `or`, `until` or `implies`",
+            None => "`and` or `or`",
+        }
+    }
+
+    /// Reads an implication, or what it consists of.
+    fn formula(&mut self) -> Result<Expression, ConditionFault> {
+        let cause = self.any()?;
+        if self.known.requirement.is_none() || !self.take("implies") {
+            return Ok(cause);
+        }
+        Ok(Expression::Any(vec![cause.negated(), self.formula()?]))
+    }
+
     fn any(&mut self) -> Result<Expression, ConditionFault> {
         let mut all = vec![self.all()?];
         while self.take("or") {
@@ -89,10 +139,10 @@ impl<'a> Parser<'a> {
     }
 
     fn all(&mut self) -> Result<Expression, ConditionFault> {
-        let mut all = vec![self.one()?];
+        let mut all = vec![self.until()?];
         self.refuse_foreign_signs()?;
         while self.take("and") {
-            all.push(self.one()?);
+            all.push(self.until()?);
             self.refuse_foreign_signs()?;
         }
         Ok(if all.len() == 1 { all.remove(0) } else { Expression::All(all) })
@@ -118,13 +168,21 @@ impl<'a> Parser<'a> {
             return Err(fault(self.next_part(), format!("has at most {DEEPEST} brackets within each other")));
         }
         let read = if self.take("(") {
-            let inner = self.any()?;
+            let inner = self.formula()?;
             if !self.take(")") {
                 return Err(fault(start..start + 1, "has a bracket that is not closed"));
             }
             inner
         } else if self.take("not") {
-            Expression::Not(Box::new(self.one()?))
+            self.one()?.negated()
+        } else if self.operator("always", Place::Window)? {
+            let window = self.window()?;
+            self.inside(Place::Window, Self::one)?.always(window)
+        } else if self.operator("eventually", Place::Window)? {
+            let window = self.window()?;
+            self.inside(Place::Window, Self::one)?.eventually(window)
+        } else if self.operator("when", Place::Outermost)? {
+            self.when()?
         } else {
             self.leaf()?
         };
@@ -161,7 +219,7 @@ impl<'a> Parser<'a> {
         } else if let Some(named) = self.known.numbers.and_then(|numbers| numbers.get(text)) {
             named.get()
         } else {
-            number_in(text, quantity.unit()).map_err(|why| fault(part.clone(), why))?
+            number_in(text, self.unit(quantity)).map_err(|why| fault(part.clone(), why))?
         };
         if quantity.is_clock() && number < 0.0 {
             return Err(fault(part, format!("compares a time with {number}, which is negative")));
@@ -170,15 +228,35 @@ impl<'a> Parser<'a> {
         Ok(Expression::Compared { quantity, comparison, limit: number })
     }
 
+    fn unit(&self, quantity: ModeQuantity) -> &'a str {
+        match (quantity, &self.known.requirement) {
+            (ModeQuantity::Metric(index, _), Some(names)) => names.metrics[index].1,
+            _ => quantity.unit(),
+        }
+    }
+
+    /// Reads a quantity: of a requirement, an estimate of the motion by its full name, or a metric.
     fn quantity(&mut self) -> Result<ModeQuantity, ConditionFault> {
         let part = self.next_part();
-        let word = &self.text[part.clone()];
+        let written = &self.text[part.clone()];
+        let is_of_requirement = self.known.requirement.is_some();
+        let word = written.strip_prefix("estimate.").filter(|_| is_of_requirement).unwrap_or(written);
+        let is_named = word.len() < written.len();
         if word.is_empty() {
             let end = self.text.len();
             return Err(fault(end.saturating_sub(1)..end, "needs a quantity at its end"));
         }
         self.at = part.end;
-        match ModeQuantity::from_word(word) {
+        match ModeQuantity::from_word(word).filter(|of| of.is_for(is_of_requirement)) {
+            Some(ModeWord::Plain(quantity)) if is_of_requirement && quantity.is_estimate() != is_named => {
+                let truth =
+                    if word == "attitude_error" { "pointing_error" } else { &format!("truth.{word}") };
+                let why = format!("must be `estimate.{word}` or the truth, `{truth}`, got `{written}`");
+                Err(fault(
+                    part,
+                    if quantity.is_estimate() { why } else { format!("must be `{word}`, got `{written}`") },
+                ))
+            }
             Some(ModeWord::Plain(quantity)) => Ok(quantity),
             Some(ModeWord::OfSensor(quantity)) => {
                 let (part, name) = self.argument(word, "sensor")?;
@@ -188,31 +266,49 @@ impl<'a> Parser<'a> {
                     fault(part, format!("must name one of the sensors, {listed}, got `{name}`"))
                 })
             }
-            Some(ModeWord::OfMode(quantity)) => self.mode(word).map(quantity),
+            Some(ModeWord::OfMode(quantity)) => {
+                let (part, name) = self.argument(word, "mode")?;
+                self.mode_index(part, name).map(quantity)
+            }
+            Some(ModeWord::OfLine(quantity)) => {
+                let (part, name) = self.argument(word, "point")?;
+                let points = self.known.requirement.as_ref().map_or(&[][..], |names| &names.points);
+                index_of(part, name, points, "points of the lines of sight").map(quantity)
+            }
             None => {
-                let why = if word.starts_with("truth.") {
+                if let Some(metric) = self.metric(word) {
+                    return Ok(metric);
+                }
+                let why = if word.starts_with("truth.") && !is_of_requirement {
                     "reads the truth, of which `truth.time`, `truth.run_time`, `truth.sunlight` and `truth.elevation(MODE)` \
                      have exact instants; test others on what the law knows"
                         .to_owned()
                 } else {
-                    let words: Vec<&str> = ModeQuantity::words().collect();
+                    let words: Vec<&str> = ModeQuantity::words(is_of_requirement).collect();
                     let hint = nearest(word, &words);
                     let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
-                    format!("must begin with a quantity, one of {}, got `{word}`{hint}", listed(&words))
+                    let or = if is_of_requirement { " or a metric" } else { "" };
+                    format!(
+                        "must begin with a quantity, one of {}{or}, got `{written}`{hint}",
+                        listed(&words)
+                    )
                 };
                 Err(fault(part, why))
             }
         }
     }
 
-    /// Reads a mode as the argument of a quantity, and returns its index.
-    fn mode(&mut self, word: &str) -> Result<usize, ConditionFault> {
-        let (part, name) = self.argument(word, "mode")?;
-        let index = self.known.modes.iter().position(|known| *known == name);
-        index.ok_or_else(|| {
-            let listed = listed(&self.known.modes);
-            fault(part, format!("must name one of the modes, {listed}, got `{name}`"))
-        })
+    fn mode_index(&self, part: Range<usize>, name: &str) -> Result<usize, ConditionFault> {
+        index_of(part, name, &self.known.modes, "modes")
+    }
+
+    /// Reads the rest of a metric, which may be an element of a list, such as `fuel_axes_kg[2]`.
+    fn metric(&mut self, word: &str) -> Option<ModeQuantity> {
+        let index = self.known.requirement.as_ref()?.metrics.iter().position(|(name, _)| *name == word)?;
+        let element = self.rest().strip_prefix('[').and_then(|rest| rest.split_once(']'));
+        let element = element.and_then(|(number, _)| Some((number.len() + 2, number.parse().ok()?)));
+        self.at += element.map_or(0, |(length, _)| length);
+        Some(ModeQuantity::Metric(index, element.map(|(_, number)| number)))
     }
 
     /// Reads the argument of a quantity: `(star_tracker)`.
@@ -238,12 +334,12 @@ impl<'a> Parser<'a> {
         let mut after_space = true;
         for (index, sign) in self.rest().char_indices() {
             let word = &self.rest()[index..];
-            let joins = after_space && ["and", "or"].contains(&&word[..word_length(word)]);
+            let joins = after_space && JOINTS.contains(&&word[..word_length(word)]);
             match sign {
                 '(' => depth += 1,
                 ')' if depth > 0 => depth -= 1,
                 ')' => end = self.at + index,
-                _ if joins || "&|".contains(sign) => end = self.at + index,
+                _ if joins || "&|:".contains(sign) => end = self.at + index,
                 _ => {}
             }
             if end < self.text.len() {
@@ -273,6 +369,12 @@ pub(super) fn sensor_index(name: &str, kinds: &[&str]) -> Option<usize> {
     of_kind.nth(place).map(|(index, _)| index)
 }
 
+/// Returns the index of a name at a place of the text.
+fn index_of(part: Range<usize>, name: &str, known: &[&str], of: &str) -> Result<usize, ConditionFault> {
+    let index = known.iter().position(|known| *known == name);
+    index.ok_or_else(|| fault(part, format!("must name one of the {of}, {}, got `{name}`", listed(known))))
+}
+
 /// Returns names in quotes, separated by commas.
 pub(super) fn listed(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
@@ -287,7 +389,7 @@ mod tests {
         Vocabulary {
             sensors: vec!["gyro", "star_tracker", "star_tracker"],
             modes: vec!["safe", "point-2"],
-            numbers: None,
+            ..Vocabulary::default()
         }
     }
 

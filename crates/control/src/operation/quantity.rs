@@ -1,4 +1,4 @@
-//! Quantities that conditions of modes compare, each with its word, its unit and its formula.
+//! Quantities that conditions of modes and requirements compare, each with its word, its unit and its formula.
 
 use crate::flight_quantity::FlightQuantity::{
     self, Angle, Field, FieldRate, Rate, ReferenceAngle, ReferenceRate, StoredMomentum, WheelSpeed,
@@ -43,6 +43,20 @@ pub enum ModeQuantity {
     TrueSunlight,
     /// Elevation above the horizon of the ground site in the target of a mode (rad), at any instant.
     TrueElevation(usize),
+    /// Rotation from the reference attitude, or angle from the reference (rad), at any instant.
+    PointingError,
+    /// Norm of the true rate (rad/s), at any instant.
+    TrueRate,
+    /// Norm of the true rate relative to that of the reference (rad/s), at any instant.
+    TrueRateError,
+    /// Error of a line of sight (rad), at any instant.
+    LineOfSight(usize),
+    /// True in a mode.
+    Mode(usize),
+    /// True while a bright body blinds a sensor.
+    Blinded(usize),
+    /// Metric, or an element of it.
+    Metric(usize, Option<usize>),
 }
 
 /// Formula of a quantity over what the control system knows.
@@ -79,13 +93,26 @@ pub(super) enum ModeWord {
     OfSensor(fn(usize) -> ModeQuantity),
     /// Quantity of a mode.
     OfMode(fn(usize) -> ModeQuantity),
+    /// Quantity of a line of sight.
+    OfLine(fn(usize) -> ModeQuantity),
+}
+
+impl ModeWord {
+    /// Returns true if a condition of a mode may have the word, or a requirement if `is_requirement`.
+    pub(super) fn is_for(self, is_requirement: bool) -> bool {
+        let quantity = match self {
+            Plain(quantity) => quantity,
+            OfSensor(of) | OfMode(of) | OfLine(of) => of(0),
+        };
+        is_requirement || !quantity.is_of_requirements()
+    }
 }
 
 use ModeFormula::{Distance, LargestSize, Norm, Single};
-use ModeWord::{OfMode, OfSensor, Plain};
+use ModeWord::{OfLine, OfMode, OfSensor, Plain};
 
 /// Words of the quantities, with their units and formulas.
-const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 18] = [
+const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 24] = [
     ("time", Plain(ModeQuantity::Time), "s", Single),
     ("run_time", Plain(ModeQuantity::RunTime), "s", Single),
     ("rate", Plain(ModeQuantity::Rate), "rad/s", Norm(Rate)),
@@ -104,6 +131,12 @@ const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 18] = [
     ("entries", OfMode(ModeQuantity::Entries), "", Single),
     ("elevation", OfMode(ModeQuantity::Elevation), "rad", Single),
     ("truth.elevation", OfMode(ModeQuantity::TrueElevation), "rad", Single),
+    ("pointing_error", Plain(ModeQuantity::PointingError), "rad", Single),
+    ("truth.rate", Plain(ModeQuantity::TrueRate), "rad/s", Single),
+    ("truth.rate_error", Plain(ModeQuantity::TrueRateError), "rad/s", Single),
+    ("line_of_sight", OfLine(ModeQuantity::LineOfSight), "rad", Single),
+    ("mode", OfMode(ModeQuantity::Mode), "", Single),
+    ("blinded", OfSensor(ModeQuantity::Blinded), "", Single),
 ];
 
 impl ModeQuantity {
@@ -112,9 +145,9 @@ impl ModeQuantity {
         QUANTITIES.iter().find(|(known, ..)| *known == word).map(|(_, quantity, ..)| *quantity)
     }
 
-    /// Iterates over the words of all quantities, without arguments.
-    pub fn words() -> impl Iterator<Item = &'static str> {
-        QUANTITIES.iter().map(|(word, ..)| *word)
+    /// Iterates over the words of the quantities of modes, and of requirements if `all`, without arguments.
+    pub fn words(all: bool) -> impl Iterator<Item = &'static str> {
+        QUANTITIES.iter().filter(move |(_, word, ..)| word.is_for(all)).map(|(word, ..)| *word)
     }
 
     /// Iterates over the vectors and lists that the formulas read.
@@ -128,12 +161,15 @@ impl ModeQuantity {
             Self::Silent(index)
             | Self::Elevation(index)
             | Self::Entries(index)
-            | Self::TrueElevation(index) => index,
+            | Self::TrueElevation(index)
+            | Self::LineOfSight(index)
+            | Self::Mode(index)
+            | Self::Blinded(index) => index,
             _ => 0,
         };
         let is_own = |word: ModeWord| match word {
             Plain(quantity) => quantity == self,
-            OfSensor(of) | OfMode(of) => of(argument) == self,
+            OfSensor(of) | OfMode(of) | OfLine(of) => of(argument) == self,
         };
         let found = QUANTITIES.iter().find(|(_, word, ..)| is_own(*word));
         found.map_or(("", Single), |(.., unit, formula)| (*unit, *formula))
@@ -151,7 +187,28 @@ impl ModeQuantity {
 
     /// Returns true if the quantity is a boolean.
     pub fn is_boolean(self) -> bool {
-        self == Self::LockLost
+        matches!(self, Self::LockLost | Self::Mode(_) | Self::Blinded(_))
+    }
+
+    /// Returns true for a quantity that nothing on board knows, and that only requirements compare.
+    pub fn is_of_requirements(self) -> bool {
+        self.is_of_motion() || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Metric(..))
+    }
+
+    /// Returns true for a quantity of the true motion.
+    pub fn is_of_motion(self) -> bool {
+        matches!(self, Self::PointingError | Self::TrueRate | Self::TrueRateError | Self::LineOfSight(_))
+    }
+
+    /// Returns true for a quantity of the estimated motion.
+    pub fn is_estimate(self) -> bool {
+        matches!(self, Self::Rate | Self::RateError | Self::AttitudeError)
+    }
+
+    /// Returns true for a quantity whose values follow from the time and from its value at an instant: the time itself, and
+    /// times since an event.
+    pub fn grows_with_time(self) -> bool {
+        self.is_clock() || matches!(self, Self::Silent(_))
     }
 
     /// Returns true for a quantity of the truth, whose condition is met at an exact instant.

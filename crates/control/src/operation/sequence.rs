@@ -62,6 +62,11 @@ impl ModeSequence {
         Instant::from_ticks(self.supervisor.entered)
     }
 
+    /// Returns the number of times that a mode was entered, the start included.
+    pub fn entries(&self, mode: usize) -> u64 {
+        self.tables.modes[mode].entries
+    }
+
     /// Returns the name of a mode.
     pub fn name(&self, mode: usize) -> &str {
         self.tables.names.get(mode).map_or("", String::as_str)

@@ -193,12 +193,14 @@ impl CampaignAnswer {
         };
         let mut requirements: Vec<CampaignRequirement> = verdicts.iter().enumerate().map(own).collect();
         let worst_margin = |own: &CampaignRequirement| own.margin.map_or(f64::NEG_INFINITY, |own| own.worst);
-        requirements.sort_by(|a, b| a.met.cmp(&b.met).then(worst_margin(a).total_cmp(&worst_margin(b))));
+        requirements.sort_by(|a, b| {
+            b.decision.fails().cmp(&a.decision.fails()).then(worst_margin(a).total_cmp(&worst_margin(b)))
+        });
         let met = if requirements.is_empty() {
             let has_goal = scenario.reference.band.is_some() && runs.goals[1] > 0;
             has_goal.then(|| MetShare::new(runs.goals[0], runs.runs))
         } else {
-            Some(MetShare::new(runs.count_meeting_all(&verdicts), runs.runs))
+            Some(MetShare::new(runs.count_meeting_all(verdicts.len()), runs.runs))
         };
         let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs);
         let repeat = directory.zip(requirements.first()).map(|(directory, first)| {
@@ -222,13 +224,8 @@ impl CampaignAnswer {
 
 impl CampaignRuns {
     /// Returns the number of runs that meet all requirements.
-    fn count_meeting_all(&self, verdicts: &[RequirementVerdict]) -> u64 {
-        let meets = |row: usize| {
-            let own = |(index, verdict): (usize, &RequirementVerdict)| {
-                self.requirements.values(index)[row] <= verdict.requirement.limit
-            };
-            verdicts.iter().enumerate().all(own)
-        };
+    fn count_meeting_all(&self, verdicts: usize) -> u64 {
+        let meets = |row: usize| (0..verdicts).all(|index| self.requirements.is_met(index, row));
         (0..self.requirements.numbers().len()).filter(|row| meets(*row)).count() as u64
     }
 }
@@ -342,12 +339,7 @@ fn texts(
 
 impl CampaignRequirementText {
     fn with_share(self, share: &MetShare, verdict: &RequirementVerdict) -> Self {
-        Self {
-            met: format!("{} of {}", share.runs_met, verdict.runs),
-            share_interval: share.interval_text(),
-            note: verdict.note(),
-            ..self
-        }
+        Self { met: verdict.met_text(), share_interval: share.interval_text(), note: verdict.note(), ..self }
     }
 }
 

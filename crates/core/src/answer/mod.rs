@@ -25,7 +25,7 @@ use flexsc_formats::reader_units::ReaderUnits;
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
-use crate::metrics::Metrics;
+use crate::metrics::{MetricValue, Metrics};
 use crate::requirement_verdict::{self, RequirementVerdict};
 
 pub use campaign_answer::{
@@ -46,6 +46,7 @@ pub use verdict::{GoalAnswer, RunVerdict};
 pub use warning::{Warning, WarningKind};
 
 use lines::RunData;
+use run_observer::LargestSample;
 
 /// Name and version of the structure.
 const SCHEMA: &str = "flexsc-answer-1";
@@ -103,7 +104,8 @@ impl Answer {
             verdict::verdict(&requirements, goal.as_ref(), &warnings)
         };
         // Missed ones first, then by margin.
-        requirements.sort_by(|a, b| a.met.cmp(&b.met).then(a.margin.total_cmp(&b.margin)));
+        requirements
+            .sort_by(|a, b| b.decision.fails().cmp(&a.decision.fails()).then(a.margin.total_cmp(&b.margin)));
         let (by_mode, lines) = if diverges { Default::default() } else { (run.by_mode(), run.lines()) };
         let mut events = observed.map_or_else(Vec::new, |observed| observed.events.clone());
         events.extend(run.losses());
@@ -130,11 +132,26 @@ impl Answer {
 impl RunData<'_> {
     fn requirements(&self, verdicts: &[RequirementVerdict]) -> Vec<RequirementAnswer> {
         let peaks = self.observed.map_or(&[][..], |observed| &observed.peaks);
+        let times = self.metrics.get("requirement_times_s").map_or_else(Vec::new, MetricValue::numbers);
         let answer = |(index, verdict): (usize, &RequirementVerdict)| {
-            let peak = peaks.get(index).copied().flatten();
+            let time = times.get(index).copied().unwrap_or(f64::NAN);
+            // The value of a requirement over time is the one that decides.
+            let mode = self.mode_at(time);
+            let deciding = LargestSample { value: verdict.value, at: time, mode };
+            let peak =
+                peaks.get(index).copied().flatten().or(Some(deciding).filter(|own| own.at.is_finite()));
             RequirementAnswer::new(self, (index, verdict), peak)
         };
         verdicts.iter().enumerate().map(answer).collect()
+    }
+
+    /// Returns the index of the mode of operation at a time (s), if the run was observed; that of none otherwise.
+    fn mode_at(&self, t: f64) -> usize {
+        let events = self.observed.map_or(&[][..], |observed| &observed.events);
+        let event =
+            events.iter().filter(|event| event.kind == EventKind::Mode).rfind(|event| event.from_s <= t);
+        let mode = event.and_then(|event| self.scenario.mode.iter().position(|mode| mode.name == event.part));
+        mode.unwrap_or(usize::MAX)
     }
 
     fn duration_text(&self) -> String {

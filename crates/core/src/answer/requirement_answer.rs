@@ -1,6 +1,7 @@
 //! Requirement in the answer: value, limit, margin, and the largest value with its instant, in the unit of the limit.
 
 use flexsc_formats::reader_units::{number, percent};
+use flexsc_scenario::RequirementSource;
 use serde::Serialize;
 
 use super::lines::RunData;
@@ -31,6 +32,8 @@ pub struct RequirementAnswer {
     pub margin: f64,
     /// Whether the requirement is met.
     pub met: bool,
+    /// `met`, `missed`, `undecided` (the run ends too early) or `not_exercised` (nothing was to meet it).
+    pub decision: Decision,
     /// Largest value in the time that counts, with its instant.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest: Option<LargestValue>,
@@ -62,9 +65,13 @@ pub struct RequirementText {
     /// Margin; absent without a value.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub margin: String,
-    /// Largest value with instant and mode; absent without one, or if it is the value.
+    /// Largest value, or of a requirement over time the one that decides, with instant and mode; absent without one, or if it is
+    /// the value.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub largest: String,
+    /// Word before it.
+    #[serde(skip)]
+    pub(super) largest_word: &'static str,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde calls")]
@@ -87,6 +94,8 @@ impl RequirementAnswer {
         let largest = peak.filter(|peak| peak.value.is_finite());
         let largest =
             largest.map(|peak| LargestValue { value: peak.value, at_s: peak.at, mode: mode(peak.mode) });
+        // The value of a requirement over time is that at the instant that decides.
+        let is_timed = matches!(requirement.source, RequirementSource::Formula(_));
         let margin = (limit - value) / limit;
         let with_unit = |number: String| match &*unit.name {
             "" => number,
@@ -95,19 +104,21 @@ impl RequirementAnswer {
         let text = RequirementText {
             unit: unit.name.to_string(),
             limit: unit.limit(limit, written),
-            value: if value.is_finite() {
-                with_unit(unit.beside(value, limit))
-            } else {
-                "no value".to_owned()
+            value: match decision {
+                _ if value.is_finite() => with_unit(unit.beside(value, limit)),
+                Decision::Undecided => "undecided, the run ends too early".to_owned(),
+                Decision::NotExercised => "not exercised".to_owned(),
+                Decision::Met | Decision::Missed => "no value".to_owned(),
             },
             margin: margin_text(margin, value / limit),
-            largest: largest.as_ref().filter(|own| own.value != value || own.mode.is_some()).map_or_else(
-                String::new,
-                |own| {
+            largest: largest
+                .as_ref()
+                .filter(|own| is_timed || own.value != value || own.mode.is_some())
+                .map_or_else(String::new, |own| {
                     let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
                     format!("{} at {} s{mode}", unit.quantity(own.value), number(own.at_s))
-                },
-            ),
+                }),
+            largest_word: if is_timed { "decided by" } else { "largest" },
         };
         Self {
             id: requirement_id(index),
@@ -118,6 +129,7 @@ impl RequirementAnswer {
             value,
             margin,
             met: *decision == Decision::Met,
+            decision: *decision,
             largest,
             text,
         }

@@ -53,7 +53,7 @@ impl RunComparison {
                 own.map_or_else(
                     || "not required".to_owned(),
                     |own| {
-                        let mark = if own.met { "✓" } else { "✗" };
+                        let mark = own.decision.mark();
                         let margin = Some(&own.text.margin).filter(|text| !text.is_empty());
                         let margin = margin.map_or_else(String::new, |margin| format!(" ({margin})"));
                         format!("{mark} {}{margin}", own.text.value)

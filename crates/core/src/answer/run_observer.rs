@@ -8,7 +8,7 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
     BlindingEvent, FaultEvent, LineOfSightSample, ModeEvent, Onset, Record, RecordError, RequirementErrors,
-    Sample, ThreeAxisCycle, Wheels,
+    RequirementScopes, Sample, ThreeAxisCycle, Wheels,
 };
 use flexsc_scenario::{RequirementSource, Scenario};
 
@@ -108,7 +108,7 @@ impl RunObserver {
         let of_mode = |mode: &OperatingMode| observed(mode.target.is_some() || !scenario.has_mode_targets());
         let modes: Vec<ModeObserved> = scenario.mode.iter().map(of_mode).collect();
         let stream = |source: &RequirementSource| match source {
-            RequirementSource::Metric(..) => None,
+            RequirementSource::Metric(..) | RequirementSource::Formula(_) => None,
             RequirementSource::Error(error) => {
                 Some((ErrorStream::new(error), LargestSample { value: f64::NAN, at: f64::NAN, mode: 0 }))
             }
@@ -299,6 +299,15 @@ impl Record for RunObserver {
             && let Some(errors) = sample.get::<RequirementErrors>()
         {
             errors.0.iter().for_each(|own| self.push(now, own.requirement, Vector::from(own.error)));
+        }
+        if self.has_errors
+            && let Some(scopes) = sample.get::<RequirementScopes>()
+        {
+            for scope in &scopes.0 {
+                if let Some(Some((stream, _))) = self.requirements.get_mut(scope.requirement) {
+                    stream.set_counts(scope.counts);
+                }
+            }
         }
         if let Sample::Row(row) = sample {
             row.downcast().into_iter().for_each(|event| self.observe_mode(event));

@@ -97,12 +97,12 @@ impl Answer {
                 text => format!("{word} {text}"),
             };
             vec![
-                if own.met { "✓" } else { "✗" }.to_owned(),
+                own.decision.mark().to_owned(),
                 own.name.clone(),
                 own.text.value.clone(),
                 format!("at most {}", own.text.limit),
                 if own.margin < -1.0 { own.text.margin.clone() } else { prefix("margin", &own.text.margin) },
-                prefix("largest", &own.text.largest),
+                prefix(own.text.largest_word, &own.text.largest),
             ]
         };
         let rows: Vec<Vec<String>> = self.requirements.iter().take(shown).map(cells).collect();

@@ -8,6 +8,7 @@ use super::lines::RunData;
 use super::requirement_answer::RequirementAnswer;
 use super::warning::Warning;
 use crate::metrics::MetricValue;
+use crate::requirement_verdict::Decision;
 
 /// RunVerdict on a run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
@@ -71,14 +72,20 @@ pub(super) fn verdict(
     goal: Option<&GoalAnswer>,
     warnings: &[Warning],
 ) -> (RunVerdict, String) {
-    let missed = requirements.iter().filter(|own| !own.met).count();
+    let count = |decision| requirements.iter().filter(|own| own.decision == decision).count();
+    let (missed, undecided) = (count(Decision::Missed), count(Decision::Undecided));
     let (all, of_all) = (requirements.len(), counted(requirements.len(), "requirement"));
     if missed > 0 {
         return (RunVerdict::Missed, format!("MISSED: {missed} of {of_all}"));
     }
+    if undecided > 0 {
+        return (RunVerdict::Missed, format!("undecided: {undecided} of {of_all}"));
+    }
     let but = warnings.iter().find_map(|warning| warning.kind.reason(warning));
     if all > 0 {
-        let met = format!("{all} of {of_all} met");
+        let idle = count(Decision::NotExercised);
+        let not = if idle > 0 { format!(", {idle} not exercised") } else { String::new() };
+        let met = format!("{} of {of_all} met{not}", all - idle);
         return match but {
             Some(why) => (RunVerdict::MetBut, format!("{met}, but {why}")),
             None => (RunVerdict::Met, met),

@@ -72,6 +72,16 @@ impl CampaignRuns {
         self.failed += u64::from(metrics.is_none());
     }
 
+    /// Returns the number of runs.
+    pub fn count(&self) -> u64 {
+        self.runs
+    }
+
+    /// Returns true if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
+    pub fn are_decided(&self, total: u64) -> bool {
+        !self.requirements.is_empty() && self.requirements.are_decided(total)
+    }
+
     /// Returns the verdicts on the requirements, in their order; none without a run.
     pub fn verdicts(&self) -> Vec<RequirementVerdict> {
         self.requirements.clone().finish()

@@ -1,7 +1,7 @@
 //! Record of all values of the pointing indices that requirements limit, for budgets.
 
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Record, RecordError, Sample};
+use flexsc_record::{Record, RecordError, RequirementScopes, Sample};
 
 use super::requirements::RequirementMetrics;
 use flexsc_scenario::Scenario;
@@ -30,6 +30,7 @@ impl Record for IndexRecord {
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         sample.get().into_iter().for_each(|errors| self.0.observe(errors));
+        sample.get().into_iter().for_each(|of: &RequirementScopes| self.0.observe_scopes(&of.0));
         sample.get().into_iter().for_each(|row| self.0.observe_line(now, row));
         Ok(())
     }

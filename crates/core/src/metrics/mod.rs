@@ -21,7 +21,9 @@ mod tracking;
 
 use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{self, Estimate, Estimates, Record, RecordError, Sample};
+use flexsc_record::{
+    self, Estimate, Estimates, Record, RecordError, RequirementScopes, RobustnessOfRequirements, Sample,
+};
 use flexsc_spacecraft::body::BodyAxes;
 
 use flexsc_scenario::Scenario;
@@ -37,7 +39,7 @@ pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedM
 
 pub use envelope::METRICS as OF_ENVELOPE;
 pub use index_record::IndexRecord;
-pub(crate) use requirements::{ErrorStream, metric_value};
+pub(crate) use requirements::{ErrorStream, is_not_exercised, metric_value};
 pub use selection::Selection;
 
 use adaptation::AdaptationMetrics;
@@ -216,6 +218,12 @@ impl Record for MetricsCollector {
         }
         if !self.requirements.is_empty() {
             sample.get().into_iter().for_each(|errors| self.requirements.observe(errors));
+            sample
+                .get()
+                .into_iter()
+                .for_each(|of: &RequirementScopes| self.requirements.observe_scopes(&of.0));
+            let all = sample.get().into_iter();
+            all.for_each(|of: &RobustnessOfRequirements| self.requirements.observe_robustness(&of.0));
         }
         if let (Some(operation), Some(event)) = (&mut self.operation, sample.get()) {
             operation.observe(now, event);

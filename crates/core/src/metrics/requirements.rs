@@ -2,12 +2,13 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{LineOfSightSample, RequirementErrors};
+use flexsc_record::{LineOfSightSample, RequirementErrors, RequirementRobustness, RequirementScope};
 
 use super::goal;
 use super::pointing_index::{IndexStream, LargestValues};
 use super::{
-    MetricValue, Metrics, NamedMetric, NumberWithUnit, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES,
+    MetricValue, Metrics, NamedMetric, NumberWithUnit, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_TIMES,
+    REQUIREMENT_VALUES,
 };
 use flexsc_scenario::metric_descriptions;
 use flexsc_scenario::{
@@ -34,6 +35,8 @@ enum ValueSource {
     Metric(String, Option<usize>),
     /// Values of a pointing index.
     Index(Box<IndexValues>),
+    /// Robustness of an expression over time, once the run has ended, and its scale.
+    Formula(Option<RequirementRobustness>, f64),
 }
 
 /// Pointing index of the sampled error of a requirement.
@@ -41,16 +44,21 @@ enum ValueSource {
 pub struct ErrorStream {
     error: SampledError,
     stream: IndexStream,
+    /// True while samples count.
+    counts: bool,
 }
 
 impl ErrorStream {
     /// Creates a stream without samples.
     pub fn new(error: &SampledError) -> Self {
-        Self { error: error.clone(), stream: IndexStream::new(error.index) }
+        Self { error: error.clone(), stream: IndexStream::new(error.index), counts: true }
     }
 
     /// Takes a sample of the error about the body's axes, and gives the values of the index that follow from it.
     pub fn push(&mut self, error: Vector, take: impl FnMut(Vector)) {
+        if !self.counts {
+            return;
+        }
         let error = match self.error.axis {
             None => error,
             Some(ErrorAxis::X) => Vector::new(error.x, 0.0, 0.0),
@@ -58,6 +66,12 @@ impl ErrorStream {
             Some(ErrorAxis::Z) => Vector::new(0.0, 0.0, error.z),
         };
         self.stream.push(error, take);
+    }
+
+    /// Lets samples count from now on, or not; a window of the index holds samples that count one after another.
+    pub fn set_counts(&mut self, counts: bool) {
+        self.counts = counts;
+        self.stream = IndexStream::new(self.error.index);
     }
 
     /// Returns true if a sample of a line of sight is one of the error.
@@ -124,6 +138,7 @@ impl RequirementMetrics {
                     error,
                     error.is_component(scenario.axis_count()),
                 ))),
+                RequirementSource::Formula(formula) => ValueSource::Formula(None, formula.scale),
             },
         };
         Self(scenario.study.requirements.iter().map(values).collect())
@@ -149,7 +164,7 @@ impl RequirementMetrics {
     pub fn into_values(self) -> Vec<Vec<f64>> {
         let values = |source| match source {
             ValueSource::Index(values) => values.all.unwrap_or_default(),
-            ValueSource::Metric(..) => Vec::new(),
+            ValueSource::Metric(..) | ValueSource::Formula(..) => Vec::new(),
         };
         self.0.into_iter().map(|of| values(of.source)).collect()
     }
@@ -158,7 +173,7 @@ impl RequirementMetrics {
     pub fn required_metrics(&self) -> impl Iterator<Item = &'static str> {
         let names = self.0.iter().filter_map(|values| match &values.source {
             ValueSource::Metric(name, _) => Some(name.as_str()),
-            ValueSource::Index(_) => None,
+            ValueSource::Index(_) | ValueSource::Formula(..) => None,
         });
         names.filter_map(|name| Some(metric_descriptions::meaning(name, None)?.name))
     }
@@ -170,6 +185,28 @@ impl RequirementMetrics {
                 self.0.get_mut(sampled.requirement)
             {
                 values.push(Vector::from(sampled.error), *limit);
+            }
+        }
+    }
+
+    /// Records that requirements begin or cease to count.
+    pub fn observe_scopes(&mut self, scopes: &[RequirementScope]) {
+        for scope in scopes {
+            if let Some(RequirementValues { source: ValueSource::Index(values), .. }) =
+                self.0.get_mut(scope.requirement)
+            {
+                values.errors.set_counts(scope.counts);
+            }
+        }
+    }
+
+    /// Records the robustness of the requirements over time.
+    pub fn observe_robustness(&mut self, all: &[RequirementRobustness]) {
+        for own in all {
+            if let Some(RequirementValues { source: ValueSource::Formula(found, _), .. }) =
+                self.0.get_mut(own.requirement)
+            {
+                *found = Some(*own);
             }
         }
     }
@@ -190,8 +227,10 @@ impl RequirementMetrics {
         if self.0.is_empty() {
             return Vec::new();
         }
-        let (mut values, mut shares, mut is_met) = (Vec::new(), Vec::new(), true);
+        let (mut values, mut shares, mut times, mut is_met) = (Vec::new(), Vec::new(), Vec::new(), true);
+        let has_formula = self.0.iter().any(|own| matches!(own.source, ValueSource::Formula(..)));
         for RequirementValues { unit, limit, source } in self.0 {
+            let mut time = f64::NAN;
             let (value, share) = match source {
                 ValueSource::Metric(name, element) => {
                     let value = metric_value(metrics, &name, element);
@@ -199,22 +238,51 @@ impl RequirementMetrics {
                     (value, share)
                 }
                 ValueSource::Index(values) => {
+                    let count = values.largest.count();
+                    let is_idle = count == 0 && values.errors.error.scope.is_some();
                     // Without values the share is 0/0: NaN.
-                    let share = values.within as f64 / values.largest.count() as f64;
+                    let share = if is_idle { 1.0 } else { values.within as f64 / count as f64 };
                     (values.largest.finish(), share)
                 }
+                ValueSource::Formula(found, scale) => {
+                    let (robustness, at) = found.map_or((None, f64::NAN), |own| (decided(&own), own.at));
+                    match robustness {
+                        Some(f64::INFINITY) => (f64::NAN, 1.0),
+                        Some(robustness) => {
+                            time = at;
+                            (limit - robustness * scale, f64::from(u8::from(robustness >= 0.0)))
+                        }
+                        None => (f64::NAN, f64::NAN),
+                    }
+                }
             };
-            // A value that is missing meets no limit.
-            is_met &= value <= limit;
+            // A value that is missing meets no limit, unless nothing in the run was to meet it.
+            is_met &= value <= limit || is_not_exercised(value, share);
+            times.push(time);
             values.push(NumberWithUnit { value, unit: unit.to_owned() });
             shares.push(share);
         }
-        vec![
+        let mut all = vec![
             (&REQUIREMENT, MetricValue::Word(goal::word(is_met))),
             (&REQUIREMENT_VALUES, MetricValue::Quantities(values)),
             (&REQUIREMENT_SHARES, MetricValue::Numbers(shares)),
-        ]
+        ];
+        if has_formula {
+            all.push((&REQUIREMENT_TIMES, MetricValue::Numbers(times)));
+        }
+        all
     }
+}
+
+/// Returns the robustness that decides, infinite if no part of the run was to meet anything; `None` if what follows the run
+/// decides.
+fn decided(own: &RequirementRobustness) -> Option<f64> {
+    if own.least >= 0.0 { Some(own.least) } else { Some(own.largest).filter(|largest| *largest < 0.0) }
+}
+
+/// Returns true if, by its value and share, nothing in a run was to meet a requirement.
+pub fn is_not_exercised(value: f64, share: f64) -> bool {
+    value.is_nan() && share == 1.0
 }
 
 /// Returns a metric, an element of a list, or its largest element; NaN if there is none.

@@ -3,11 +3,13 @@
 use flexsc_formats::document::nearest;
 
 use super::{
-    ALL, MetricDescription, Metrics, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_VALUES, list_element,
+    ALL, MetricDescription, Metrics, REQUIREMENT, REQUIREMENT_SHARES, REQUIREMENT_TIMES, REQUIREMENT_VALUES,
+    list_element,
 };
 
 /// Metrics of requirements, which are never left out.
-const OF_REQUIREMENTS: [&str; 3] = [REQUIREMENT.name, REQUIREMENT_VALUES.name, REQUIREMENT_SHARES.name];
+const OF_REQUIREMENTS: [&str; 4] =
+    [REQUIREMENT.name, REQUIREMENT_VALUES.name, REQUIREMENT_SHARES.name, REQUIREMENT_TIMES.name];
 
 /// Metrics in a campaign's table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use flexsc_formats::document::{ConfigError, ScenarioError, nearest};
 use super::box_search::{Assessed, BoxSearch};
 use super::{UncertainKey, WorstCase, WorstCaseFault, uncertain_box};
 use crate::campaign::{Campaign, CampaignRun, RunError};
-use crate::metrics::{self, Metrics, Selection, list_element, metric_value};
+use crate::metrics::{self, Metrics, Selection, is_not_exercised, list_element, metric_value};
 use flexsc_scenario::Scenario;
 use flexsc_scenario::metric_descriptions;
 
@@ -104,7 +104,11 @@ impl Looked {
         match self {
             Self::Metric { name, element, .. } => metric_value(metrics, name, *element),
             Self::Requirement { index, .. } => {
-                metric_value(metrics, metric_descriptions::REQUIREMENT_VALUES.name, Some(*index))
+                let element = |name: &str| metric_value(metrics, name, Some(*index));
+                let value = element(metric_descriptions::REQUIREMENT_VALUES.name);
+                // A run in which nothing was to meet the requirement is the best.
+                let share = element(metric_descriptions::REQUIREMENT_SHARES.name);
+                if is_not_exercised(value, share) { f64::NEG_INFINITY } else { value }
             }
         }
     }

@@ -37,6 +37,7 @@ from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._population import evaluate
 from flexsc._quantities import Quantities
+from flexsc._requirement import requirement
 from flexsc._result import Result, Samples
 from flexsc._row import Row
 from flexsc._sampled_loop import gain_region, robust_gains, stability_map
@@ -175,6 +176,7 @@ __all__ = [
     "read_log",
     "read_matrices",
     "relay_damping",
+    "requirement",
     "results",
     "rigid_cycles",
     "robust_gains",

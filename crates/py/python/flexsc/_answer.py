@@ -121,6 +121,24 @@ class Answer(_Fields):
         for name in ("warnings", "by_mode", "events"):
             setattr(self, name, tuple(fields.get(name, ())))
 
+    def robustness(self, name: str) -> float:
+        """Return (limit - value)/limit of a requirement: how far it is from failing; negative if it fails.
+
+        Infinity if nothing in the run was to meet it, NaN if the run ends too early or has no value.
+
+        Args:
+            name: Name of the requirement.
+
+        >>> round(answer.robustness("pointing"), 3)
+        0.74
+        """
+        for own in self.requirements:
+            if own["name"] == name:
+                missing = float("inf") if own["decision"] == "not_exercised" else float("nan")
+                return float(own.get("margin", missing))
+        names = ", ".join(f"`{own['name']}`" for own in self.requirements) or "none"
+        raise KeyError(f"no requirement `{name}`; the requirements are {names}")
+
 
 class CampaignAnswer(_Fields):
     """The answer of a campaign: how many runs meet what is asked, by how much, and what drives it.

@@ -5,11 +5,13 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{LineOfSightAxis, LineOfSightSample, Record, RecordError, Sample};
 use flexsc_spacecraft::environment::to_body;
 
+use crate::guidance::Guidance;
+use crate::plant::Plant;
 use crate::run_view::RunView;
 use flexsc_scenario::{LineOfSight, Scenario};
 
 /// Run-time state of the lines of sight.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LinesOfSight(Vec<MountedLine>);
 
 /// Line of sight of an instrument on its mount.
@@ -46,16 +48,22 @@ impl MountedLine {
         })
     }
 
-    /// Returns the sample of the line of sight with this index; `None` on a body with one axis.
-    fn sample(&self, index: usize, run: &RunView<'_>) -> Option<LineOfSightSample> {
-        let (truth, body) = (run.plant.truth(), run.plant.quantities().three_axis()?.body());
-        let sum = |shapes: &[Vector]| body.modal_rotation(shapes);
-        let bent = Vector::from(truth.elastic) + sum(&self.offsets);
+    /// Returns the rotation (rad) from the target direction to the actual one; `None` on a body with one axis.
+    fn error(&self, plant: &Plant, guidance: &Guidance, now: Instant) -> Option<Vector> {
+        let (truth, body) = (plant.truth(), plant.quantities().three_axis()?.body());
+        let bent = Vector::from(truth.elastic) + body.modal_rotation(&self.offsets);
         let instrument = truth.orientation.rotated_by(bent.into()).attitude()?;
-        let target = run.guidance.origin(run.now).attitude()?;
+        let target = guidance.origin(now).attitude()?;
         // The direction in the axes of the target.
         let seen: Vector = to_body(&(instrument.conjugate() * target), &self.direction);
-        let error = rotation_between(&self.direction, &seen);
+        Some(rotation_between(&self.direction, &seen))
+    }
+
+    /// Returns the sample of the line of sight with this index; `None` on a body with one axis.
+    fn sample(&self, index: usize, run: &RunView<'_>) -> Option<LineOfSightSample> {
+        let error = self.error(run.plant, run.guidance, run.now)?;
+        let body = run.plant.quantities().three_axis()?.body();
+        let sum = |shapes: &[Vector]| body.modal_rotation(shapes);
         let (turned, moved) = (sum(&self.rotations), sum(&self.displacements));
         let axis = |axis: usize| LineOfSightAxis {
             error_rad: error[axis],
@@ -74,6 +82,11 @@ impl LinesOfSight {
     /// Creates the lines of sight of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         Self(scenario.line_of_sight.iter().filter_map(|line| MountedLine::new(scenario, line)).collect())
+    }
+
+    /// Returns the rotation (rad) of a line of sight from its target direction; `None` on a body with one axis.
+    pub fn error(&self, line: usize, plant: &Plant, guidance: &Guidance, now: Instant) -> Option<Vector> {
+        self.0.get(line)?.error(plant, guidance, now)
     }
 
     /// Returns the next instant at which a line of sight is sampled.

@@ -16,6 +16,8 @@ mod scene_frames;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
 use flexsc_numerics::time::{Instant, Span};
+pub use lines_of_sight::LinesOfSight;
+
 use flexsc_record::{ModeEvent, Record, RecordError, Report, Sample};
 
 use super::controllers::LawDecision;
@@ -28,7 +30,6 @@ use cycle_rows::CycleRows;
 use failures::Failures;
 use flexsc_scenario::Scenario;
 use journal_events::JournalEvents;
-use lines_of_sight::LinesOfSight;
 use manoeuvre_end::ManoeuvreEnd;
 use motion_rows::MotionRows;
 use requirement_samples::RequirementSamples;
@@ -159,6 +160,7 @@ impl Recorder {
         if is_due {
             self.failures.record_due(run.now, &self.journal, record)?;
             self.accelerometers.record_due(run, record)?;
+            self.requirements.record_scopes(run, record)?;
             self.lines_of_sight.record_due(run, record)?;
             self.requirements.record_due(run, record)?;
         }

@@ -1,16 +1,29 @@
 //! Sampling of the errors that requirements limit: nothing in the loop reads them; metrics do.
 
-use flexsc_control::sensor::Orientation;
-use flexsc_numerics::attitude::Vector;
+use flexsc_control::operation::Expression;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Record, RecordError, Report, RequirementError, RequirementErrors, Sample};
+use flexsc_record::{
+    Record, RecordError, Report, RequirementError, RequirementErrors, RequirementScope, RequirementScopes,
+    Sample,
+};
 
-use crate::run_view::RunView;
-use flexsc_scenario::{RequirementSource, SampledQuantity, Scenario};
+use crate::run_view::{RunView, motion_error};
+use flexsc_scenario::{RequirementSource, SampledError, SampledQuantity, Scenario};
 
 /// Schedule of the samples of all requirements; lines of sight are sampled by themselves.
 #[derive(Clone, Debug)]
-pub struct RequirementSamples(Vec<SampleSchedule>);
+pub struct RequirementSamples {
+    schedules: Vec<SampleSchedule>,
+    scopes: Vec<ScopeState>,
+}
+
+/// Condition at which samples of a requirement count.
+#[derive(Clone, Debug)]
+struct ScopeState {
+    requirement: usize,
+    condition: Expression,
+    counts: bool,
+}
 
 /// Schedule of the samples of a requirement.
 #[derive(Clone, Debug)]
@@ -43,23 +56,53 @@ impl RequirementSamples {
             })
         };
         let sources = scenario.study.requirements.iter().map(|requirement| &requirement.source);
-        Self(sources.enumerate().filter_map(schedule).collect())
+        let scope = |(requirement, source): (usize, &RequirementSource)| {
+            let RequirementSource::Error(SampledError { scope: Some((condition, _)), .. }) = source else {
+                return None;
+            };
+            Some(ScopeState { requirement, condition: condition.clone(), counts: true })
+        };
+        Self {
+            schedules: sources.clone().enumerate().filter_map(schedule).collect(),
+            scopes: sources.enumerate().filter_map(scope).collect(),
+        }
     }
 
     /// Returns the next instant at which an error is sampled.
     pub fn due(&self) -> Option<Instant> {
-        self.0.iter().filter(|one| one.next <= one.to).map(|one| one.next).min()
+        self.schedules.iter().filter(|one| one.next <= one.to).map(|one| one.next).min()
+    }
+
+    /// Records which requirements count from the current instant on, if that changes; before its samples.
+    pub fn record_scopes(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
+        let mut changed = Vec::new();
+        for scope in &mut self.scopes {
+            let counts = run.meets(&scope.condition);
+            if counts != scope.counts {
+                scope.counts = counts;
+                changed.push(RequirementScope { requirement: scope.requirement, counts });
+            }
+        }
+        if changed.is_empty() {
+            return Ok(());
+        }
+        let mut report = Report::new();
+        report.add_value(RequirementScopes(changed));
+        record.record(run.now, Sample::Report(&report))
     }
 
     /// Samples the errors that are due, after all parts have acted.
     pub fn record_due(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         let mut due = Vec::new();
-        for one in &mut self.0 {
+        for one in &mut self.schedules {
             if one.next > run.now || one.next > one.to {
                 continue;
             }
             one.next = run.now + one.period;
-            due.push(RequirementError { requirement: one.requirement, error: error(run, one.is_rate) });
+            due.push(RequirementError {
+                requirement: one.requirement,
+                error: motion_error(run.plant, run.guidance, run.now, one.is_rate),
+            });
         }
         if due.is_empty() {
             return Ok(());
@@ -68,20 +111,4 @@ impl RequirementSamples {
         report.add_value(RequirementErrors(due));
         record.record(run.now, Sample::Report(&report))
     }
-}
-
-/// Returns the error of the attitude (rad) or of the rate (rad/s) about the body's axes.
-fn error(run: &RunView<'_>, is_rate: bool) -> [f64; 3] {
-    let truth = run.plant.truth();
-    if run.plant.quantities().one_axis().is_some() {
-        let (angle, rate) = run.guidance.manoeuvre_state(run.now);
-        let of_angle = || truth.orientation.error_from(&Orientation::Angle(angle));
-        return if is_rate { [truth.rate[0] - rate, 0.0, 0.0] } else { of_angle() };
-    }
-    let error = truth.orientation.error_from(&run.guidance.origin(run.now));
-    if !is_rate {
-        return error;
-    }
-    let reference = run.guidance.reference_rate(run.now, &Vector::from(error));
-    (Vector::from(truth.rigid_rate) - reference).into()
 }

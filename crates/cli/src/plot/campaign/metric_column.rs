@@ -119,6 +119,6 @@ pub fn required_metric(requirement: &AssessedRequirement) -> Option<String> {
     match &requirement.source {
         RequirementSource::Metric(name, None) => Some(name.clone()),
         RequirementSource::Metric(name, Some(index)) => Some(format!("{name}[{index}]")),
-        RequirementSource::Error(_) => None,
+        RequirementSource::Error(_) | RequirementSource::Formula(_) => None,
     }
 }

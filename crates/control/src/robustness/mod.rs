@@ -1,0 +1,115 @@
+//! Robustness of requirements over time: by how much an expression holds or fails, on signals that are known piece by piece.
+//!
+//! The robustness of a comparison is the distance of the quantity from its limit divided by the limit (by 1 if the limit is 0),
+//! of a flag 1 or -1, and of both negative where they do not hold. `not` changes the sign; `and` and `always` take the
+//! least, `or` and `eventually` the largest. Both are those of the signals at all times, not at samples.
+
+mod point;
+mod stream;
+
+use flexsc_numerics::signal::{Piece, Witnessed};
+
+use crate::operation::{Comparison, Expression, ModeQuantity};
+use point::PointRobustness;
+
+/// Robustness of a requirement at the start of a run, found while the run goes on.
+#[derive(Clone, Debug)]
+pub struct RequirementMonitor {
+    point: PointRobustness,
+    /// Comparisons and flags, in the order of the expression.
+    leaves: Vec<Leaf>,
+}
+
+/// Comparison or flag, as a multiple of its quantity plus an offset.
+#[derive(Copy, Clone, Debug)]
+struct Leaf {
+    quantity: ModeQuantity,
+    gain: f64,
+    offset: f64,
+}
+
+/// Part of all signals between two times.
+#[derive(Copy, Clone)]
+enum Chunk<'a> {
+    /// Pieces of each leaf.
+    Known(&'a [Vec<Piece>]),
+    /// Time after the end of the run (s), where nothing is known; the requirement is to have this sign there.
+    After(f64, f64),
+}
+
+/// Least and largest robustness that a requirement may have, whatever follows the run.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct RobustnessRange {
+    /// Least.
+    pub low: Witnessed,
+    /// Largest.
+    pub high: Witnessed,
+}
+
+impl RequirementMonitor {
+    /// Creates the monitor of an expression for a run of this length (s).
+    pub fn new(expression: &Expression, end: f64) -> Self {
+        let mut leaves = Vec::new();
+        add_leaves(expression, &mut leaves);
+        Self { point: PointRobustness::new(expression, [0.0, end], &mut 0), leaves }
+    }
+
+    /// Iterates over the quantities whose signals the monitor reads, in the order of their pieces.
+    pub fn quantities(&self) -> impl Iterator<Item = ModeQuantity> {
+        self.leaves.iter().map(|leaf| leaf.quantity)
+    }
+
+    /// Takes the pieces of each quantity between two times; they continue those before. A comparison with a value that is
+    /// not known, NaN, does not hold.
+    pub fn push(&mut self, pieces: &[&[Piece]]) {
+        let scaled = |(source, (of, leaf)): (usize, (&&[Piece], &Leaf))| -> Vec<Piece> {
+            let scaled = |piece: &Piece| {
+                if piece.at(piece.from).value.is_nan() {
+                    return Piece::constant(piece.from, piece.to, f64::NEG_INFINITY, source);
+                }
+                Piece { source, ..piece.clone().scaled(leaf.gain, leaf.offset) }
+            };
+            of.iter().map(scaled).collect()
+        };
+        let leaves: Vec<Vec<Piece>> = pieces.iter().zip(&self.leaves).enumerate().map(scaled).collect();
+        self.point.push(Chunk::Known(&leaves));
+    }
+
+    /// Returns true if a part of the run up to `to` (s) cannot change the robustness while each quantity, in the order of
+    /// [`Self::quantities`], stays within a range.
+    pub fn ignores(&self, to: f64, ranges: impl Iterator<Item = [f64; 2]>) -> bool {
+        let scaled = |(range, leaf): ([f64; 2], &Leaf)| {
+            let [one, other] = range.map(|value| leaf.offset + leaf.gain * value);
+            [one.min(other), one.max(other)]
+        };
+        let ranges: Vec<[f64; 2]> = ranges.zip(&self.leaves).map(scaled).collect();
+        ranges.iter().flatten().all(|end| !end.is_nan()) && self.point.ignores(to, &ranges)
+    }
+
+    /// Returns the robustness of a run that has ended at `end` (s).
+    pub fn finish(self, end: f64) -> RobustnessRange {
+        let with = |mut point: PointRobustness, sign: f64| {
+            point.push(Chunk::After(end, sign * f64::INFINITY));
+            point.value()
+        };
+        RobustnessRange { low: with(self.point.clone(), -1.0), high: with(self.point, 1.0) }
+    }
+}
+
+/// Appends the comparisons and flags of an expression, in its order.
+fn add_leaves(expression: &Expression, leaves: &mut Vec<Leaf>) {
+    leaves.extend(expression.comparisons().into_iter().map(|(quantity, compared)| match compared {
+        None => Leaf { quantity, gain: 2.0, offset: -1.0 },
+        Some((comparison, limit)) => {
+            let scale = if limit == 0.0 { 1.0 } else { limit.abs() };
+            let sign = match comparison {
+                Comparison::Below | Comparison::AtMost => -1.0,
+                Comparison::Above | Comparison::AtLeast => 1.0,
+            };
+            Leaf { quantity, gain: sign / scale, offset: -sign * limit / scale }
+        }
+    }));
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,252 @@
+//! Requirements over time: the signals that they read, piece by piece, and their robustness at the end of the run.
+//!
+//! What the control system knows is constant from one sample or decision to the next, and times grow. The true motion is that
+//! of the body over each segment: about one axis the series of its closed form, about three axes polynomials through the
+//! motion of a copy of the plant. Instants at which only the record gets rows change none of them.
+
+mod motion;
+
+use std::sync::Arc;
+
+use flexsc_control::operation::ModeQuantity;
+use flexsc_control::robustness::RequirementMonitor;
+use flexsc_numerics::polynomial::{Polynomial, TERMS};
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::signal::{Curve, Piece, Shape, fit};
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Record, RecordError, Report, RequirementRobustness, RobustnessOfRequirements, Sample};
+
+use super::guidance::Guidance;
+use super::loads::Loads;
+use super::mode_sky::ModeSky;
+use super::motion_limits::{MotionLimits, modal_rotation};
+use super::plant::Plant;
+use super::recorder::LinesOfSight;
+use super::run_view::RunView;
+use flexsc_scenario::{RequirementSource, Scenario};
+
+/// Longest part (s) over which a quantity of the sky is fitted.
+const SKY_REACH: f64 = 20.0;
+/// Part of a limit to which quantities are fitted, and the least tolerance, by rounding.
+const TOLERANCE: f64 = 1e-10;
+const ROUNDING: f64 = 4e-15;
+
+/// Requirements over time of a run.
+#[derive(Clone, Debug, Default)]
+pub struct RequirementMonitors {
+    /// Monitors with the indices of their requirements, and for each of their comparisons that of its quantity.
+    monitors: Vec<(usize, RequirementMonitor, Vec<usize>)>,
+    quantities: Vec<Observed>,
+    lines: LinesOfSight,
+    sky: Arc<ModeSky>,
+    /// Bounds of the motion about three axes, norm of the modal rotations of the hub (rad/(m sqrt(kg))), and the largest
+    /// acceleration of a slew (rad/s²).
+    limits: MotionLimits,
+    hub_rotation: f64,
+    slew_acceleration: f64,
+    /// Start of the motion segment; of three axes, the body and its reference there.
+    since: Instant,
+    copy: Option<Box<(Plant, Guidance)>>,
+}
+
+/// Quantity that a requirement reads.
+#[derive(Clone, Debug)]
+struct Observed {
+    quantity: ModeQuantity,
+    /// Accuracy of its polynomials, in its unit.
+    tolerance: f64,
+    /// Times (s) from which on it has had a value; the first is at most the start of the segment.
+    values: Vec<(f64, f64)>,
+}
+
+impl RequirementMonitors {
+    /// Creates the monitors of a scenario's run, before its start.
+    pub fn new(scenario: &Scenario, sky: &Arc<ModeSky>) -> Self {
+        let mut all = Self { sky: Arc::clone(sky), ..Self::default() };
+        for (index, requirement) in scenario.study.requirements.iter().enumerate() {
+            let RequirementSource::Formula(formula) = &requirement.source else { continue };
+            let monitor = RequirementMonitor::new(&formula.expression, scenario.duration.seconds());
+            let limits = formula.expression.leaves().into_iter().map(|(_, limit)| limit.unwrap_or(1.0));
+            let places = monitor.quantities().zip(limits);
+            let places = places.map(|(quantity, limit)| all.place(quantity, limit)).collect();
+            all.monitors.push((index, monitor, places));
+        }
+        if let Some(body) = scenario.model.three_axis().filter(|_| !all.monitors.is_empty()) {
+            all.lines = LinesOfSight::new(scenario);
+            all.limits = MotionLimits::new(scenario, body);
+            all.hub_rotation = modal_rotation(body, body.points.first().map_or("", |point| &point.name));
+            let of_modes = scenario.mode.iter().filter_map(|mode| mode.target.as_ref()?.acceleration);
+            let of_targets = scenario.targets().iter().filter_map(|target| target.acceleration);
+            all.slew_acceleration = of_modes.chain(of_targets).map(Positive::get).fold(0.0, f64::max);
+        }
+        all
+    }
+
+    /// Returns the place of a quantity that is compared with a limit.
+    fn place(&mut self, quantity: ModeQuantity, limit: f64) -> usize {
+        let limit = if limit == 0.0 { 1.0 } else { limit.abs() };
+        let tolerance = (TOLERANCE * limit).max(ROUNDING);
+        if let Some(place) = self.quantities.iter().position(|known| known.quantity == quantity) {
+            let known = &mut self.quantities[place];
+            known.tolerance = known.tolerance.min(tolerance);
+            return place;
+        }
+        self.quantities.push(Observed { quantity, tolerance, values: Vec::new() });
+        self.quantities.len() - 1
+    }
+
+    /// Returns true if the scenario has no requirement over time.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.monitors.is_empty()
+    }
+
+    /// Takes the quantities that change at instants, at one of them; what the control system knows only if it has sampled or
+    /// decided.
+    pub fn observe(&mut self, run: &RunView<'_>, has_sampled: bool) {
+        for observed in &mut self.quantities {
+            let quantity = observed.quantity;
+            let is_event = quantity.is_boolean() || matches!(quantity, ModeQuantity::Entries(_));
+            if quantity.is_of_motion() || quantity.is_of_sky() || !is_event && !has_sampled {
+                continue;
+            }
+            let (now, value) = (run.now.seconds(), run.quantity(quantity));
+            match observed.values.last_mut() {
+                Some(last) if last.0 == now => last.1 = value,
+                Some(last) if last.1.to_bits() == value.to_bits() && !quantity.grows_with_time() => {}
+                _ => observed.values.push((now, value)),
+            }
+        }
+    }
+
+    /// Begins a motion segment at the instant of a run at which its loads have changed.
+    pub fn begin_segment(&mut self, run: &RunView<'_>) {
+        self.since = run.now;
+        self.copy = None;
+        // The mode of operation changes between segments alone.
+        let range = |observed: &Observed| match observed.quantity {
+            quantity @ ModeQuantity::Mode(_) => [run.quantity(quantity); 2],
+            quantity if quantity.is_of_motion() => [0.0, f64::INFINITY],
+            _ => [f64::NEG_INFINITY, f64::INFINITY],
+        };
+        let ranges: Vec<[f64; 2]> = self.quantities.iter().map(range).collect();
+        if run.plant.quantities().three_axis().is_some() && !self.ignore(f64::INFINITY, &ranges) {
+            self.copy = Some(Box::new((run.plant.clone(), run.guidance.clone())));
+        }
+    }
+
+    /// Ends the motion segment at `now`, to which the plant has advanced.
+    pub fn end_segment(&mut self, now: Instant, plant: &Plant, guidance: &Guidance, loads: &Loads) {
+        let span = [self.since, now];
+        let [from, to] = span.map(Instant::seconds);
+        if to <= from {
+            return;
+        }
+        let mut pieces: Vec<Vec<Piece>> = vec![Vec::new(); self.quantities.len()];
+        let has_sky = self.quantities.iter().any(|observed| observed.quantity.is_of_sky());
+        let edges = self.sky.edges().filter(|_| has_sky).map(Instant::seconds);
+        let edges: Vec<f64> = edges.filter(|edge| *edge > from && *edge < to).collect();
+        for (observed, into) in self.quantities.iter_mut().zip(&mut pieces) {
+            let Observed { quantity, tolerance, values } = observed;
+            if quantity.is_of_sky() {
+                let sky = &self.sky;
+                if edges.is_empty() && sky.is_steady(*quantity, from) {
+                    into.push(Piece::constant(from, to, sky.value(*quantity, from), 0));
+                    continue;
+                }
+                let mut evaluate =
+                    |times: &[f64]| Some(times.iter().map(|t| vec![sky.value(*quantity, *t)]).collect());
+                for part in parts([from, to], SKY_REACH, &edges) {
+                    let mut take = |begin, length, all: &[Polynomial]| {
+                        into.extend(curve(begin, length, all[0]));
+                    };
+                    fit(part, &[*tolerance], &mut evaluate, &mut take);
+                }
+            } else if !quantity.is_of_motion() {
+                let grows = quantity.grows_with_time();
+                let ends = values[1..].iter().map(|(at, _)| *at).chain([to]);
+                for ((begin, value), end) in values.iter().zip(ends) {
+                    into.extend(known([*begin, end], *value, grows));
+                }
+                let last = values.len() - 1;
+                values.drain(..last);
+                if let Some((begin, value)) = values.first_mut() {
+                    *value += if grows { to - *begin } else { 0.0 };
+                    *begin = to;
+                }
+            }
+            join(into, [from, to]);
+        }
+        self.add_motion(span, (plant, guidance, loads), &mut pieces);
+        for (_, monitor, places) in &mut self.monitors {
+            let read: Vec<&[Piece]> = places.iter().map(|place| &pieces[*place][..]).collect();
+            monitor.push(&read);
+        }
+        self.since = now;
+    }
+
+    /// Records the robustness of all requirements over time, at the end of the run.
+    pub fn finish(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        let judged = |(requirement, monitor, _): (usize, RequirementMonitor, _)| {
+            let range = monitor.finish(now.seconds());
+            RequirementRobustness {
+                requirement,
+                least: range.low.value,
+                largest: range.high.value,
+                at: if range.low.value.is_finite() { range.low.at } else { range.high.at },
+            }
+        };
+        let mut report = Report::new();
+        report.add_value(RobustnessOfRequirements(
+            std::mem::take(&mut self.monitors).into_iter().map(judged).collect(),
+        ));
+        record.record(now, Sample::Report(&report))
+    }
+}
+
+/// Returns an interval cut at edges and into equal parts of at most a length (s).
+fn parts([from, to]: [f64; 2], longest: f64, edges: &[f64]) -> Vec<[f64; 2]> {
+    let mut ends: Vec<f64> = edges.iter().copied().filter(|edge| *edge > from && *edge < to).collect();
+    ends.push(to);
+    let (mut begin, mut all) = (from, Vec::new());
+    for end in ends {
+        let count = ((end - begin) / longest).ceil().max(1.0);
+        let at = |index: f64| if index == count { end } else { begin + (end - begin) * index / count };
+        all.extend((0..count as u64).map(|index| [at(index as f64), at(index as f64 + 1.0)]));
+        begin = end;
+    }
+    all
+}
+
+/// Returns the piece of a polynomial; none without length.
+fn curve(begin: f64, length: f64, polynomial: Polynomial) -> Option<Piece> {
+    let curve = Arc::new(Curve { begin, length, polynomial });
+    let shape = Shape::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
+    (length > 0.0).then_some(Piece { from: begin, to: begin + length, shape, source: 0 })
+}
+
+/// Returns the piece of a known value, which may grow with the time.
+fn known([from, to]: [f64; 2], value: f64, grows: bool) -> Option<Piece> {
+    if grows {
+        let mut terms = [0.0; TERMS];
+        (terms[0], terms[1]) = (value, to - from);
+        return curve(from, to - from, Polynomial::new(terms));
+    }
+    (to > from).then(|| Piece::constant(from, to, value, 0))
+}
+
+/// Lets pieces follow each other without gaps by rounding, from the start of a segment to its end.
+fn join(pieces: &mut [Piece], [from, to]: [f64; 2]) {
+    let mut begin = from;
+    for piece in pieces.iter_mut() {
+        piece.from = begin;
+        begin = piece.to.max(begin);
+        piece.to = begin;
+    }
+    if let Some(last) = pieces.last_mut() {
+        last.to = to;
+    }
+}
