@@ -1,6 +1,5 @@
 //! Limits of requirements as lines over the time in which they count, with their values as they were written.
 
-use flexsc_core::answer::requirement_id;
 use flexsc_core::formats::reader_units::percent;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::scenario::{
@@ -20,7 +19,7 @@ pub struct LimitOverTime {
     pub required: RequiredLimit,
     /// Intervals in which it counts (s).
     windows: Vec<[f64; 2]>,
-    /// Identifier, limit and level in words.
+    /// Name, limit and level in words.
     words: String,
 }
 
@@ -30,7 +29,7 @@ pub fn limits(
     is_quantity: impl Fn(&SampledQuantity) -> bool,
     axis: Option<ErrorAxis>,
 ) -> Vec<LimitOverTime> {
-    let limit = |(index, own): (usize, &AssessedRequirement)| {
+    let limit = |own: &AssessedRequirement| {
         let RequirementSource::Error(error) = &own.source else { return None };
         if error.index != IndexWindow::Absolute || error.axis != axis || !is_quantity(&error.quantity) {
             return None;
@@ -44,11 +43,11 @@ pub fn limits(
                 format!(", {} of the time", percent(own.level))
             }
         };
-        let words = format!("{}: {}{level}", requirement_id(index), required.text);
+        let words = format!("{}: {}{level}", own.name, required.text);
         let windows = vec![[from, if from > to { story.end } else { to.min(story.end) }]];
         Some(LimitOverTime { required, windows, words })
     };
-    story.scenario.study.requirements.iter().enumerate().filter_map(limit).collect()
+    story.scenario.study.requirements.iter().filter_map(limit).collect()
 }
 
 /// Adds limits to a panel over time: a line over each window, or a mark where it is short, and the words once.

@@ -4,7 +4,7 @@ use super::mode_analysis::each_mode;
 use super::study::Study;
 use super::{margins_block, noise_block};
 use crate::error::CliError;
-use crate::{Verb, margins, spectrum};
+use crate::{Verb, margins, progress, spectrum};
 
 /// Sentences of the conclusions on the loops.
 #[derive(Default)]
@@ -28,6 +28,7 @@ pub struct LoopBlocks {
 /// Computes both blocks; `searches` for the least margins over the uncertain keys too.
 pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
     let mut made = LoopBlocks::default();
+    progress::stage("the margins");
     let words = ["margins", "--mask", margins_block::MASK];
     let (found, refused) = each_mode(study, &words, |verb, scenario| match verb {
         Verb::Margins(args) => margins::results(&args.scenario.in_mode(scenario)?, &args),
@@ -37,6 +38,7 @@ pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
     if found.is_empty() {
         made.refused.push("Margins");
     }
+    progress::stage("the noise");
     let (found, refused) = each_mode(study, &["spectrum"], |verb, scenario| match verb {
         Verb::Spectrum(args) => spectrum::results(&args.scenario.in_mode(scenario)?, &args),
         _ => Err(CliError::Arguments(String::new())),

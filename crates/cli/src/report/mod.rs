@@ -10,6 +10,7 @@ mod loop_blocks;
 mod margins_block;
 mod mode_analysis;
 mod mode_block;
+mod model_block;
 mod noise_block;
 mod page;
 mod requirement_block;
@@ -24,7 +25,7 @@ use flexsc_core::answer::RunVerdict;
 
 use crate::error::CliError;
 use crate::human::Units;
-use crate::{bound, files, out, say, stop};
+use crate::{bound, files, out, progress, say, stop};
 use page::Review;
 use study::{Study, StudyCampaign};
 
@@ -89,6 +90,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
 
 /// Computes the page of a study with a campaign of some runs; 0 leaves it out.
 fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
+    progress::stage("the run");
     let run = study.run()?;
     // A page that is watched is to be there soon.
     let loops = loop_blocks::blocks(study, script.is_empty())?;
@@ -97,6 +99,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     } else {
         Some(bound::claims(&study.scenario, Units::default())?)
     };
+    progress::stage("the campaign");
     let campaign: Option<StudyCampaign> =
         (runs > 0).then(|| study.campaign(runs, &run.answer)).transpose()?;
     let mut unmet = Vec::new();
@@ -110,6 +113,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     if refuted > 0 {
         unmet.push(format!("{refuted} of the claims not proved"));
     }
+    progress::stage("the figures");
     let refused = loops.refused.clone();
     let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, script };
     Ok(FinishedPage { html: page::html(&review), refused, unmet })

@@ -2,15 +2,19 @@
 //! an observer saw in every control cycle. Numbers are in SI units; beside them stand their texts in the reader's units, so
 //! that text, JSON, Python and reports say the same.
 
+mod angle_watch;
 mod campaign_answer;
 mod campaign_comparison;
+mod campaign_mode;
 mod campaign_screen;
+mod campaign_warning;
 mod driving_key;
 mod error_statistics;
 mod event;
 mod key_difference;
 mod limit_watch;
 mod lines;
+mod logged_answer;
 mod mode_answer;
 mod one_axis_lines;
 mod requirement_answer;
@@ -22,7 +26,7 @@ mod verdict;
 mod warning;
 
 use flexsc_formats::reader_units::ReaderUnits;
-use flexsc_scenario::Scenario;
+use flexsc_scenario::{RequirementSource, Scenario};
 use serde::Serialize;
 
 use crate::metrics::Metrics;
@@ -32,13 +36,15 @@ pub use campaign_answer::{
     CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
 };
 pub use campaign_comparison::CampaignComparison;
+pub use campaign_mode::{CampaignMode, RunSpread};
+pub use campaign_warning::CampaignWarning;
 pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};
 pub use key_difference::KeyDifference;
 pub use lines::Line;
 pub use mode_answer::ModeAnswer;
-pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText, requirement_id};
+pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
 pub use run_comparison::RunComparison;
 pub use run_observer::{Observed, RunObserver};
 pub use screen::{ScreenOptions, ScreenStyle};
@@ -59,9 +65,12 @@ pub struct Answer {
     pub scenario: String,
     /// Simulated time (s).
     pub duration_s: f64,
-    /// RunVerdict.
+    /// Period (s) of the rows of a log from which the answer is made; absent where every control cycle was seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_rows_s: Option<f64>,
+    /// Verdict.
     pub verdict: RunVerdict,
-    /// RunVerdict in words.
+    /// Verdict in words.
     pub verdict_text: String,
     /// Requirements, missed ones first, then by margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -115,6 +124,7 @@ impl Answer {
             schema: SCHEMA,
             scenario: scenario.name.clone(),
             duration_s: scenario.duration.seconds(),
+            from_rows_s: None,
             verdict,
             verdict_text,
             requirements,
@@ -131,7 +141,14 @@ impl RunData<'_> {
     fn requirements(&self, verdicts: &[RequirementVerdict]) -> Vec<RequirementAnswer> {
         let peaks = self.observed.map_or(&[][..], |observed| &observed.peaks);
         let answer = |(index, verdict): (usize, &RequirementVerdict)| {
-            let peak = peaks.get(index).copied().flatten();
+            let is_angle = matches!(
+                &verdict.requirement.source,
+                RequirementSource::Metric(name, None) if name == angle_watch::PEAK
+            );
+            let peak = match self.observed {
+                Some(observed) if is_angle => observed.largest_angle,
+                _ => peaks.get(index).copied().flatten(),
+            };
             RequirementAnswer::new(self, (index, verdict), peak)
         };
         verdicts.iter().enumerate().map(answer).collect()

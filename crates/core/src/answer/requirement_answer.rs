@@ -9,6 +9,8 @@ use crate::requirement_verdict::{Decision, RequirementVerdict};
 
 /// Margin above which only its bound is shown.
 const AMPLE: f64 = 0.99;
+/// Relative difference by which rounding may part a value from the same value.
+const ROUNDING: f64 = 1e-9;
 
 /// Requirement of a run, and whether it is met.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -62,7 +64,7 @@ pub struct RequirementText {
     /// Margin; absent without a value.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub margin: String,
-    /// Largest value with instant and mode; absent without one, or if it is the value.
+    /// Largest value with instant and mode, or these alone if it is the value; absent without one.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub largest: String,
 }
@@ -101,13 +103,15 @@ impl RequirementAnswer {
                 "no value".to_owned()
             },
             margin: margin_text(margin, value / limit),
-            largest: largest.as_ref().filter(|own| own.value != value || own.mode.is_some()).map_or_else(
-                String::new,
-                |own| {
-                    let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
-                    format!("{} at {} s{mode}", unit.quantity(own.value), number(own.at_s))
-                },
-            ),
+            largest: largest.as_ref().map_or_else(String::new, |own| {
+                let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
+                let when = format!("at {} s{mode}", number(own.at_s));
+                if (own.value - value).abs() <= ROUNDING * value.abs() {
+                    when
+                } else {
+                    format!("{} {when}", unit.quantity(own.value))
+                }
+            }),
         };
         Self {
             id: requirement_id(index),
