@@ -315,38 +315,6 @@ fn events_have_eclipses_and_limits() {
     );
 }
 
-/// A CubeSat whose wheel stands at its limit in a ground pass, up to the end of the first one.
-fn lost_pass() -> String {
-    include_str!("golden/cube6u.toml").replace("30000 s", "12800 s")
-}
-
-/// A campaign says what a run of it warns of, in which runs, and how each mode of operation fares.
-#[test]
-fn a_campaign_has_the_warnings_and_the_modes_of_its_runs() {
-    let dir = Dir::holding("cube6u.toml", lost_pass());
-    let (runs, answer) = campaign(&dir, "simulate cube6u.toml --runs 2 --json", 3);
-    let lost = &answer["warnings"][0];
-    assert_eq!(
-        (&lost["kind"], &lost["mode"], &lost["runs"]),
-        (&"target_lost".into(), &"pass".into(), &2.into())
-    );
-    let worst = lost["worst_run"].as_u64().expect("a run") as usize;
-    let errors = |run: usize| runs[run]["metrics"]["target_loss_errors_rad"][0].as_f64().expect("an error");
-    assert!(errors(worst) >= errors(1 - worst), "{lost}");
-    let own = runs[worst]["warnings"][0].as_str().expect("a warning");
-    assert_eq!(lost["text"], format!("2 of 2 runs, worst run {worst}: {own}"));
-    let by_mode = answer["by_mode"].as_array().expect("modes");
-    let pass = by_mode.iter().find(|own| own["mode"] == "pass").expect("a mode");
-    let limits: Vec<f64> = runs
-        .iter()
-        .map(|run| run["metrics"]["wheel_momentum_limit_times_s"][3].as_f64().expect("a time"))
-        .collect();
-    assert_eq!((&pass["runs"], &pass["runs_lost"]), (&2.into(), &2.into()));
-    assert_eq!(pass["at_limit_s"]["largest"].as_f64(), limits.iter().copied().reduce(f64::max));
-    let said = dir.run("simulate cube6u.toml --runs 2 --all").err;
-    assert!(said.contains("! 2 of 2 runs, worst run") && said.contains("target lost\n"), "{said}");
-}
-
 /// A campaign with drawn keys has the value of the scenario without them.
 #[test]
 fn a_campaign_has_the_run_without_drawn_keys_beside_it() {

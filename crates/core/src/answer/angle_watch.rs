@@ -3,7 +3,7 @@
 use flexsc_control::law::Setpoint;
 use flexsc_dynamics::MotionPiece;
 
-use super::run_observer::LargestSample;
+use super::largest_sample::LargestSample;
 
 /// Metric with this largest distance.
 pub(super) const PEAK: &str = "angle_error_peak_rad";

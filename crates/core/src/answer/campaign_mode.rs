@@ -39,7 +39,7 @@ pub struct RunSpread {
 }
 
 impl RunSpread {
-    fn of(mut values: Vec<f64>) -> Option<Self> {
+    fn from_values(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let largest = *values.last()?;
         Some(Self { median: quantile(&values, 0.5), p95: quantile(&values, 0.95), largest })
@@ -72,8 +72,8 @@ pub(super) fn campaign_modes(
             CampaignMode {
                 mode: mode.name.clone(),
                 runs: times.len() as u64,
-                time_s: RunSpread::of(times),
-                at_limit_s: RunSpread::of(limits).filter(|own| own.largest > 0.0),
+                time_s: RunSpread::from_values(times),
+                at_limit_s: RunSpread::from_values(limits).filter(|own| own.largest > 0.0),
                 runs_lost: warnings.iter().find(lost).map_or(0, |own| own.runs),
             }
         };

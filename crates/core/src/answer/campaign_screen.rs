@@ -25,21 +25,22 @@ impl CampaignAnswer {
         let mut blocks = vec![wrapped(&head, options.width, 4)];
         let texts: Vec<&str> = self.warnings.iter().map(|warning| &*warning.text).collect();
         let mut warnings = warning_lines(&texts, options);
-        if !self.requirements.is_empty() && self.runs > 0 {
-            let (table, lines) = (self.requirement_table(options), self.lines(options));
-            let room = MOST_LINES.saturating_sub(table.len() + lines.len()).max(LEAST_WARNING);
-            if !options.all && warnings.len() > room {
-                warnings.truncate(room - 1);
-                warnings.push("    more: --all".to_owned());
-            }
-            blocks.extend([table, warnings]);
-            if options.all {
-                blocks.push(self.mode_table());
-            }
-            blocks.push(lines);
+        let is_asked = !self.requirements.is_empty() && self.runs > 0;
+        let (table, lines) = if is_asked {
+            (self.requirement_table(options), self.lines(options))
         } else {
-            blocks.push(warnings);
+            Default::default()
+        };
+        let room = MOST_LINES.saturating_sub(table.len() + lines.len()).max(LEAST_WARNING);
+        if !options.all && warnings.len() > room {
+            warnings.truncate(room - 1);
+            warnings.push("    more: --all".to_owned());
         }
+        blocks.extend([table, warnings]);
+        if options.all && self.runs > 0 {
+            blocks.push(self.mode_table());
+        }
+        blocks.push(lines);
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
     }

@@ -12,6 +12,7 @@ mod driving_key;
 mod error_statistics;
 mod event;
 mod key_difference;
+mod largest_sample;
 mod limit_watch;
 mod lines;
 mod logged_answer;

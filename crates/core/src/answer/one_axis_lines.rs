@@ -94,7 +94,10 @@ impl RunData<'_> {
                 late => format!(", {late} over the last {}", time(LATE)),
             };
             let at = self.observed.and_then(|observed| observed.largest_angle);
-            let at = at.map_or_else(String::new, |largest| format!(" at {}", time(largest.at)));
+            let at = at.map_or_else(String::new, |largest| match largest.at {
+                0.0 => " at the start".to_owned(),
+                at => format!(" at {}", time(at)),
+            });
             lines.main("error", format!("at most {}{at}{after}{end}", units.quantity(peak, "rad")));
         }
         let (name, unit) = scenario.model.commanded_quantity();

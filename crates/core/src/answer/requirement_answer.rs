@@ -3,8 +3,8 @@
 use flexsc_formats::reader_units::{number, percent};
 use serde::Serialize;
 
+use super::largest_sample::LargestSample;
 use super::lines::RunData;
-use super::run_observer::LargestSample;
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 
 /// Margin above which only its bound is shown.

@@ -16,6 +16,7 @@ use flexsc_scenario::{RequirementSource, Scenario};
 use super::angle_watch::AngleWatch;
 use super::error_statistics::{ErrorStatistics, ErrorSummary};
 use super::event::{EventKind, RunEvent};
+use super::largest_sample::LargestSample;
 use super::limit_watch::{LimitStay, LimitWatch};
 use crate::metrics::ErrorStream;
 
@@ -52,17 +53,6 @@ pub struct RunObserver {
     last: Option<(Instant, f64, usize, bool)>,
     late_from: f64,
     end: Instant,
-}
-
-/// Largest value of the index of a requirement.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct LargestSample {
-    /// Value, in the unit of the requirement.
-    pub value: f64,
-    /// Time (s).
-    pub at: f64,
-    /// Index of the mode of operation; 0 without modes.
-    pub mode: usize,
 }
 
 /// Observations in a mode of operation.
