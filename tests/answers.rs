@@ -9,6 +9,7 @@ use flexsc_core::campaign::{Campaign, CampaignRun, CampaignRuns};
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, Log};
+use flexsc_core::requirement_verdict::Decision;
 use flexsc_core::{Document, Scenario};
 use serde_json::{Value as Json, json};
 use toml::Value;
@@ -78,13 +79,18 @@ fn is_campaign(name: &str, campaign: &Campaign, metrics: &Metrics, answer: &Answ
         let single = answer.requirements.iter().find(|single| single.id == own.id).expect("a requirement");
         let value = Some(single.value).filter(|value| value.is_finite());
         assert_eq!([own.median, own.p95, own.worst.value], [value; 3], "{name}: {}", own.name);
-        assert_eq!((own.met, own.text.limit.as_str()), (single.met, single.text.limit.as_str()), "{name}");
+        // One run may be too few for a confidence.
+        let is_decided = own.decision != Decision::Undecided;
+        assert!(!is_decided || own.met == single.met, "{name}: {}", own.name);
+        assert_eq!(own.text.limit, single.text.limit, "{name}");
         assert_eq!(own.margin.map(|margin| margin.worst), value.map(|_| single.margin), "{name}");
     }
     let warned: Vec<_> = all.warnings.iter().map(|own| (own.kind, own.mode.clone())).collect();
     let from_metrics = answer.warnings.iter().filter(|own| own.kind != WarningKind::LevelHides);
     assert_eq!(warned, from_metrics.map(|own| (own.kind, own.mode.clone())).collect::<Vec<_>>(), "{name}");
-    assert_eq!(all.verdict == RunVerdict::Missed, answer.verdict == RunVerdict::Missed, "{name}");
+    let is_decided = all.requirements.iter().all(|own| own.decision != Decision::Undecided);
+    let [both, single] = [all.verdict, answer.verdict].map(|verdict| verdict == RunVerdict::Missed);
+    assert!(!is_decided || both == single, "{name}");
     let modes: Vec<_> = answer.by_mode.iter().map(|own| (&own.mode, own.visits > 0)).collect();
     assert_eq!(all.by_mode.iter().map(|own| (&own.mode, own.runs > 0)).collect::<Vec<_>>(), modes, "{name}");
 }

@@ -11,7 +11,6 @@ use serde_json::json;
 
 use super::Scenario;
 use super::aside::aside;
-use super::error::log_error;
 use super::log::Log;
 
 /// Answer of a run or a campaign.
@@ -87,13 +86,13 @@ impl RunAnswer {
     }
 }
 
-/// The answer of a log: of its run, which is repeated, or of its rows.
+/// The scenario of a log, and the answer of its run, which is repeated, or of its rows.
 #[pyfunction]
-pub fn log_answer(py: Python<'_>, log: &Log) -> PyResult<RunAnswer> {
+pub fn log_answer(py: Python<'_>, log: &Log) -> PyResult<(Scenario, RunAnswer)> {
     let log = log.0.clone();
     let answer = aside(py, move |_| flexsc_cli::answer_of_log(&log, log.path(), ReaderUnits::default()))?;
-    let (_, answer) = answer.map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok(RunAnswer::made(answer, None))
+    let (inner, answer) = answer.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok((Scenario { origin: inner.name.clone(), inner }, RunAnswer::made(answer, None)))
 }
 
 /// Two answers side by side, with the keys in which their scenarios differ.

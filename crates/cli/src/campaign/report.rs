@@ -115,10 +115,13 @@ impl CampaignReport {
             let name = s.name.split('[').next().unwrap_or_default();
             super::MAIN.iter().position(|main| *main == name).unwrap_or(super::MAIN.len())
         };
-        let mut varying: Vec<&Statistics> = known.filter(|s| s.sd != 0.0).collect();
-        varying.sort_by_key(|s| place(s));
-        varying.truncate(MOST_METRICS);
-        varying
+        let (mut shown, constant): (Vec<&Statistics>, Vec<&Statistics>) = known.partition(|s| s.sd != 0.0);
+        if shown.is_empty() {
+            shown = constant.into_iter().filter(|s| place(s) < super::MAIN.len() && s.mean != 0.0).collect();
+        }
+        shown.sort_by_key(|s| place(s));
+        shown.truncate(MOST_METRICS);
+        shown
     }
 
     /// Returns the answer of the campaign.

@@ -53,22 +53,19 @@ impl Answer {
         let metrics = tables[5].as_ref().and_then(Columns::timed_rows::<record::Metrics>).unwrap_or_default();
         let metrics = metrics.last().map(|(_, row)| row).filter(|row| !row.metrics.is_empty());
         let is_complete = log.metadata().get("end").is_some_and(|end| end == "complete");
-        let mut answer = match metrics.filter(|_| is_complete) {
-            Some(row) => Self::new(scenario, &logged_metrics(scenario, row), Some(&observed), units),
-            None => {
-                let end = rows.0.last().map_or(0.0, |(time, _)| *time);
-                let text =
-                    format!("FAILED: the log ends at {} of {}", time(end), time(scenario.duration.seconds()));
-                let none = Self::new(scenario, &Metrics::default(), None, units);
-                Self {
-                    verdict: RunVerdict::Failed,
-                    verdict_text: text,
-                    requirements: Vec::new(),
-                    by_mode: Vec::new(),
-                    lines: Vec::new(),
-                    events: observed.events,
-                    ..none
-                }
+        let mut answer = if let Some(row) = metrics.filter(|_| is_complete) {
+            Self::new(scenario, &logged_metrics(scenario, row), Some(&observed), units)
+        } else {
+            let end = rows.0.last().map_or(0.0, |(time, _)| *time);
+            let [end, all] = [end, scenario.duration.seconds()].map(time);
+            Self {
+                verdict: RunVerdict::Failed,
+                verdict_text: format!("FAILED: the log ends at {end} of {all}"),
+                requirements: Vec::new(),
+                by_mode: Vec::new(),
+                lines: Vec::new(),
+                events: observed.events,
+                ..Self::new(scenario, &Metrics::default(), None, units)
             }
         };
         answer.from_rows_s = Some(scenario.log.period_for(scenario.duration).seconds());

@@ -143,8 +143,8 @@ class CampaignAnswer(_Fields):
     """
 
     verdict: str
-    """`missed`, `met_but` (a warning says that target, filter or loop is lost in some run), `met`, `goal_met`,
-    `goal_missed`, or `not_asked` without a requirement.
+    """`missed`, `met_but` (a warning says that target, filter or loop is lost in some run), `met`,
+    `goal_met`, `goal_missed`, or `not_asked` without a requirement.
 
     >>> answer.verdict
     'missed'
@@ -188,8 +188,8 @@ class CampaignAnswer(_Fields):
     ()
     """
     by_mode: tuple[dict[str, Any], ...]
-    """The modes of operation: `mode`, the number of `runs` that enter it, `time_s` and `at_limit_s` with `median`,
-    `p95` and `largest`, and `runs_lost`, those that lose its target.
+    """The modes of operation: `mode`, the number of `runs` that enter it, `time_s` and `at_limit_s` with
+    `median`, `p95` and `largest`, and `runs_lost`, those that lose its target.
 
     >>> answer.by_mode
     ()

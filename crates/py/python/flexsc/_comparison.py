@@ -62,8 +62,7 @@ def compare(a: Side, b: Side) -> Comparison:
     """Compare two scenarios, runs, logs or campaigns: the keys that differ, and both answers.
 
     Args:
-        a: A scenario, which is simulated, a result, a log, or the table of a campaign; or the path of a scenario, a
-            log or a campaign.
+        a: A scenario, which is simulated, a result, a log, or the table of a campaign; or the path of one.
         b: The other one; a campaign beside a campaign.
 
     Raises:
@@ -74,13 +73,11 @@ def compare(a: Side, b: Side) -> Comparison:
     >>> flexsc.compare(run, run).keys
     ()
     """
-    sides = [_side(side) for side in (a, b)]
-    (name_a, scenario_a, answer_a), (name_b, scenario_b, answer_b) = sides
-    scenarios = (scenario_a._native, scenario_b._native)
-    return Comparison(engine.compare((name_a, name_b), scenarios, (answer_a, answer_b)))
+    (name_a, scenario_a, answer_a), (name_b, scenario_b, answer_b) = _side(a), _side(b)
+    return Comparison(engine.compare((name_a, name_b), (scenario_a, scenario_b), (answer_a, answer_b)))
 
 
-def _side(side: Side) -> tuple[str, Scenario, engine.RunAnswer]:
+def _side(side: Side) -> tuple[str, engine.Scenario, engine.RunAnswer]:
     """Return the name, the scenario and the answer of a side."""
     if isinstance(side, str | os.PathLike):
         name = os.fspath(side)
@@ -88,14 +85,13 @@ def _side(side: Side) -> tuple[str, Scenario, engine.RunAnswer]:
     if isinstance(side, Scenario):
         side = side.simulate(log="none")
     if isinstance(side, Log):
-        if side.scenario is None:
-            raise ValueError("a log without a scenario has no answer")
-        return side.scenario.name, side.scenario, side.answer._native
+        scenario, answer = engine.log_answer(side._native)
+        return scenario.name, scenario, answer
     answer = side.answer._native
     if answer.copied and isinstance(side, Result):
         # A copy has texts alone; the run is repeated.
         answer = side.scenario.simulate(run=side.run, log="none").answer._native
-    return side.scenario.name, side.scenario, answer
+    return side.scenario.name, side.scenario._native, answer
 
 
 def _read(path: str) -> Scenario | Log | Table:

@@ -78,7 +78,7 @@ class Log(Topics, Exportable):
         >>> log.answer.verdict
         'not_asked'
         """
-        return Answer(engine.log_answer(self._native))
+        return Answer(engine.log_answer(self._native)[1])
 
     def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
         """Draw a figure of the run in the log with Matplotlib: see `Result.plot`.
