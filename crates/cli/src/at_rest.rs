@@ -48,9 +48,10 @@ pub fn hinted(failure: CliError, verb: &str, args: &ScenarioArgs) -> CliError {
         return failure;
     }
     let mode = args.mode.as_ref().map_or_else(String::new, |mode| format!(" --mode {mode}"));
-    let set: String = set.iter().map(|pair| format!(" --set '{pair}'")).collect();
+    let set: Vec<String> = set.iter().map(|pair| format!(" --set '{pair}'")).collect();
     CliError::Arguments(format!(
-        "{text}\n\nhint: at rest, with the sensors that have a linear model: flexsc {verb} {}{mode}{set}",
-        args.scenario.display()
+        "{text}\n\nhint: at rest, with the sensors that have a linear model: flexsc {verb} {}{mode}{}",
+        args.scenario.display(),
+        set.concat()
     ))
 }

@@ -59,7 +59,8 @@ impl Study {
 
     /// Returns the SHA-256 of the scenario's file as hexadecimal digits.
     pub fn sha256(&self) -> String {
-        Sha256::digest(self.text()).iter().map(|byte| format!("{byte:02x}")).collect()
+        let digits = Sha256::digest(self.text());
+        digits.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
     }
 
     /// Returns the name of the scenario's file.
