@@ -1,9 +1,20 @@
 //! Answers of runs: the verdict first, the same strings in text and JSON, in the reader's units, on a screen.
 
 use std::fs;
+use std::path::Path;
 
-use serde_json::Value as Json;
+use flexsc_cli::simulate_to_log;
+use flexsc_core::answer::{Answer, CampaignAnswer, RunObserver, RunVerdict, ScreenOptions, WarningKind};
+use flexsc_core::campaign::{Campaign, CampaignRun, CampaignRuns};
+use flexsc_core::formats::reader_units::ReaderUnits;
+use flexsc_core::metrics::Metrics;
+use flexsc_core::record::{Detail, Log};
+use flexsc_core::requirement_verdict::Decision;
+use flexsc_core::{Document, Scenario};
+use serde_json::{Value as Json, json};
+use toml::Value;
 
+use crate::drawing::Drawing;
 use crate::util::{Dir, SCENARIOS};
 
 /// Longest first screen, with the line on where to look next, and widest line.
@@ -18,64 +29,108 @@ const SHORTENED: [(&str, f64); 6] = [
     ("wheel-run-up", 30.0),
 ];
 
-fn texts(value: &Json) -> Vec<String> {
-    match value {
-        Json::String(text) => vec![text.clone()],
-        Json::Array(all) => all.iter().flat_map(texts).collect(),
-        Json::Object(all) => all.values().flat_map(texts).collect(),
-        _ => Vec::new(),
+/// Returns the scenario of a shipped file, shortened if it takes long, or `None` if it cannot be shortened.
+fn shipped(name: &str) -> Option<Scenario> {
+    let path = format!("{SCENARIOS}/{name}.toml");
+    let mut document = Document::load(Path::new(&path)).expect("a document");
+    if let Some((_, duration)) = SHORTENED.iter().find(|(long, _)| *long == name) {
+        document.set("duration", Value::Float(*duration)).expect("a duration");
+        return Scenario::from_document(&document).ok();
+    }
+    Some(Scenario::from_document(&document).expect("a scenario"))
+}
+
+/// Checks that a first screen fits, that each line is for readers, and that it has the texts of the answer.
+fn is_screen(name: &str, answer: &Answer) {
+    let screen = answer.screen(Some(12.3), ScreenOptions::default());
+    let lines: Vec<&str> = screen.lines().collect();
+    assert!(lines.len() < SCREEN[0], "{name}: {} lines\n{screen}", lines.len());
+    for line in &lines {
+        assert!(line.chars().count() <= SCREEN[1], "{name}: {line}");
+        let riddle = ["NaN", "null", "none", " 0 % of", " 0 s,"].iter().find(|riddle| line.contains(*riddle));
+        let is_cycle = line.contains("limit cycle");
+        assert!(riddle.is_none() || is_cycle, "{name}: {riddle:?}: {line}");
+        let mut units = line.split([' ', ',', ';']);
+        assert!(!units.any(|word| word == "rad" || word.starts_with("rad/")), "{name}: {line}");
+        let is_power = |word: &str| word.contains('e') && word.parse::<f64>().is_ok();
+        assert!(!line.split([' ', ',', ';']).any(is_power), "{name}: {line}");
+    }
+    let flat = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let (screen, object) = (flat(&screen), json!(answer));
+    let is_said = |text: &Json| screen.contains(&flat(text.as_str().expect("a text")));
+    assert!(is_said(&object["verdict_text"]), "{name}: {screen}");
+    for requirement in object["requirements"].as_array().into_iter().flatten().take(5) {
+        for (part, text) in requirement["text"].as_object().expect("texts") {
+            assert!(part == "unit" || is_said(text), "{name}: {text}\n{screen}");
+        }
+    }
+    for line in object["lines"].as_array().into_iter().flatten().filter(|line| line["is_main"] == true) {
+        assert!(is_said(&line["text"]) || lines.len() + 3 > SCREEN[0], "{name}: {line}");
     }
 }
 
-/// Each shipped scenario answers on one screen, without SI riddles, and with the strings of its JSON.
+/// A campaign of one run has the values, the verdict and the warnings of the run.
+fn is_campaign(name: &str, campaign: &Campaign, metrics: &Metrics, answer: &Answer) {
+    let mut runs = CampaignRuns::new(campaign);
+    runs.add(0, &[], Some(metrics));
+    let all = CampaignAnswer::new(campaign.scenario(), &runs, None, None, ReaderUnits::default());
+    assert_eq!(all.requirements.len(), answer.requirements.len(), "{name}");
+    for own in &all.requirements {
+        let single = answer.requirements.iter().find(|single| single.id == own.id).expect("a requirement");
+        let value = Some(single.value).filter(|value| value.is_finite());
+        assert_eq!([own.median, own.p95, own.worst.value], [value; 3], "{name}: {}", own.name);
+        // One run may be too few for a confidence.
+        let is_decided = own.decision != Decision::Undecided;
+        assert!(!is_decided || own.met == single.met, "{name}: {}", own.name);
+        assert_eq!(own.text.limit, single.text.limit, "{name}");
+        assert_eq!(own.margin.map(|margin| margin.worst), value.map(|_| single.margin), "{name}");
+    }
+    let warned: Vec<_> = all.warnings.iter().map(|own| (own.kind, own.mode.clone())).collect();
+    let from_metrics = answer.warnings.iter().filter(|own| own.kind != WarningKind::LevelHides);
+    assert_eq!(warned, from_metrics.map(|own| (own.kind, own.mode.clone())).collect::<Vec<_>>(), "{name}");
+    let is_decided = all.requirements.iter().all(|own| own.decision != Decision::Undecided);
+    let [both, single] = [all.verdict, answer.verdict].map(|verdict| verdict == RunVerdict::Missed);
+    assert!(!is_decided || both == single, "{name}");
+    let modes: Vec<_> = answer.by_mode.iter().map(|own| (&own.mode, own.visits > 0)).collect();
+    assert_eq!(all.by_mode.iter().map(|own| (&own.mode, own.runs > 0)).collect::<Vec<_>>(), modes, "{name}");
+}
+
+/// Each shipped scenario answers on one screen, without SI riddles, and with the strings of its JSON; a campaign of its run has the
+/// same values; its log has them from rows; and its figures are in the units of readers.
 #[test]
-fn first_screens_of_shipped_scenarios_are_short_and_in_the_readers_units() {
+fn shipped_scenarios_answer_alike_everywhere() {
     let mut seen = 0;
     let files = fs::read_dir(SCENARIOS).expect("a folder").flatten().map(|entry| entry.path());
-    let files = files.filter(|path| path.extension().is_some_and(|ending| ending == "toml"));
-    for path in files {
+    for path in files.filter(|path| path.extension().is_some_and(|ending| ending == "toml")) {
         let name = path.file_stem().and_then(|stem| stem.to_str()).expect("a name");
-        let dir = Dir::with(&[name]);
-        let shortened = SHORTENED.iter().find(|(long, _)| *long == name);
-        let set = shortened.map_or_else(String::new, |(_, duration)| format!(" --set duration={duration}"));
-        // A shortened run may miss its requirements, or end before what its keys name.
-        let ran = dir.run(&format!("simulate {name}.toml --log none{set}"));
-        if ran.code == Some(2) && shortened.is_some() {
-            continue;
-        }
-        let screen = ran.err.clone();
-        let body: Vec<&str> = screen.lines().filter(|line| !line.starts_with("error")).collect();
-        let body: Vec<&str> =
-            body.into_iter().skip_while(|line| !line.starts_with(&format!("{name}   "))).collect();
-        assert!(!body.is_empty() && body.len() <= SCREEN[0], "{name}: {} lines\n{screen}", body.len());
-        for line in &body {
-            assert!(line.chars().count() <= SCREEN[1], "{name}: {line}");
-            for riddle in ["NaN", "null", " 0 % of"] {
-                assert!(!line.contains(riddle), "{name}: {riddle}: {line}");
-            }
-            let mut units = line.split([' ', ',', ';']);
-            assert!(!units.any(|word| word == "rad" || word.starts_with("rad/")), "{name}: {line}");
-            let is_power = |word: &str| word.contains('e') && word.parse::<f64>().is_ok();
-            assert!(!line.split([' ', ',', ';']).any(is_power), "{name}: {line}");
-        }
-        let object = dir.run(&format!("simulate {name}.toml --log none --json{set}")).json();
-        let answer = &object["answer"];
-        let flat = screen.split_whitespace().collect::<Vec<_>>().join(" ");
-        let is_said = |text: &str| flat.contains(&text.split_whitespace().collect::<Vec<_>>().join(" "));
-        assert!(is_said(answer["verdict_text"].as_str().expect("words")), "{name}: {answer}");
-        for requirement in answer["requirements"].as_array().into_iter().flatten().take(5) {
-            for text in ["value", "limit", "margin"] {
-                let text = &requirement["text"][text];
-                assert!(texts(text).iter().all(|text| is_said(text)), "{name}: {text}\n{screen}");
-            }
-            seen += 1;
-        }
-        for line in answer["lines"].as_array().into_iter().flatten() {
-            let text = line["text"].as_str().expect("a text");
-            assert!(
-                line["is_main"] == false || is_said(text) || body.len() + 3 > SCREEN[0],
-                "{name}: {text}"
-            );
+        let (Some(scenario), dir) = (shipped(name), Dir::with(&[])) else { continue };
+        let campaign = Campaign::new(scenario.clone(), name, None).expect("a campaign");
+        let run = CampaignRun::new(scenario.clone(), 0);
+        let mut observer = RunObserver::new(&scenario);
+        let log = dir.path(&format!("{name}.mcap"));
+        let (metrics, _) = simulate_to_log(&run, &log, (Detail::Full, false), &mut observer).expect("a run");
+        let units = ReaderUnits::default();
+        let answer = Answer::new(&scenario, &metrics, Some(&observer.finish()), units);
+        is_screen(name, &answer);
+        is_campaign(name, &campaign, &metrics, &answer);
+        seen += answer.requirements.len();
+        let rows = Answer::from_rows(&scenario, &Log::open(&log).expect("a log"), units).expect("rows");
+        assert_eq!(rows.verdict, answer.verdict, "{name}");
+        let values = |answer: &Answer| {
+            answer.requirements.iter().map(|own| own.text.value.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(values(&rows), values(&answer), "{name}");
+        dir.run(&format!("plot {name}.mcap --format svg -o figures")).exits(0);
+        for file in dir.names("figures") {
+            let drawing = Drawing::at(&dir, &format!("figures/{file}"));
+            let texts = drawing.texts();
+            let axes: Vec<&String> =
+                texts.iter().filter(|text| text.ends_with(')') && text.contains(" (")).collect();
+            let has_radians =
+                |text: &&String| text.split([' ', '(', '/', ')']).any(|word| word.ends_with("rad"));
+            assert!(!axes.is_empty() && !axes.iter().any(has_radians), "{file}: {axes:?}");
+            let is_long = |text: &String| text.contains("e-") && text.starts_with(['0', '1', '−']);
+            assert!(!texts.iter().any(is_long), "{file}: {texts:?}");
         }
     }
     assert!(seen > 12, "{seen}");
@@ -155,8 +210,8 @@ fn a_strict_judge_accepts_no_lost_filter() {
     dir.run(line).exits(0).says(&["1 of 1 requirement met, but the filter is overconfident"]);
     dir.run(&format!("{line} --strict")).exits(3).says(&["met, but the filter is overconfident"]);
     dir.run(&format!("{line} --runs 2 --strict"))
-        .exits(2)
-        .says(&["--strict judges the warnings of single runs"]);
+        .exits(3)
+        .says(&["but the filter is overconfident in 2 runs"]);
 }
 
 /// Returns the objects that a campaign prints with `--json`: those of the runs, and the answer.
@@ -264,4 +319,27 @@ fn events_have_eclipses_and_limits() {
         ends.len() == 3 && ends.iter().zip(&changes).all(|(end, change)| (end - change).abs() <= 0.51),
         "{ends:?} {changes:?}"
     );
+}
+
+/// A campaign with drawn keys has the value of the scenario without them.
+#[test]
+fn a_campaign_has_the_run_without_drawn_keys_beside_it() {
+    let dir = Dir::with(&["half-turn"]);
+    let run = dir.run("simulate half-turn.toml --log none --json").json()["answer"].clone();
+    let (_, answer) = campaign(&dir, "simulate half-turn.toml --runs 8 --json", 3);
+    assert_eq!(answer["requirements"][0]["nominal"], run["requirements"][0]["value"]);
+    dir.run("simulate half-turn.toml --runs 8").exits(3).says(&["nominal", " 1.82 "]);
+}
+
+/// The answer of a log is that of its run, which is repeated; a run that did not end has failed.
+#[test]
+fn a_log_answers_as_its_run() {
+    let dir = Dir::with(&["half-turn"]);
+    let run = dir.run("simulate half-turn.toml --json").exits(0).json()["answer"].clone();
+    assert_eq!(dir.run("log answer half-turn.mcap --json").exits(0).json()["answer"], run);
+    dir.run("log answer half-turn.mcap").exits(0).says(&["1 of 1 requirement met", "margin 74 %"]);
+    let torn = dir.read("half-turn.mcap");
+    dir.write("half-turn.mcap.partial", &torn[..torn.len() * 2 / 3]);
+    dir.run("log recover half-turn.mcap.partial -o torn.mcap").exits(0);
+    dir.run("log answer torn.mcap").exits(1).says(&["FAILED: the log ends at", "from rows every"]);
 }

@@ -155,16 +155,45 @@ fn check_names_modes_that_samples_alias() {
         )
     };
     dir.write("slow.toml", text(1.0));
-    let told = [
-        "remark: `law.pd.period`",
-        "pi/period = 3.142 rad/s: 1 mode is above it",
-        "3.500 rad/s",
-        "2.783 rad/s",
-    ];
+    let told =
+        ["remark: `law.pd.period`", "1/(2 period) = 0.500 Hz: 1 mode is above it", "0.557 Hz", "0.443 Hz"];
     dir.run("check slow.toml").exits(0).says(&told);
     dir.write("quick.toml", text(0.5));
     assert!(!dir.run("check quick.toml").exits(0).err.contains("remark"));
     let law = Dir::with(&["earth-observer"]);
     let told = ["remark: `law.attitude.bandwidth` is above pi/period = 12.566 rad/s", "another unit"];
     law.run("check earth-observer.toml --set law.attitude.bandwidth=30").exits(0).says(&told);
+}
+
+/// Units that do not fit and keys that are misspelt are reported together, in the order of the file.
+#[test]
+fn errors_of_units_and_of_names_come_at_once() {
+    let text = Dir::with(&["relay-fixed"]).text("relay-fixed.toml");
+    let wrong =
+        text.replace("dead_zone =", "dead_zon =").replace("duration = 20000.0", "duration = \"20 km\"");
+    assert!(wrong.contains("dead_zon =") && wrong.contains("20 km"), "{wrong}");
+    let dir = Dir::holding("a.toml", wrong);
+    let said =
+        dir.run("check a.toml").exits(2).says(&["`duration` has the unit `km`", "unknown key `dead_zon`"]);
+    assert!(said.err.find("20 km") < said.err.find("dead_zon"), "{}", said.err);
+}
+
+/// A key of a law is refused in a scenario with modes of operation by the keys that there are.
+#[test]
+fn a_law_beside_modes_is_refused_with_the_laws_of_the_modes() {
+    let dir = Dir::with(&["cubesat-day"]);
+    let line = "check cubesat-day.toml --set law.attitude.bandwidth=0.1";
+    dir.run(line).exits(2).says(&["each mode has a law of its own", "`mode[2].law.attitude` (point)"]);
+}
+
+/// The refusal of a mode without a linear loop has the command that analyses it, which works.
+#[test]
+fn a_refused_mode_comes_with_the_command_that_analyses_it() {
+    let dir = Dir::with(&["cubesat-day"]);
+    let said = dir.run("margins cubesat-day.toml --mode point").exits(2).err;
+    let hint = said.lines().find_map(|line| line.split_once("flexsc margins ")).expect("a command").1;
+    assert!(hint.contains("--mode point --set 'mode[2].sensors=["), "{said}");
+    let set = hint.split("--set ").skip(1).map(|pair| pair.trim().trim_matches('\'').replace(' ', ""));
+    let set: Vec<String> = set.map(|pair| format!("--set {pair}")).collect();
+    dir.run(&format!("margins cubesat-day.toml --mode point {}", set.join(" "))).exits(0).says(&["stable"]);
 }

@@ -76,7 +76,8 @@ fn a_name_that_ends_in_a_form_is_a_file_in_every_verb_that_draws() {
 fn runs_without_randomness_are_reported() {
     let dir = quiet();
     let warning = "warning: no metric differs between the 3 runs";
-    let alike = dir.run("simulate relay-fixed.toml --set duration=400 --runs 3").exits(0).says(&[warning]);
+    let alike =
+        dir.run("simulate relay-fixed.toml --set duration=400 --runs 3 --all").exits(0).says(&[warning]);
     // Their deviation is nothing, and no rounding.
     let rows: Vec<&str> = alike.err.lines().filter(|line| line.starts_with("  duty ")).collect();
     assert!(rows.len() == 1 && rows[0].split_whitespace().nth(3) == Some("0"), "{}", alike.err);

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use flexsc_cli::figures;
 use flexsc_core::Scenario;
+use flexsc_core::answer::{RunVerdict, ScreenOptions};
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
 use flexsc_core::control::law::Command;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
 
@@ -32,11 +34,15 @@ fn commands(given: &[(f64, f64)]) -> CommandLog {
 
 /// Returns a log of the events of a run under some commands that says it is one under others.
 fn log(text: &str, given: &CommandLog, written: &CommandLog, until: Instant) -> Log {
+    detailed(text, [given, written], until, Detail::Events)
+}
+
+fn detailed(text: &str, [given, written]: [&CommandLog; 2], until: Instant, detail: Detail) -> Log {
     let scenario = Scenario::parse("steered.toml", text).expect("a scenario");
     let run = CampaignRun::new(scenario, 0);
     let mut provenance = Campaign::provenance(&run);
     provenance.attachments.push(written.attachment());
-    let mut bytes = LogBytes::new(&provenance, Detail::Events).expect("a log");
+    let mut bytes = LogBytes::new(&provenance, detail).expect("a log");
     let metrics = given.simulate(&run, until, &mut bytes).expect("a run");
     let end = RunEnd::at(until, run.scenario.duration);
     Log::read(Path::new("steered.mcap"), bytes.finish(&metrics, end).expect("a log")).expect("a log")
@@ -60,6 +66,38 @@ fn a_run_under_other_commands_than_those_of_its_log_is_not_drawn() {
             assert!(words.iter().all(|words| fault.contains(words)), "{fault}");
         }
     }
+}
+
+/// A log whose run cannot be repeated is answered from its rows, and says so: with their largest error, and the values of its metrics.
+#[test]
+fn a_log_that_cannot_be_repeated_is_answered_from_its_rows() {
+    let required =
+        "\n[[requirement]]\nname = \"end\"\nquantity = \"pointing_error_end_rad\"\nlimit = \"0.001 deg\"\n";
+    let text = format!("{THREE_AXES}\n[log]\nperiod = 0.5\n") + required;
+    let (given, none) = (commands(&[(1.0, 0.5), (3.0, -0.1)]), CommandLog::default());
+    let (path, units) = (Path::new("steered.mcap"), ReaderUnits::default());
+    let answer = |log: &Log| flexsc_cli::answer_of_log(log, path, units).expect("an answer").1;
+    let repeated = answer(&detailed(&text, [&given, &given], Instant::END, Detail::Full));
+    let log = detailed(&text, [&given, &none], Instant::END, Detail::Full);
+    let from_rows = answer(&log);
+    assert_eq!((repeated.from_rows_s, from_rows.from_rows_s), (None, Some(0.5)));
+    assert_eq!(from_rows.requirements[0].value, repeated.requirements[0].value);
+    assert_eq!(from_rows.verdict, RunVerdict::Missed);
+    let screen = from_rows.screen(None, ScreenOptions::default());
+    assert!(screen.contains("10 s, from rows every 0.500 s"), "{screen}");
+    // The body drifts away from its target: the row at the end has the largest error.
+    let columns = log.columns("/pointing").expect("rows");
+    let error = |row: usize| {
+        let axes = ["roll_error_rad", "pitch_error_rad", "yaw_error_rad"];
+        axes.map(|name| columns.numbers(name).expect("a column")[row])
+            .iter()
+            .map(|own| own * own)
+            .sum::<f64>()
+            .sqrt()
+    };
+    let largest = units.fitting(error(20), "rad").number(error(20));
+    let line = from_rows.lines.iter().find(|line| line.head == "pointing").expect("a line");
+    assert!(line.text.contains(&format!("largest {largest} at 10 s")), "{}: {largest}", line.text);
 }
 
 #[test]

@@ -116,6 +116,12 @@ fn the_command_writes_a_tuned_scenario() {
     assert!(dir.path("figures/earth-observer-tune-margin.svg").exists());
     let (before, after) = (modulus(&dir.path("earth-observer.toml")), modulus(&dir.path("tuned.toml")));
     assert!(after > before + 0.01, "{before} {after}");
+    // The file is as it was but for the two numbers, with its comments.
+    let [old, new] = ["earth-observer.toml", "tuned.toml"].map(|name| dir.text(name));
+    let changed: Vec<&str> =
+        new.lines().zip(old.lines()).filter(|(new, old)| new != old).map(|(new, _)| new).collect();
+    assert_eq!(new.lines().count(), old.lines().count());
+    assert!(changed.len() == 2 && changed[0].contains("# rad/s"), "{changed:?}");
     // The tuned scenario is a scenario of its own: a second search stays where it is.
     let again = line.replace("earth-observer.toml", "tuned.toml");
     let object = dir.run(&format!("{again} --bandwidth 0.08 --json")).exits(0).json();
@@ -210,4 +216,23 @@ fn a_pointing_index_is_minimised_and_limited() {
     ] {
         dir.run(&format!("{line} {arguments}")).exits(2).says(&[told]);
     }
+}
+
+/// A search for margins alone says what it costs: the settling time, and that a key goes to the end of its range.
+#[test]
+fn a_search_says_that_settling_is_lost_and_that_a_range_ends_it() {
+    let dir = Dir::with(&["earth-observer"]);
+    dir.write(
+        "hertz.toml",
+        dir.text("earth-observer.toml").replace("bandwidth = 0.1 ", "bandwidth = \"0.016 Hz\" "),
+    );
+    let line = "tune hertz.toml --vary law.attitude.bandwidth=0.02:0.4 --nominal --save tuned.toml";
+    dir.run(line).exits(0).says(&[
+        "! settling of the nominal plant 42.",
+        "--keep 'settling<=42.",
+        "! law.attitude.bandwidth ends at its lowest value",
+        "0.016 Hz",
+    ]);
+    // The number keeps its unit.
+    assert!(dir.text("tuned.toml").contains("bandwidth = \"0.00318"), "{}", dir.text("tuned.toml"));
 }

@@ -107,10 +107,46 @@ fn visits_of_a_mode_are_one_warning() {
     assert_eq!(journal.matches("the target is lost in mode turn").count(), 2, "{journal}");
     // Each run of a campaign has them.
     let rows = dir.run("simulate a.toml --runs 2 --json").exits(0).out;
-    assert_eq!(rows.matches(head).count(), 2, "{rows}");
+    assert_eq!(rows.matches(head).count(), 3, "two runs and the answer: {rows}");
     dir.run("simulate a.toml --runs 2 --table csv -o b").exits(0).says(&["target_losses"]);
     let table = dir.text("b/runs.csv");
     assert!(table.contains("wheel 3 at its momentum limit; wheel 3 at its momentum limit"), "{table}");
+}
+
+/// A campaign says which runs lose a target, what the worst one says of it, and how each mode fares.
+#[test]
+fn a_campaign_has_the_losses_and_the_modes_of_its_runs() {
+    let drawn = "[uncertain]\n\"actuator.wheels.momentum\" = { uniform = [0.28, 0.34] }\n";
+    let dir = Dir::holding("a.toml", format!("duration = 1300.0\n{MODES}{BODY}{WHEELS}{drawn}"));
+    let lines = dir.run("simulate a.toml --runs 6 --json").exits(0).out;
+    let mut runs: Vec<Json> =
+        lines.lines().map(|line| serde_json::from_str(line).expect("an object")).collect();
+    let answer = runs.pop().expect("an answer")["answer"].clone();
+    let errors: Vec<f64> =
+        runs.iter().map(|run| numbers(&run["metrics"], "target_loss_errors_rad")[0]).collect();
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    let worst = errors.iter().position(|error| *error == largest).expect("a run");
+    let own = &answer["warnings"][0];
+    assert_eq!((&own["kind"], &own["mode"]), (&"target_lost".into(), &"turn".into()));
+    assert_eq!((own["runs"].as_u64(), own["worst_run"].as_u64()), (Some(6), Some(worst as u64)));
+    let said = runs[worst]["warnings"][0].as_str().expect("a text");
+    assert_eq!(own["text"], format!("6 of 6 runs, worst run {worst}: {said}"));
+    let times = |name: &str| -> Vec<f64> {
+        let mut all: Vec<f64> = runs.iter().map(|run| numbers(&run["metrics"], name)[1]).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let turn = &answer["by_mode"][1];
+    let [limits, stays] = ["wheel_momentum_limit_times_s", "mode_times_s"].map(times);
+    assert_eq!((&turn["runs"], &turn["runs_lost"]), (&6.into(), &6.into()));
+    assert_eq!(turn["at_limit_s"]["largest"].as_f64(), Some(limits[5]));
+    is_near(
+        turn["at_limit_s"]["median"].as_f64().expect("a time"),
+        f64::midpoint(limits[2], limits[3]),
+        1e-9,
+    );
+    is_near(turn["time_s"]["median"].as_f64().expect("a time"), f64::midpoint(stays[2], stays[3]), 1e-9);
+    dir.run("simulate a.toml --runs 6 --all").exits(0).says(&["! 6 of 6 runs, worst run", "target lost\n"]);
 }
 
 /// A 6U CubeSat in its first ground pass, whose turn takes more momentum than wheel 3 stores. The figures are those that a separate

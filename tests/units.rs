@@ -112,7 +112,7 @@ fn every_key_with_a_unit_takes_it() {
             {
                 let mut document = Document::from_table("x", plain.clone());
                 document.set(&key, Value::String(format!("{number:e} {unit}"))).expect("a key");
-                match document.in_si(|| schema) {
+                match document.in_si::<toml::Table>(|| schema) {
                     Ok(read) => {
                         assert_eq!(*read.table(), plain, "{key} {unit}");
                         fits += 1;

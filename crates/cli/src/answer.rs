@@ -26,7 +26,7 @@ pub struct AnswerArgs {
     /// Print everything that is known of the run, not only the first screen
     #[arg(long)]
     pub all: bool,
-    /// Exit with 3 also if a run meets all requirements, but target, filter or loop is lost
+    /// Exit with 3 also if all requirements are met, but target, filter or loop is lost in a run
     #[arg(long)]
     pub strict: bool,
 }
@@ -52,14 +52,20 @@ impl AnswerArgs {
         let screen = answer.screen(Some(took), self.screen());
         // Only terminals that support colours get them, and not if NO_COLOR is set.
         let _ = writeln!(anstream::stderr(), "{}", coloured(&screen, answer));
-        let log = log.map(|(path, bytes)| {
+        let (log, plot) = log.map_or_else(Default::default, |(path, bytes)| {
             let path = path.display();
-            format!("log {path}, {}     flexsc plot {path}", size(bytes))
+            (format!("log {path}, {}", size(bytes)), format!("flexsc plot {path}"))
         });
-        let more = if self.all { None } else { Some("more: --all".to_owned()) };
-        let last: Vec<String> = log.into_iter().chain(more).collect();
-        if !last.is_empty() {
-            say!("  {}", last.join("     "));
+        let joined = |texts: &[&str]| {
+            let texts: Vec<&str> = texts.iter().copied().filter(|text| !text.is_empty()).collect();
+            format!("  {}", texts.join("     "))
+        };
+        let more = if self.all { "" } else { "more: --all" };
+        let line = joined(&[&log, &plot, more]);
+        if line.chars().count() > width() {
+            say!("{}\n{}", joined(&[&log]), joined(&[&plot, more]));
+        } else if !line.trim().is_empty() {
+            say!("{line}");
         }
     }
 

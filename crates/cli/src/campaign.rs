@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::answer::{Answer, Observed};
+use flexsc_core::answer::{Answer, Observed, RunVerdict};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, CampaignRuns, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows,
     Sampling,
@@ -116,7 +116,7 @@ pub fn run(
 ) -> Result<Vec<RequirementVerdict>, CliError> {
     let began = WallInstant::now();
     let _writing = stop::writing();
-    let reported = match job.table {
+    let mut reported = match job.table {
         Some(path) if job.kind == TableFormat::Parquet && !job.is_file => {
             let path = job.prefix.map_or_else(|| path.to_owned(), |name| path.join(name));
             part_files::run(campaign, job, &path, work)?
@@ -124,6 +124,7 @@ pub fn run(
         _ => table(campaign, job, work)?,
     };
     let runs = reported.runs as u64;
+    reported.nominal = nominal(campaign, job, &reported);
     if campaign.design().keys().is_empty() && are_alike(&reported.statistics) {
         say!(
             "warning: no metric differs between the {runs} runs: does the scenario have noise or [uncertain] keys?"
@@ -141,16 +142,32 @@ pub fn run(
                 say!("  table {}", path.display());
             }
         }
-    } else if !job.json {
-        reported.say(scenario, Some(took), job.answer);
-    } else if campaign.design().blocks.is_empty() {
-        let answer = reported.answer(scenario, job.answer);
-        print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
+    } else {
+        let is_sweep = !campaign.design().blocks.is_empty();
+        let answer = (!is_sweep).then(|| reported.answer(scenario, job.answer));
+        if !job.json {
+            reported.say(scenario, Some(took), job.answer);
+        } else if let Some(answer) = &answer {
+            print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
+        }
+        let lost = answer.filter(|own| job.answer.strict && own.verdict == RunVerdict::MetBut);
+        if let Some(lost) = lost.filter(|_| reported.failed.is_none()) {
+            return Err(CliError::Requirements(format!("{}: {}", scenario.name, lost.verdict_text)));
+        }
     }
     match reported.failed {
         None => Ok(reported.requirements),
         Some((failed, number, why)) => Err(CliError::Runs { failed, runs, number, why }),
     }
+}
+
+/// Returns the metrics of the scenario without drawn keys, where a campaign draws keys and has requirements.
+fn nominal(campaign: &Campaign, job: &CampaignJob<'_>, reported: &CampaignReport) -> Option<Metrics> {
+    let is_asked = !campaign.scenario().uncertain.is_empty() && !reported.requirements.is_empty();
+    let is_shown = is_asked && !job.part && campaign.design().blocks.is_empty() && reported.only.is_none();
+    let run = is_shown.then(|| CampaignRun::new(campaign.scenario().clone(), 0))?;
+    // Without it, the other runs are answered all the same.
+    Campaign::simulate_metrics(&run, &Selection::ALL, stop::stop_flag()).ok()
 }
 
 /// Runs a campaign with its rows in one table, or without a table.
@@ -246,7 +263,7 @@ fn table(
     let column =
         |name: &str| -> Result<_, CliError> { Ok(points.column(name).map(std::borrow::Cow::into_owned)) };
     let points = Points::new((campaign, &job.range), (&statistics, &job.selection), column)?;
-    Ok(CampaignReport { runs, statistics, requirements, values, points, failed, only, table })
+    Ok(CampaignReport { runs, statistics, requirements, values, points, failed, only, nominal: None, table })
 }
 
 fn interruption(run: u64) -> CliError {

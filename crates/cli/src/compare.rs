@@ -22,7 +22,7 @@ use crate::figure_files::FigureOutput;
 use crate::human::UnitsArgs;
 use crate::results::print_lines;
 use crate::stop::stop_flag;
-use crate::{memory_log, plot, say, scenario, simulate};
+use crate::{logged_answer, memory_log, plot, say, scenario, simulate};
 
 #[derive(clap::Args)]
 pub struct CompareArgs {
@@ -199,11 +199,8 @@ impl ComparedSource {
                 Ok(ComparedRun { scenario: *scenario, answer, log })
             }
             Self::Log(path, log) => {
-                let story = plot::RunEvents::read(&log, &path, None)?;
-                let mut observer = RunObserver::new(&story.scenario);
-                let metrics = story.repeat(&log, &path, "an answer", &mut observer)?;
-                let answer = Answer::new(&story.scenario, &metrics, Some(&observer.finish()), units);
-                Ok(ComparedRun { scenario: story.scenario, answer, log: Some(*log) })
+                let (scenario, answer) = logged_answer::logged(&log, &path, units)?;
+                Ok(ComparedRun { scenario, answer, log: Some(*log) })
             }
         }
     }

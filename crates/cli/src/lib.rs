@@ -1,6 +1,7 @@
 //! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
 mod answer;
+mod at_rest;
 mod bound;
 mod budget;
 mod campaign;
@@ -30,6 +31,7 @@ mod layout;
 #[cfg_attr(not(feature = "live"), path = "live/unavailable.rs")]
 mod live;
 mod log;
+mod logged_answer;
 mod map;
 mod margins;
 mod memory_log;
@@ -88,6 +90,7 @@ use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 pub use human::Units;
+pub use logged_answer::logged as answer_of_log;
 pub use report::EditableStudy;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft

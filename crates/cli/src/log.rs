@@ -1,15 +1,17 @@
-//! `flexsc log`: contents of a log, and repair of torn logs.
+//! `flexsc log`: answer and scenario of a log, and repair of torn logs.
 
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Subcommand;
 use flexsc_core::formats::count::counted;
 use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
+use crate::answer::AnswerArgs;
 use crate::error::{CliError, without_controls};
-use crate::{files, out, print, say};
+use crate::{files, logged_answer, out, print, say};
 
 #[derive(clap::Args)]
 pub struct LogArgs {
@@ -19,6 +21,16 @@ pub struct LogArgs {
 
 #[derive(Subcommand)]
 enum Verb {
+    /// Print the answer of a log: its run is repeated, or, where that is impossible, its rows are read
+    Answer {
+        /// The log
+        log: PathBuf,
+        /// Print one JSON object on stdout
+        #[arg(long)]
+        json: bool,
+        #[command(flatten)]
+        answer: AnswerArgs,
+    },
     /// Recover the complete part of the log of a killed run
     Recover {
         /// The incomplete log, such as relay.mcap.partial
@@ -55,6 +67,17 @@ pub fn run(args: &LogArgs) -> Result<(), CliError> {
             }
             say!("{} saved in {}", counted(saved, "message"), whole.display());
             Ok(())
+        }
+        Verb::Answer { log: path, json, answer: args } => {
+            let (began, log) = (Instant::now(), Log::open(path)?);
+            let (scenario, answer) = logged_answer::logged(&log, path, args.units.units.into())?;
+            if *json {
+                let object = json!({"file": path.display().to_string(), "answer": answer});
+                print(format!("{object}\n").as_bytes())?;
+            } else {
+                args.print(&answer, began.elapsed().as_secs_f64(), None);
+            }
+            args.validate(&[(scenario.name.clone(), answer)])
         }
         Verb::Scenario { log } => print(without_controls(Log::open(log)?.require_scenario()?).as_bytes()),
     }

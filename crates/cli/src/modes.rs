@@ -9,6 +9,7 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::spacecraft::body::{BodyAxes, Drive};
 use serde_json::{Value as Json, json};
@@ -100,10 +101,13 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
         [false, false, false] => "a torque gives",
         _ => "the jets or a torque give",
     };
-    let mut rows = vec![texts(&["acceleration of the hub", "positive", "negative", "rad/s²"])];
+    let largest =
+        modes.accelerations_rad_s2.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+    let unit = ReaderUnits::from(style.units).fitting(largest, "rad/s²");
+    let mut rows = vec![texts(&["acceleration of the hub", "positive", "negative", &unit.name])];
     for ((axis, [plus, minus]), jets) in AXES.iter().zip(modes.accelerations_rad_s2).zip(jets) {
         let by = if jets { "by the jets" } else { "by a torque of 1 N m" };
-        rows.push(vec![format!("{axis}, {by}"), digits(plus), digits(-minus), String::new()]);
+        rows.push(vec![format!("{axis}, {by}"), unit.number(plus), unit.number(-minus), String::new()]);
     }
     print_table(&rows, 0);
     if modes.dampings.is_empty() {

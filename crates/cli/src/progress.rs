@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
@@ -74,6 +75,14 @@ impl Lines {
     }
 }
 
+/// Stage of a command, which its lines name.
+static STAGE: Mutex<&str> = Mutex::new("");
+
+/// Names the stage that begins.
+pub fn stage(name: &'static str) {
+    *STAGE.lock().unwrap_or_else(PoisonError::into_inner) = name;
+}
+
 /// Lines on stderr of a command that shows no progress of its own: the first after 10 s, then one every 30 s, until it is dropped.
 pub struct Heartbeat {
     /// Ends the thread when it is dropped.
@@ -90,7 +99,9 @@ impl Heartbeat {
         let lines = move || {
             let again = Duration::from_secs_f64(Lines::AGAIN);
             beat(&ended, [Self::FIRST, again], |elapsed| {
-                say!("progress: {verb} has run for {}", seconds(elapsed));
+                let stage = *STAGE.lock().unwrap_or_else(PoisonError::into_inner);
+                let now = if stage.is_empty() { String::new() } else { format!(", now {stage}") };
+                say!("progress: {verb} has run for {}{now}", seconds(elapsed));
             });
         };
         // Without a thread there are no lines.

@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 use std::io::Write;
 
+use flexsc_core::formats::reader_units::ReaderUnits;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -35,7 +36,7 @@ enum NumberForm<'a> {
     Named,
     /// Times a factor, in a unit that is given.
     Scaled(f64, &'a str),
-    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row.
+    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row, and its field `key`.
     OfRow,
     /// Factor on a gain, in dB, of which there is none for 0; a list of two is a range.
     Gain,
@@ -198,7 +199,10 @@ fn row_scale(row: &Json, shown: &[Column<'_>], units: Units) -> (f64, String) {
     let mut numbers = Vec::new();
     let own = shown.iter().filter(|column| matches!(column.form, NumberForm::OfRow));
     own.filter_map(|column| column.cell(row)).for_each(|cell| collect(cell, &mut numbers));
-    units.common(&numbers, row.get("unit").and_then(Json::as_str).unwrap_or(""))
+    let text = |name: &str| row.get(name).and_then(Json::as_str).unwrap_or_default();
+    let largest = numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
+    let unit = ReaderUnits::from(units).of_key(text("key"), largest, text("unit"));
+    (unit.value(1.0), unit.name.into_owned())
 }
 
 #[cfg(test)]

@@ -128,11 +128,6 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
         let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler apply only to campaigns (--runs)";
         return Err(CliError::Arguments(why.to_owned()));
     }
-    if args.runs.is_some() && args.answer.strict {
-        let why =
-            "--strict judges the warnings of single runs; a campaign (--runs) is judged by its requirements";
-        return Err(CliError::Arguments(why.to_owned()));
-    }
     if args.live.live.is_some() && args.scenarios.len() > 1 {
         let count = args.scenarios.len();
         return Err(CliError::Arguments(format!("--live follows one scenario, got {count}")));

@@ -71,8 +71,8 @@ const PREFIXES: [(&str, f64, f64); 6] = [
 ];
 
 /// Names of keys that are angular frequencies, and of those that are speeds of rotors.
-const FREQUENCIES: [&str; 3] = ["frequency", "frequencies", "bandwidth"];
-const SPEEDS: [&str; 3] = ["speed", "speeds", "speed_limit"];
+const FREQUENCIES: [&str; 2] = ["frequenc", "bandwidth"];
+const SPEED: &str = "speed";
 
 impl ReaderUnits {
     /// Returns the unit that fits the largest of some values of an SI unit.
@@ -111,14 +111,14 @@ impl ReaderUnits {
         }
     }
 
-    /// Returns the unit of values of a scenario's key, the largest of which is given: Hz of angular frequencies, rpm of speeds of
+    /// Returns the unit of values of a scenario's key or of a metric, the largest of which is given: Hz of angular frequencies, rpm of speeds of
     /// rotors, else one that fits.
     pub fn of_key(self, key: &str, largest: f64, unit: &str) -> ReaderUnit {
         let last = key.rsplit('.').next().unwrap_or_default();
         let name = last.split('[').next().unwrap_or_default();
         match unit {
-            "rad/s" if FREQUENCIES.contains(&name) => self.frequency(),
-            "rad/s" if SPEEDS.contains(&name) => self.rotor_speed(),
+            "rad/s" if FREQUENCIES.iter().any(|own| name.contains(own)) => self.frequency(),
+            "rad/s" if name.contains(SPEED) => self.rotor_speed(),
             _ => self.fitting(largest, unit),
         }
     }

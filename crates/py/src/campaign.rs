@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexsc_core::answer::{CampaignAnswer, ScreenOptions};
+use flexsc_core::answer::CampaignAnswer;
 use flexsc_core::campaign::{
     Campaign, CampaignRun, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR, MANIFEST,
     Manifest, RowMaker as Whole, RunRows, SECONDS,
@@ -322,6 +322,12 @@ pub fn campaign_statistics(
     Ok(reported.map_err(failed)?.into_iter().map(summary).collect())
 }
 
+/// The names of the columns from which the answer of a campaign is made, besides its varied keys.
+#[pyfunction]
+pub fn answer_columns() -> Vec<&'static str> {
+    CampaignRuns::columns().collect()
+}
+
 /// The answer of a campaign's columns.
 #[pyfunction]
 pub fn campaign_answer(
@@ -340,8 +346,7 @@ pub fn campaign_answer(
         Ok(CampaignAnswer::new(work.campaign.scenario(), &runs, None, None, ReaderUnits::default()))
     })?
     .map_err(failed)?;
-    let screen = |all| answer.screen(None, ScreenOptions { all, ..ScreenOptions::default() });
-    Ok(RunAnswer::copied(json!(answer).to_string(), screen(false), screen(true)))
+    Ok(RunAnswer::of_campaign(answer))
 }
 
 fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {

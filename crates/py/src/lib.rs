@@ -58,11 +58,11 @@ mod _native {
     #[pymodule_export]
     use super::analysis::{analysis, persistence, plan_torque};
     #[pymodule_export]
-    use super::answer::RunAnswer;
+    use super::answer::{RunAnswer, compare, log_answer};
     #[pymodule_export]
     use super::arrow::{arrow_schema, arrow_stream};
     #[pymodule_export]
-    use super::campaign::{Directory, Work, campaign_answer, campaign_statistics};
+    use super::campaign::{Directory, Work, answer_columns, campaign_answer, campaign_statistics};
     #[pymodule_export]
     use super::commands::Commands;
     #[pymodule_export]
@@ -294,7 +294,7 @@ fn simulate<'py>(
     Ok((
         columns::metrics_to_dict(py, &metrics)?,
         topics,
-        RunAnswer::made(answer, began.elapsed().as_secs_f64()),
+        RunAnswer::made(answer, Some(began.elapsed().as_secs_f64())),
     ))
 }
 

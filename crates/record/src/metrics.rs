@@ -68,6 +68,15 @@ impl Metrics {
         }
     }
 
+    /// Returns the value of a metric that is a word; those that were read from a table or a log are lists of one.
+    pub fn word(&self, name: &str) -> Option<&str> {
+        match self.get(name)? {
+            MetricValue::Word(word) => Some(word),
+            MetricValue::Words(words) => words.first().map(String::as_str).filter(|_| words.len() == 1),
+            _ => None,
+        }
+    }
+
     /// Returns the metrics as a JSON object, with null for NaN.
     pub fn to_json(&self) -> Json {
         let object = self.0.iter().map(|(meaning, value)| (meaning.name.to_owned(), value.to_json()));

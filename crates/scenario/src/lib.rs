@@ -121,7 +121,7 @@ impl Scenario {
     }
 
     fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
-        let document = &*document.in_si(units)?;
+        let document = &*document.in_si::<ScenarioSpec>(units)?;
         let (written, model) = Self::assembled(document, parent, own)?;
         Self::fitted(written, model).map_err(|errors| document.at_keys(&errors))
     }
@@ -132,13 +132,12 @@ impl Scenario {
         parent: Option<&Self>,
         own: &CustomParts,
     ) -> Result<(ScenarioSpec, BodyModel), ScenarioError> {
+        if let Some(fault) = law_beside_modes(document) {
+            return Err(document.at_key(&fault));
+        }
         let mut written: ScenarioSpec = document.read()?;
         written.write_uncertain_factors();
         written.inherit_custom_parts(own, document);
-        if !written.mode.is_empty() && document.has("law") {
-            let why = "must be left out with `[[mode]]`: each mode has a law of its own";
-            return Err(document.at_key(&ConfigError::new("law", why)));
-        }
         written.adopt_modes().map_err(|fault| document.at_key(&fault))?;
         if written.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
@@ -329,7 +328,7 @@ impl Scenario {
         }
         let mut document = Document::from_table(&self.name, self.table_without_custom_parts());
         document.set(key, text.trim().into())?;
-        let document = document.in_si(units)?;
+        let document = document.in_si::<ScenarioSpec>(units)?;
         let value = flexsc_formats::document::key::get(document.table(), key).and_then(toml::Value::as_float);
         let why = || format!("must be a number, or a number with a unit, got `{text}`");
         value.ok_or_else(|| document.at_key(&ConfigError::new(key, why())))
@@ -347,6 +346,20 @@ impl Scenario {
         let unit = flexsc_formats::document::unit_at(units(), key)?;
         Some(if unit == "N m" && self.model.has_unit_inertia() { "rad/s²" } else { unit })
     }
+}
+
+/// Returns the error of a law beside modes of operation, which have laws of their own.
+fn law_beside_modes(document: &Document) -> Option<ConfigError> {
+    let modes = document.table().get("mode")?.as_array().filter(|modes| !modes.is_empty())?;
+    let named = |(index, mode): (usize, &toml::Value)| {
+        let kind = mode.get("law")?.as_table()?.keys().next()?;
+        let name = mode.get("name").and_then(toml::Value::as_str).unwrap_or_default();
+        Some(format!("`mode[{index}].law.{kind}` ({name})"))
+    };
+    let laws: Vec<String> = modes.iter().enumerate().filter_map(named).collect();
+    let laws = if laws.is_empty() { String::new() } else { format!(": {}", laws.join(", ")) };
+    let why = format!("must be left out with `[[mode]]`: each mode has a law of its own{laws}");
+    document.has("law").then(|| ConfigError::new("law", why))
 }
 
 /// Returns the JSON Schema, whose descriptions contain the units of the keys.

@@ -152,7 +152,7 @@ impl Scenario {
         let mut table = Document::parse(origin, text.to_owned())?.table().clone();
         let own = CustomFacts::from_json(log.own_part_facts()).replace(&mut table);
         let document = Document::from_table(origin, table);
-        let document = &*document.in_si(super::units)?;
+        let document = &*document.in_si::<super::ScenarioSpec>(super::units)?;
         let (written, model) = Self::assembled(document, None, &own)?;
         Self::resolved(written, model).and_then(Self::planned).map_err(|fault| document.at_key(&fault))
     }

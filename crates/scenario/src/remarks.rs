@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key::bare_or_quoted;
+use flexsc_formats::reader_units::ReaderUnits;
 use toml::{Table, Value};
 
 use super::Scenario;
@@ -39,10 +40,13 @@ impl Scenario {
         let cycles = fastest * period / TAU;
         let alias = (cycles - libm::round(cycles)).abs() * TAU / period;
         let verb = if above.len() == 1 { "is" } else { "are" };
+        let hertz = ReaderUnits::Engineering.frequency();
         let why = format!(
-            "shows frequencies up to pi/period = {limit:.3} rad/s: {} {verb} above it, the fastest of {fastest:.3} rad/s, which samples \
-             show as {alias:.3} rad/s",
-            counted(above.len(), "mode")
+            "shows frequencies up to 1/(2 period) = {}: {} {verb} above it, the fastest of {}, which samples show as {}",
+            hertz.quantity(limit),
+            counted(above.len(), "mode"),
+            hertz.quantity(fastest),
+            hertz.quantity(alias)
         );
         Some(ConfigError::new(key, why))
     }

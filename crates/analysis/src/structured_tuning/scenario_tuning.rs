@@ -244,6 +244,17 @@ impl TunedScenario {
         Scenario::from_document(&document)
     }
 
+    /// Returns the longest settling times of the nominal plant (s), with the keys of the scenario and the tuned ones; `None` for a
+    /// loop that has none.
+    pub fn settling(&self) -> Option<[f64; 2]> {
+        let longest = |values: &[f64]| {
+            let plant = self.loops.plant_at(values, 0, &[ScenarioMeasure::Settling]).ok()?;
+            let times = plant.measures.iter().flatten();
+            times.copied().reduce(f64::max).filter(|time| time.is_finite())
+        };
+        Some([longest(&self.tuned.before.values)?, longest(&self.tuned.after.values)?])
+    }
+
     /// Returns the point at which the loops are cut open.
     pub fn opened(&self) -> LoopBreak {
         self.opened

@@ -205,7 +205,17 @@ pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignRepo
     if !requirements.is_empty() {
         requirements::write_table(&directory.path().join(REQUIREMENTS), &requirements)?;
     }
-    Ok(CampaignReport { runs, statistics, requirements, values, points, failed, only: None, table })
+    Ok(CampaignReport {
+        runs,
+        statistics,
+        requirements,
+        values,
+        points,
+        failed,
+        only: None,
+        nominal: None,
+        table,
+    })
 }
 
 /// Writes the table of the statistics of a directory.

@@ -34,6 +34,8 @@ pub struct CampaignReport {
     pub failed: Option<(u64, u64, String)>,
     /// Metrics of a single run.
     pub only: Option<Metrics>,
+    /// Metrics of the scenario without drawn keys, if they are shown beside those of the runs.
+    pub nominal: Option<Metrics>,
     /// Path of the rows.
     pub table: Option<PathBuf>,
 }
@@ -82,15 +84,15 @@ impl CampaignReport {
             return;
         }
         // Without a requirement, the statistics are what is asked for.
-        let shown: Vec<&Statistics> = self.shown_statistics(args.all).collect();
-        if args.all || self.requirements.is_empty() {
+        let shown = self.shown_statistics(args.all);
+        if !shown.is_empty() && (args.all || self.requirements.is_empty()) {
             say!("\n{}", style().styled(&statistics_table(&shown, args.units.units.into())));
         }
         for s in self.statistics.iter().filter(|s| s.infinite > 0) {
             say!("  {}: too large for a number in {} of {runs}, left out", s.name, s.infinite);
         }
         let printed = if args.all || self.requirements.is_empty() { shown.len() } else { 0 };
-        let hidden = self.shown_statistics(true).count() - printed;
+        let hidden = self.shown_statistics(true).len() - printed;
         let more = (hidden > 0).then(|| format!("{} more: --all", counted(hidden, "metric")));
         let last: Vec<String> = table.into_iter().chain(more).collect();
         if !last.is_empty() {
@@ -98,31 +100,42 @@ impl CampaignReport {
         }
     }
 
-    /// Returns the statistics that are printed: those of metrics that have a value, but for verdicts, idle elements and,
-    /// unless `all` are wanted, late elements of long lists.
-    fn shown_statistics(&self, all: bool) -> impl Iterator<Item = &Statistics> {
+    /// Returns the statistics that are printed: those of metrics that have a value, but for verdicts and idle elements; unless
+    /// `all` are wanted, some that vary, the main ones first.
+    fn shown_statistics(&self, all: bool) -> Vec<&Statistics> {
         let is_verdict =
             |s: &Statistics| goal::NAMES.contains(&s.name.as_str()) || s.name.starts_with("requirement_");
         // An element of a list that is 0 in all runs does not apply, as the time at a limit in a mode that reaches none.
         let is_idle = |s: &Statistics| s.name.ends_with(']') && s.mean == 0.0 && s.quantiles == [0.0; 5];
-        let is_late = move |s: &Statistics| {
-            let element =
-                s.name.split_once('[').and_then(|(_, rest)| rest.trim_end_matches(']').parse().ok());
-            !all && element.is_some_and(|element: usize| element >= MOST_ELEMENTS)
+        let known = self.statistics.iter().filter(|s| s.runs > 0 && !is_verdict(s) && !is_idle(s));
+        if all {
+            return known.collect();
+        }
+        let place = |s: &Statistics| {
+            let name = s.name.split('[').next().unwrap_or_default();
+            super::MAIN.iter().position(|main| *main == name).unwrap_or(super::MAIN.len())
         };
-        self.statistics.iter().filter(move |s| s.runs > 0 && !is_verdict(s) && !is_idle(s) && !is_late(s))
+        let (mut shown, constant): (Vec<&Statistics>, Vec<&Statistics>) = known.partition(|s| s.sd != 0.0);
+        if shown.is_empty() {
+            shown = constant.into_iter().filter(|s| place(s) < super::MAIN.len() && s.mean != 0.0).collect();
+        }
+        shown.sort_by_key(|s| place(s));
+        shown.truncate(MOST_METRICS);
+        shown
     }
 
     /// Returns the answer of the campaign.
     pub fn answer(&self, scenario: &Scenario, args: AnswerArgs) -> CampaignAnswer {
         let directory = self.table.as_ref().filter(|path| path.is_dir());
         let directory = directory.map(|path| path.display().to_string());
-        CampaignAnswer::new(scenario, &self.values, None, directory.as_deref(), args.units.units.into())
+        let nominal = self.nominal.as_ref().map(|metrics| args.answer(scenario, metrics, None));
+        let units = args.units.units.into();
+        CampaignAnswer::new(scenario, &self.values, nominal.as_ref(), directory.as_deref(), units)
     }
 }
 
-/// Number of elements of a list that are printed.
-const MOST_ELEMENTS: usize = 8;
+/// Number of metrics that are printed unless all are wanted.
+const MOST_METRICS: usize = 7;
 
 /// Returns the statistics as a table, each row in a unit that fits it.
 fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
@@ -135,7 +148,7 @@ fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
             .iter()
             .filter(|number| number.is_finite())
             .fold(0.0, |most: f64, own| most.max(own.abs()));
-        let unit = units.fitting(largest, s.unit);
+        let unit = units.of_key(&s.name, largest, s.unit);
         let mut row = vec![s.name.clone(), unit.name.to_string(), s.runs.to_string()];
         row.extend(
             numbers.iter().map(|value| if value.is_nan() { "-".to_owned() } else { unit.number(*value) }),

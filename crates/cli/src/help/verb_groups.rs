@@ -149,7 +149,7 @@ pub const GROUPS: [(&str, &[Verb]); 7] = [
             (
                 "log",
                 [
-                    ("flexsc log scenario relay-adaptive.mcap", "the scenario of a log"),
+                    ("flexsc log answer relay-adaptive.mcap", "the answer of its run"),
                     (
                         "flexsc log recover relay-adaptive.mcap -o whole.mcap",
                         "a complete log from what a killed run left",

@@ -19,6 +19,7 @@ use flexsc_figure::Named;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
+use crate::at_rest::hinted;
 use crate::choice::choice;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
@@ -98,7 +99,8 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
-    let margins = results(&args.scenario.load()?, args)?;
+    let margins = args.scenario.load().and_then(|scenario| results(&scenario, args));
+    let margins = margins.map_err(|failure| hinted(failure, "margins", &args.scenario))?;
     show(&margins, Some(&args.drawing), args.scenario.json)?;
     match margins.violations() {
         0 => Ok(()),

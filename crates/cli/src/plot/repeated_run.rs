@@ -43,8 +43,8 @@ impl Record for RepeatedEvents {
 }
 
 impl RunEvents {
-    /// Repeats the run of the log at `path` with a record, because the log has no rows of the topic `missing`, and returns its
-    /// metrics.
+    /// Repeats the run of the log at `path` with a record, because the log lacks the rows of a topic or an answer, and returns
+    /// its metrics.
     ///
     /// # Errors
     /// A run that is too long, that needs parts or commands that the log does not have, or that differs from the log.
@@ -55,9 +55,11 @@ impl RunEvents {
         missing: &str,
         recorder: &mut impl Record,
     ) -> Result<Metrics, CliError> {
+        let missing =
+            if missing.starts_with('/') { format!("rows of {missing}") } else { missing.to_owned() };
         if let Some(own) = self.absent_parts.as_deref() {
             let why = format!(
-                "has no rows of {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"
+                "has no {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"
             );
             return Err(CliError::Arguments(format!("{}: {why}", path.display())));
         }
@@ -71,7 +73,7 @@ impl RunEvents {
             unusable(path, why.to_owned())
         })?;
         if self.is_noted {
-            say!("note: repeats the run, because {} has no rows of {missing}", path.display());
+            say!("note: repeats the run, because {} has no {missing}", path.display());
         }
         // The end of a torn log is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);

@@ -1,6 +1,5 @@
 //! Limits of requirements as lines over the time in which they count, with their values as they were written.
 
-use flexsc_core::answer::requirement_id;
 use flexsc_core::control::operation::ModeQuantity;
 use flexsc_core::formats::reader_units::percent;
 use flexsc_core::numerics::time::Instant;
@@ -21,7 +20,7 @@ pub struct LimitOverTime {
     pub required: RequiredLimit,
     /// Intervals in which it counts (s).
     windows: Vec<[f64; 2]>,
-    /// Identifier, limit and level in words.
+    /// Name, limit and level in words.
     words: String,
 }
 
@@ -31,7 +30,7 @@ pub fn limits(
     is_quantity: impl Fn(&SampledQuantity) -> bool,
     axis: Option<ErrorAxis>,
 ) -> Vec<LimitOverTime> {
-    let limit = |(index, own): (usize, &AssessedRequirement)| {
+    let limit = |own: &AssessedRequirement| {
         let (span, mode) = match &own.source {
             RequirementSource::Error(error)
                 if error.index == IndexWindow::Absolute
@@ -59,12 +58,12 @@ pub fn limits(
                 format!(", {} of the time", percent(own.level))
             }
         };
-        let words = format!("{}: {}{level}", requirement_id(index), required.text);
+        let words = format!("{}: {}{level}", own.name, required.text);
         let whole = [from, if from > to { story.end } else { to.min(story.end) }];
         let windows = mode.map_or_else(|| vec![whole], |mode| in_mode(story, mode, whole));
         Some(LimitOverTime { required, windows, words })
     };
-    story.scenario.study.requirements.iter().enumerate().filter_map(limit).collect()
+    story.scenario.study.requirements.iter().filter_map(limit).collect()
 }
 
 /// Returns the parts of an interval (s) in a mode of operation.

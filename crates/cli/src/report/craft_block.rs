@@ -1,4 +1,4 @@
-//! Block of the spacecraft: its drawing beside lines of data.
+//! Block of the spacecraft: its drawing beside lines of data, and its animated model.
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
@@ -9,13 +9,14 @@ use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_view::drawing::{spacecraft_svg, wheel_limits};
 
 use super::html::{HtmlRow, HtmlTable, cell, command, head, number_head, picture};
-use super::study::Study;
+use super::model_block;
+use super::study::{Study, StudyRun};
 
 /// Largest number of frequencies in a line.
 const MOST: usize = 4;
 
 /// Returns the block.
-pub fn block(study: &Study) -> String {
+pub fn block(study: &Study, run: &StudyRun) -> String {
     let scenario = &study.scenario;
     let mut lines = body_lines(scenario);
     lines.extend(part_lines(scenario));
@@ -36,7 +37,8 @@ pub fn block(study: &Study) -> String {
         Some(figure) => format!("<div class=\"cols\">{figure}{table}</div>\n"),
         None => table,
     };
-    body + &command(&study.command("modes", ""))
+    let model = model_block::block(study, &run.log).unwrap_or_default();
+    body + &model + &command(&study.command("modes", ""))
 }
 
 /// Returns lines on the body and its modes.

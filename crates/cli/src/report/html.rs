@@ -135,11 +135,18 @@ const FIGURE: &str = "<figure ";
 pub fn picture(svg: &str, caption: &str) -> String {
     // The figure begins with its element.
     let from = svg.find("<svg").unwrap_or(0);
+    let inner = format!(
+        "<input class=\"zoom\" type=\"checkbox\" id=\"zoom-{NUMBER}\" \
+         aria-label=\"enlarge figure {NUMBER}\"><label class=\"z\" for=\"zoom-{NUMBER}\">{}</label>",
+        svg[from..].trim_end()
+    );
+    figure("figscroll", &inner, caption)
+}
+
+/// Returns a figure of a class with its contents and its caption.
+pub fn figure(class: &str, inner: &str, caption: &str) -> String {
     format!(
-        "{FIGURE}class=\"figscroll\"><input class=\"zoom\" type=\"checkbox\" id=\"zoom-{NUMBER}\" \
-         aria-label=\"enlarge figure {NUMBER}\"><label class=\"z\" for=\"zoom-{NUMBER}\">{}</label>\
-         <figcaption><b>Figure {NUMBER}.</b> {}</figcaption></figure>\n",
-        svg[from..].trim_end(),
+        "{FIGURE}class=\"{class}\">{inner}<figcaption><b>Figure {NUMBER}.</b> {}</figcaption></figure>\n",
         escaped(caption)
     )
 }

@@ -4,7 +4,7 @@ use super::mode_analysis::each_mode;
 use super::study::Study;
 use super::{margins_block, noise_block};
 use crate::error::CliError;
-use crate::{Verb, margins, spectrum};
+use crate::{Verb, margins, progress, spectrum};
 
 /// Sentences of the conclusions on the loops.
 #[derive(Default)]
@@ -45,6 +45,7 @@ pub struct LoopBlock {
 
 /// Computes the block of the margins; `searches` for the least over the uncertain keys too.
 pub fn margins(study: &Study, searches: bool) -> Result<LoopBlock, CliError> {
+    progress::stage("the margins");
     let words = ["margins", "--mask", margins_block::MASK];
     let (found, refused) = each_mode(study, &words, |verb, scenario| match verb {
         Verb::Margins(args) => margins::results(&args.scenario.in_mode(scenario)?, &args),
@@ -56,6 +57,7 @@ pub fn margins(study: &Study, searches: bool) -> Result<LoopBlock, CliError> {
 
 /// Computes the block of the noise.
 pub fn noise(study: &Study) -> Result<LoopBlock, CliError> {
+    progress::stage("the noise");
     let (found, refused) = each_mode(study, &["spectrum"], |verb, scenario| match verb {
         Verb::Spectrum(args) => spectrum::results(&args.scenario.in_mode(scenario)?, &args),
         _ => Err(CliError::Arguments(String::new())),

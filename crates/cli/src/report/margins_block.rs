@@ -15,12 +15,12 @@ use super::study::Study;
 use crate::error::CliError;
 use crate::margins::{LoopMargins, NicholsMask};
 use crate::results::Results;
-use crate::{Verb, stop};
+use crate::{Verb, progress, stop};
 
 /// Mask of the verdict, as `flexsc margins` takes it.
 pub const MASK: &str = "6 dB, 30 deg";
 /// Number of loops of the search for the least margin.
-const SEARCHED: usize = 100;
+const SEARCHED: usize = 40;
 
 /// Least margins of a loop or of several.
 struct LeastMargins {
@@ -157,6 +157,7 @@ fn worst_paragraph(study: &Study, own: &Analysed<LoopMargins>) -> Result<String,
     let (Verb::Margins(args), scenario) = study.analysis(&words, &own.at_rest)? else {
         return Ok(String::new());
     };
+    progress::stage("the least margin over the uncertain keys");
     let search = MarginSearch { kind: MarginKind::Modulus, opened: LoopBreak::Command, most_loops: SEARCHED };
     let found = search.run(&args.scenario.in_mode(scenario)?, stop::stop_requested);
     if stop::stop_requested() {

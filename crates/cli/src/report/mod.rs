@@ -11,6 +11,7 @@ mod loop_blocks;
 mod margins_block;
 mod mode_analysis;
 mod mode_block;
+mod model_block;
 mod noise_block;
 mod page;
 mod requirement_block;
@@ -27,7 +28,7 @@ pub use editable_study::EditableStudy;
 
 use crate::error::CliError;
 use crate::human::Units;
-use crate::{bound, files, out, say, stop};
+use crate::{bound, files, out, progress, say, stop};
 use page::Review;
 use study::{Study, StudyCampaign};
 
@@ -92,6 +93,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
 
 /// Computes the page of a study with a campaign of some runs; 0 leaves it out.
 fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
+    progress::stage("the run");
     let run = study.run()?;
     // A page that is watched is to be there soon.
     let loops = loop_blocks::blocks(study, script.is_empty())?;
@@ -100,6 +102,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     } else {
         Some(bound::claims(&study.scenario, Units::default())?)
     };
+    progress::stage("the campaign");
     let campaign: Option<StudyCampaign> =
         (runs > 0).then(|| study.campaign(runs, &run.answer)).transpose()?;
     let mut unmet = Vec::new();
@@ -113,6 +116,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     if refuted > 0 {
         unmet.push(format!("{refuted} of the claims not proved"));
     }
+    progress::stage("the figures");
     let refused = loops.refused.clone();
     let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, script };
     Ok(FinishedPage { html: page::html(&review), refused, unmet })

@@ -4,6 +4,7 @@ use flexsc_core::Scenario;
 
 use super::html::{escaped, paragraph};
 use super::study::Study;
+use crate::at_rest::{at_rest, linear_sensors};
 use crate::error::CliError;
 use crate::{Verb, stop};
 
@@ -56,7 +57,7 @@ pub fn each_mode<T>(
             let (verb, scenario) = study.analysis(&words, set)?;
             analyse(verb, scenario)
         };
-        let at_rest = at_rest(study, index);
+        let at_rest = at_rest(scenario, index);
         let done = attempt(&[]).map(|results| (Vec::new(), results)).or_else(|first| {
             if at_rest.is_empty() {
                 return Err(first);
@@ -70,32 +71,6 @@ pub fn each_mode<T>(
         }
     }
     Ok((found, refused))
-}
-
-/// Returns the kinds of the sensors of attitude and rates, which have a linear model, each once.
-fn linear_sensors(study: &Study) -> Vec<&'static str> {
-    let mut kinds = Vec::new();
-    for own in study.scenario.sensor.iter().filter(|own| own.measures_motion() && !own.measures_vector()) {
-        if !kinds.contains(&own.kind()) {
-            kinds.push(own.kind());
-        }
-    }
-    kinds
-}
-
-/// Returns the keys that put the scenario at rest with the sensors that have a linear model; none without a spacecraft or
-/// such sensors.
-fn at_rest(study: &Study, mode: usize) -> Vec<String> {
-    let kinds = linear_sensors(study);
-    if study.scenario.spacecraft.is_none() || kinds.is_empty() {
-        return Vec::new();
-    }
-    let mut set = vec!["spacecraft.rate=[0, 0, 0]".to_owned()];
-    if !study.scenario.mode.is_empty() {
-        let kinds: Vec<String> = kinds.iter().map(|kind| format!("\"{kind}\"")).collect();
-        set.insert(0, format!("mode[{mode}].sensors=[{}]", kinds.join(", ")));
-    }
-    set
 }
 
 /// Returns the reason of an error in one line, without the file and the hint.
@@ -126,7 +101,7 @@ pub fn replaced<T>(study: &Study, found: &[Analysed<T>]) -> String {
         [""] => paragraph("At rest: the motion at the start has no linear model."),
         names => paragraph(&format!(
             "At rest, with {} alone: another sensor of {} has no linear model.",
-            linear_sensors(study).join(" and ").replace('_', " "),
+            linear_sensors(&study.scenario).join(" and ").replace('_', " "),
             names.join(", ")
         )),
     }

@@ -21,6 +21,7 @@ const SHOWN: [&str; 9] =
     ["pointing", "line-of-sight", "wheel", "angle", "envelope", "gain", "gimbals", "hinges", "deflection"];
 const MOST_SHOWN: usize = 3;
 /// Largest size of the page up to which further figures are added (bytes).
+const SHA_DIGITS: usize = 12;
 const MOST_BYTES: usize = 1_400_000;
 
 /// Block of a page: identifier, title and content.
@@ -56,7 +57,7 @@ pub fn html(review: &Review<'_>) -> String {
         let table = requirement_block::table(answer, campaign_answer);
         add("requirements", "Requirements", table + &command(&study.command("simulate", "")));
     }
-    add("spacecraft", "Spacecraft", craft_block::block(study));
+    add("spacecraft", "Spacecraft", craft_block::block(study, run));
     add("time", "Time line", time_block(review));
     if answer.by_mode.is_empty() {
         add("run", "The run", mode_block::lines(answer) + &command(&study.command("simulate", "--all")));
@@ -143,7 +144,7 @@ fn title_block(study: &Study, campaign: Option<&StudyCampaign>) -> String {
         ("Project", own.project.clone()),
         ("Author", own.author.clone()),
         ("Issue", issue.join(", ")),
-        ("Scenario", study.file()),
+        ("Scenario", format!("{}, SHA-256 {}", study.file(), &study.sha256()[..SHA_DIGITS])),
         ("Program", format!("flexsc {}", env!("CARGO_PKG_VERSION"))),
         ("Simulated", format!("{}{epoch}", time(scenario.duration.seconds()))),
         ("Seed", scenario.seed.to_string()),
@@ -249,9 +250,10 @@ fn scenario_text(study: &Study, number: usize) -> String {
     let text = study.text().trim_end();
     format!(
         "<section class=\"appendix\"><h2 id=\"file\"><span>{number}</span>Scenario</h2>\n\
-         <details open><summary>{}, {} lines</summary><pre>{}</pre></details></section>\n</main>\n</body>\n</html>\n",
+         <details open><summary>{}, {} lines, SHA-256 {}</summary><pre>{}</pre></details></section>\n</main>\n</body>\n</html>\n",
         escaped(&study.file()),
         text.lines().count(),
+        study.sha256(),
         escaped(text)
     )
 }

@@ -23,7 +23,7 @@ fn row(own: &RequirementAnswer, has_instants: bool, campaign: Option<&CampaignAn
     let worst = match &own.largest {
         Some(largest) => {
             let mode = largest.mode.as_ref().map_or_else(String::new, |mode| format!(", mode {mode}"));
-            let value = text.largest.split(" at ").next().unwrap_or_default();
+            let value = text.largest.split_once(" at ").map_or("", |(value, _)| value);
             cell(&format!("{}{mode}", time(largest.at_s))).small(value)
         }
         None => cell(""),

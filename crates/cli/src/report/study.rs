@@ -10,6 +10,7 @@ use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, Log};
 use flexsc_core::{Document, Scenario};
 use flexsc_figure::Named;
+use sha2::{Digest, Sha256};
 
 use crate::error::CliError;
 use crate::stop::{self, stop_flag};
@@ -58,6 +59,12 @@ impl Study {
     /// Returns the text of the scenario's file.
     pub fn text(&self) -> &str {
         self.document.source_text().unwrap_or_default()
+    }
+
+    /// Returns the SHA-256 of the scenario's file as hexadecimal digits.
+    pub fn sha256(&self) -> String {
+        let digits = Sha256::digest(self.text());
+        digits.iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat()
     }
 
     /// Returns the name of the scenario's file.

@@ -19,6 +19,7 @@ use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
+use crate::at_rest::hinted;
 use crate::error::CliError;
 use crate::grid::{PositiveGrid, grid_in};
 use crate::human::{Units, UnitsArgs, digits};
@@ -129,7 +130,8 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
 
 pub fn run(args: &SpectrumArgs) -> Result<(), CliError> {
     let target = args.drawing.target(&[args.scenario.scenario.as_path()])?;
-    let results = results(&args.scenario.load()?, args)?;
+    let found = args.scenario.load().and_then(|scenario| results(&scenario, args));
+    let results = found.map_err(|failure| hinted(failure, "spectrum", &args.scenario))?;
     if let Some(target) = target {
         target.save(&results)?;
     }

@@ -162,7 +162,7 @@ pub fn run(args: &TuneArgs) -> Result<(), CliError> {
     if args.structured.is_asked_for() {
         let scenario = args.scenario.load()?;
         let tuned = args.structured.results(&scenario, args.units.units)?;
-        args.structured.save(&tuned, args.drawing.force)?;
+        args.structured.save(&tuned, &args.scenario, args.drawing.force)?;
         return show(&tuned, Some(&args.drawing), args.scenario.json);
     }
     let tuned = args.results(&args.scenario.load()?)?;

@@ -1,16 +1,17 @@
 //! `flexsc tune --vary`: keys of a law that maximise the least modulus margin over the plants of a scenario.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use flexsc_core::analysis::open_loop::LoopBreak;
 use flexsc_core::analysis::structured_tuning::{
-    LoopSensitivity, ScenarioTuning, TunedScenario, TuningFault, TuningLimit, TuningObjective, TuningPoint,
-    TuningReport,
+    KeyChange, LoopSensitivity, ScenarioTuning, TunedScenario, TuningFault, TuningLimit, TuningObjective,
+    TuningPoint, TuningReport,
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::{ConfigError, is_number};
+use flexsc_core::formats::reader_units::{ReaderUnits, number, time};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
 use serde_json::{Value as Json, json};
@@ -21,6 +22,7 @@ use crate::human::{Units, digits};
 use crate::quantity::in_unit;
 use crate::results::{Results, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
+use crate::scenario::{self, ScenarioArgs};
 use crate::{files, out, say};
 
 /// Largest modulus margin that the figure shows.
@@ -102,13 +104,18 @@ impl VariedKey {
     }
 }
 
+/// Ratio of settling times from which on a tuned loop is called slower.
+const SLOWER: f64 = 1.2;
+/// Part of the range of a key within which a value is at an end of it.
+const AT_END: f64 = 1e-3;
+
 /// Columns of the tuned keys.
 const KEYS: [Column<'_>; 5] = [
     column("key", "key"),
-    column("before", "before"),
-    column("after", "after"),
-    column("range.0", "lowest"),
-    column("range.1", "highest"),
+    column("before", "before").unit_of_row(),
+    column("after", "after").unit_of_row(),
+    column("range.0", "lowest").unit_of_row(),
+    column("range.1", "highest").unit_of_row(),
 ];
 
 /// Columns of the measures besides the margins.
@@ -133,6 +140,8 @@ const PLANTS: [Column<'_>; 5] = [
 /// Result of a search over keys.
 pub struct StructuredResults {
     name: String,
+    /// Scenario before.
+    scenario: Scenario,
     found: TunedScenario,
     units: Units,
 }
@@ -165,13 +174,19 @@ impl StructuredArgs {
             }
             fault => CliError::Arguments(format!("{name}: {fault}")),
         })?;
-        Ok(StructuredResults { name, found, units })
+        Ok(StructuredResults { name, scenario: scenario.clone(), found, units })
     }
 
     /// Writes the tuned scenario, if it is to be, in place of another file if `force`.
-    pub fn save(&self, results: &StructuredResults, force: bool) -> Result<(), CliError> {
+    pub fn save(
+        &self,
+        results: &StructuredResults,
+        args: &ScenarioArgs,
+        force: bool,
+    ) -> Result<(), CliError> {
         let Some(path) = &self.save else { return Ok(()) };
-        let text = results.found.scenario()?.to_toml();
+        let whole = results.found.scenario()?.to_toml();
+        let text = results.text_with_comments(args)?.unwrap_or(whole);
         if !force && std::fs::read(path).is_ok_and(|content| content != text.as_bytes()) {
             let why = format!(
                 "--save {}: already exists, with other content; give another name, or --force to replace it",
@@ -186,10 +201,28 @@ impl StructuredArgs {
 }
 
 impl StructuredResults {
+    /// Returns the text of the scenario's file with the tuned values in place; `None` where it does not have all of them as
+    /// numbers, or is not the whole scenario.
+    fn text_with_comments(&self, args: &ScenarioArgs) -> Result<Option<String>, CliError> {
+        let is_whole = args.set.is_empty() && args.mode.is_none() && args.scenario != Path::new("-");
+        if !is_whole || self.scenario.self_contained().to_toml() != self.scenario.to_toml() {
+            return Ok(None);
+        }
+        let document = scenario::document(&args.scenario)?;
+        let keys = self.found.report().keys;
+        let values = keys.iter().map(|own| (own.key.as_str(), own.after, self.unit_of(&own.key)));
+        Ok(document.text_with_numbers(values))
+    }
+
     /// Returns a name for a plant: the values of its uncertain keys.
     fn plant(&self, index: usize) -> String {
         let each = self.found.loops.plant(index).into_iter();
-        let values: Vec<String> = each.map(|(key, value)| format!("{key} = {}", digits(value))).collect();
+        let values: Vec<String> = each
+            .map(|(key, value)| {
+                let unit = ReaderUnits::from(self.units).of_key(key, value.abs(), self.unit_of(key));
+                format!("{key} = {}", unit.quantity(value))
+            })
+            .collect();
         if values.is_empty() { "nominal".to_owned() } else { values.join(", ") }
     }
 
@@ -238,6 +271,33 @@ impl StructuredResults {
         }
         if !rows.is_empty() {
             print_rows(&rows, &MEASURES, self.units);
+        }
+    }
+
+    fn unit_of(&self, key: &str) -> &'static str {
+        self.scenario.unit_of(key).unwrap_or_default()
+    }
+
+    /// Prints what a search for margins alone may have cost, and keys that would go on beyond their ranges.
+    fn print_warnings(&self, report: &TuningReport) {
+        if !report.measures.iter().any(|measure| measure.unit == "s")
+            && let Some([before, after]) = self.found.settling()
+        {
+            let warning = if after > SLOWER * before { "! " } else { "" };
+            say!(
+                "  {warning}settling of the nominal plant {} before, {} tuned (--keep 'settling<={} s' limits it)",
+                time(before),
+                time(after),
+                number(before)
+            );
+        }
+        for own in &report.keys {
+            let [low, high] = own.range;
+            let near = |end: f64| (own.after - end).abs() <= AT_END * (high - low);
+            let end = if near(low) { "lowest" } else { "highest" };
+            if near(low) || near(high) {
+                say!("  ! {} ends at its {end} value: the range decides it, not the goal", own.key);
+            }
         }
     }
 
@@ -300,9 +360,15 @@ impl Results for StructuredResults {
             digits(report.least_margin),
             counted(report.steps, "step"),
         );
-        print_rows(&report.keys, &KEYS, self.units);
+        let row = |own: &KeyChange| {
+            let mut row = json!(own);
+            row["unit"] = json!(self.unit_of(&own.key));
+            row
+        };
+        print_rows(&report.keys.iter().map(row).collect::<Vec<_>>(), &KEYS, self.units);
         self.print_measures(&report);
         self.print_plants(&report);
+        self.print_warnings(&report);
         if let Some(gain) = report.bandwidth_gain {
             let reached = if gain < 1.0 - LEAST_SHORTFALL { ": the bandwidth is not reached" } else { "" };
             say!("  loop gain at the bandwidth {}{reached}", digits(gain));

@@ -62,10 +62,10 @@ pub struct WorstArgs {
 /// Columns of the uncertain keys.
 const KEYS: [Column<'_>; 5] = [
     column("key", "key"),
-    column("nominal", "nominal"),
-    column("worst", "worst"),
-    column("range.0", "lowest"),
-    column("range.1", "highest"),
+    column("nominal", "nominal").unit_of_row(),
+    column("worst", "worst").unit_of_row(),
+    column("range.0", "lowest").unit_of_row(),
+    column("range.1", "highest").unit_of_row(),
 ];
 
 /// Worst cases of a scenario.
@@ -240,7 +240,12 @@ impl WorstCases {
             text(values[1])
         );
         let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));
-        let row = |(own, value): (&UncertainKey, f64)| json!({"key": own.key, "nominal": own.nominal_number(), "worst": value, "range": own.limits()});
+        let row = |(own, value): (&UncertainKey, f64)| {
+            json!({
+                "key": own.key, "nominal": own.nominal_number(), "worst": value, "range": own.limits(),
+                "unit": case.witness.unit_of(&own.key),
+            })
+        };
         print_rows(&keys.map(row).collect::<Vec<_>>(), &KEYS, self.units);
         if case.failed > 0 {
             let why =

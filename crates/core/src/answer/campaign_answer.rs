@@ -6,6 +6,8 @@ use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, percent};
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
+use super::campaign_mode::{CampaignMode, campaign_modes};
+use super::campaign_warning::{CampaignWarning, campaign_warnings};
 use super::driving_key::{DrivingKey, driving_keys};
 use super::requirement_answer::{margin_text, requirement_id};
 use super::{Answer, RunVerdict, SCHEMA};
@@ -41,6 +43,12 @@ pub struct CampaignAnswer {
     /// Requirements, missed ones first, then by margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<CampaignRequirement>,
+    /// Warnings about runs, the gravest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<CampaignWarning>,
+    /// Modes of operation, in the order of the scenario.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_mode: Vec<CampaignMode>,
     /// Command that repeats the worst run of the first requirement; absent without a directory of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeat: Option<String>,
@@ -202,7 +210,9 @@ impl CampaignAnswer {
         } else {
             Some(MetShare::new(runs.count_meeting_all(verdicts.len()), runs.runs))
         };
-        let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs);
+        let warnings = campaign_warnings(scenario, runs, units);
+        let but = warnings.iter().find_map(|own| own.reason.as_deref());
+        let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs, but);
         let repeat = directory.zip(requirements.first()).map(|(directory, first)| {
             let run = first.worst.run;
             format!("flexsc simulate --from {directory} --row {run} -o run-{run}")
@@ -217,6 +227,8 @@ impl CampaignAnswer {
             verdict_text,
             met,
             requirements,
+            by_mode: campaign_modes(scenario, runs, &warnings),
+            warnings,
             repeat,
         }
     }
@@ -230,7 +242,12 @@ impl CampaignRuns {
     }
 }
 
-fn verdict(requirements: &[CampaignRequirement], met: Option<&MetShare>, runs: u64) -> (RunVerdict, String) {
+fn verdict(
+    requirements: &[CampaignRequirement],
+    met: Option<&MetShare>,
+    runs: u64,
+    but: Option<&str>,
+) -> (RunVerdict, String) {
     let Some(share) = met else { return (RunVerdict::NotAsked, "no requirement".to_owned()) };
     let shown = |what: &str| {
         let verb = if runs == 1 { "meets" } else { "meet" };
@@ -254,7 +271,10 @@ fn verdict(requirements: &[CampaignRequirement], met: Option<&MetShare>, runs: u
     match (has(Decision::Missed), has(Decision::Undecided)) {
         (true, _) => (RunVerdict::Missed, format!("MISSED: {}", shown(&what))),
         (false, true) => (RunVerdict::Missed, format!("undecided: {}", shown(&what))),
-        (false, false) => (RunVerdict::Met, shown(&what)),
+        (false, false) => match but {
+            Some(why) => (RunVerdict::MetBut, format!("{}, but {why}", shown(&what))),
+            None => (RunVerdict::Met, shown(&what)),
+        },
     }
 }
 

@@ -1,14 +1,19 @@
 //! First screen of a campaign: the verdict, the distribution of each requirement, what drives it, and how to repeat it.
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::rough_time;
+use flexsc_formats::reader_units::{rough_time, time};
 use flexsc_formats::text_columns::columns;
 
 use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
-use super::screen::{ScreenOptions, indented, wrapped};
+use super::campaign_mode::RunSpread;
+use super::screen::{ScreenOptions, indented, warning_lines, wrapped};
 
 /// Largest number of requirements, and of keys that drive one, on a first screen.
 const MOST: [usize; 2] = [6, 1];
+/// Largest number of lines on a first screen without its head, blank lines and its last one, and least number of those of
+/// warnings.
+const MOST_LINES: usize = 10;
+const LEAST_WARNING: usize = 2;
 /// Columns between the limit and the worst value, which are left out where no requirement has them.
 const NOMINAL: usize = 3;
 
@@ -18,10 +23,24 @@ impl CampaignAnswer {
         let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
         let head = format!("{}   {}   {}{took}", self.scenario, self.verdict_text, counted(self.runs, "run"));
         let mut blocks = vec![wrapped(&head, options.width, 4)];
-        if !self.requirements.is_empty() && self.runs > 0 {
-            blocks.push(self.requirement_table(options));
-            blocks.push(self.lines(options));
+        let texts: Vec<&str> = self.warnings.iter().map(|warning| &*warning.text).collect();
+        let mut warnings = warning_lines(&texts, options);
+        let is_asked = !self.requirements.is_empty() && self.runs > 0;
+        let (table, lines) = if is_asked {
+            (self.requirement_table(options), self.lines(options))
+        } else {
+            Default::default()
+        };
+        let room = MOST_LINES.saturating_sub(table.len() + lines.len()).max(LEAST_WARNING);
+        if !options.all && warnings.len() > room {
+            warnings.truncate(room - 1);
+            warnings.push("    more: --all".to_owned());
         }
+        blocks.extend([table, warnings]);
+        if options.all && self.runs > 0 {
+            blocks.push(self.mode_table());
+        }
+        blocks.push(lines);
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
     }
@@ -43,6 +62,30 @@ impl CampaignAnswer {
             lines.push(format!("    {} more: --all", self.requirements.len() - shown));
         }
         lines
+    }
+
+    fn mode_table(&self) -> Vec<String> {
+        if self.by_mode.is_empty() {
+            return Vec::new();
+        }
+        let heads = ["mode", "in runs", "time: median", "95 %", "at limit: median", "largest", "target lost"];
+        let mut rows = vec![heads.map(str::to_owned).to_vec()];
+        let none = || "-".to_owned();
+        rows.extend(self.by_mode.iter().map(|own| {
+            let spread = |of: Option<RunSpread>, number: fn(RunSpread) -> f64| {
+                of.map_or_else(none, |own| time(number(own)))
+            };
+            vec![
+                own.mode.clone(),
+                format!("{} of {}", own.runs, self.runs),
+                spread(own.time_s, |own| own.median),
+                spread(own.time_s, |own| own.p95),
+                spread(own.at_limit_s, |own| own.median),
+                spread(own.at_limit_s, |own| own.largest),
+                if own.runs_lost == 0 { none() } else { counted(own.runs_lost, "run") },
+            ]
+        }));
+        indented(columns(&rows, |column| column == 0))
     }
 
     /// Returns the keys that drive the first requirement, or, if all are wanted, each of them, and how the worst run is

@@ -34,7 +34,7 @@ impl EventKind {
     }
 }
 
-/// RunEvent of a run.
+/// Event of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunEvent {
     /// Kind.

@@ -1,4 +1,4 @@
-//! AnswerLines of text on a run: what else is known, apart from requirements and modes of operation.
+//! Lines of text on a run: what else is known, apart from requirements and modes of operation.
 
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_formats::reader_units::{ReaderUnits, number, time};
@@ -29,7 +29,7 @@ pub(super) struct RunData<'a> {
     pub units: ReaderUnits,
 }
 
-/// AnswerLines of an answer, in their order.
+/// Lines of an answer, in their order.
 #[derive(Default)]
 pub(super) struct AnswerLines(Vec<Line>);
 

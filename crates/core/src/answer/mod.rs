@@ -2,15 +2,20 @@
 //! an observer saw in every control cycle. Numbers are in SI units; beside them stand their texts in the reader's units, so
 //! that text, JSON, Python and reports say the same.
 
+mod angle_watch;
 mod campaign_answer;
 mod campaign_comparison;
+mod campaign_mode;
 mod campaign_screen;
+mod campaign_warning;
 mod driving_key;
 mod error_statistics;
 mod event;
 mod key_difference;
+mod largest_sample;
 mod limit_watch;
 mod lines;
+mod logged_answer;
 mod mode_answer;
 mod one_axis_lines;
 mod requirement_answer;
@@ -22,7 +27,7 @@ mod verdict;
 mod warning;
 
 use flexsc_formats::reader_units::ReaderUnits;
-use flexsc_scenario::Scenario;
+use flexsc_scenario::{RequirementSource, Scenario};
 use serde::Serialize;
 
 use crate::metrics::{MetricValue, Metrics};
@@ -32,13 +37,15 @@ pub use campaign_answer::{
     CampaignAnswer, CampaignRequirement, CampaignRequirementText, MarginSpread, MetShare, WorstRun,
 };
 pub use campaign_comparison::CampaignComparison;
+pub use campaign_mode::{CampaignMode, RunSpread};
+pub use campaign_warning::CampaignWarning;
 pub use driving_key::DrivingKey;
 pub use error_statistics::ErrorSummary;
 pub use event::{EventKind, RunEvent};
 pub use key_difference::KeyDifference;
 pub use lines::Line;
 pub use mode_answer::ModeAnswer;
-pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText, requirement_id};
+pub use requirement_answer::{LargestValue, RequirementAnswer, RequirementText};
 pub use run_comparison::RunComparison;
 pub use run_observer::{Observed, RunObserver};
 pub use screen::{ScreenOptions, ScreenStyle};
@@ -46,7 +53,7 @@ pub use verdict::{GoalAnswer, RunVerdict};
 pub use warning::{Warning, WarningKind};
 
 use lines::RunData;
-use run_observer::LargestSample;
+use largest_sample::LargestSample;
 
 /// Name and version of the structure.
 const SCHEMA: &str = "flexsc-answer-1";
@@ -60,9 +67,12 @@ pub struct Answer {
     pub scenario: String,
     /// Simulated time (s).
     pub duration_s: f64,
-    /// RunVerdict.
+    /// Period (s) of the rows of a log from which the answer is made; absent where every control cycle was seen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_rows_s: Option<f64>,
+    /// Verdict.
     pub verdict: RunVerdict,
-    /// RunVerdict in words.
+    /// Verdict in words.
     pub verdict_text: String,
     /// Requirements, missed ones first, then by margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -117,6 +127,7 @@ impl Answer {
             schema: SCHEMA,
             scenario: scenario.name.clone(),
             duration_s: scenario.duration.seconds(),
+            from_rows_s: None,
             verdict,
             verdict_text,
             requirements,
@@ -138,8 +149,15 @@ impl RunData<'_> {
             // The value of a requirement over time is the one that decides.
             let mode = self.mode_at(time);
             let deciding = LargestSample { value: verdict.value, at: time, mode };
-            let peak =
-                peaks.get(index).copied().flatten().or(Some(deciding).filter(|own| own.at.is_finite()));
+            let is_angle = matches!(
+                &verdict.requirement.source,
+                RequirementSource::Metric(name, None) if name == angle_watch::PEAK
+            );
+            let peak = match self.observed {
+                Some(observed) if is_angle => observed.largest_angle,
+                _ => peaks.get(index).copied().flatten(),
+            };
+            let peak = peak.or(Some(deciding).filter(|own| own.at.is_finite()));
             RequirementAnswer::new(self, (index, verdict), peak)
         };
         verdicts.iter().enumerate().map(answer).collect()

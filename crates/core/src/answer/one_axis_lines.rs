@@ -1,16 +1,20 @@
-//! AnswerLines on a run of a single-axis body.
+//! Lines on a run of a single-axis body.
 
 use std::f64::consts::TAU;
 
 use flexsc_formats::reader_units::{number, percent, time};
 
 use super::lines::{AnswerLines, RunData};
-use crate::metrics::MetricValue;
 
 /// Length of the late part at the end of a run (s), as defined by the metrics.
 const LATE: f64 = 5.0;
 /// Largest number of observed coordinates on a first screen.
 const MOST_OUTPUTS: usize = 2;
+
+/// Returns true for a text of a quantity that is 0 in all its digits.
+fn is_nothing(text: &str) -> bool {
+    text.starts_with("0 ")
+}
 
 impl RunData<'_> {
     pub(super) fn one_axis_lines(&self, lines: &mut AnswerLines) {
@@ -53,7 +57,7 @@ impl RunData<'_> {
     }
 
     fn limit_cycle(&self, lines: &mut AnswerLines) {
-        let Some(MetricValue::Word(kind)) = self.metrics.get("cycle_kind") else { return };
+        let Some(kind) = self.metrics.word("cycle_kind") else { return };
         let Some(period) = self.known("cycle_period_s") else {
             return lines.main("limit cycle", format!("{kind}: the run is not periodic at its end"));
         };
@@ -67,40 +71,56 @@ impl RunData<'_> {
     fn rotation(&self, lines: &mut AnswerLines) {
         let (scenario, units) = (self.scenario, self.units);
         if let Some(plan) = &scenario.plan {
+            let ends = [
+                ("arrival_angle_error_rad", "rad", ""),
+                ("arrival_rate_error_rad_s", "rad/s", ""),
+                ("angle_residual_rad", "rad", " of vibration"),
+            ];
+            let off = ends.map(|(name, unit, of)| format!("{}{of}", self.quantity(name, unit)));
+            // A motion that is given arrives to rounding.
+            let off = off.into_iter().filter(|text| !is_nothing(text)).collect::<Vec<_>>().join(", ");
+            let off = if off.is_empty() { off } else { format!("; off at its end by {off}") };
             let angle = units.quantity(plan.angle, "rad");
-            let text = format!(
-                "{angle} in {}; at its end {} and {} off, {} of vibration",
-                time(plan.time),
-                self.quantity("arrival_angle_error_rad", "rad"),
-                self.quantity("arrival_rate_error_rad_s", "rad/s"),
-                self.quantity("angle_residual_rad", "rad")
-            );
-            lines.main("manoeuvre", text);
+            lines.main("manoeuvre", format!("{angle} in {}{off}", time(plan.time)));
             let energy = if scenario.model.has_unit_inertia() { "J/(kg m²)" } else { "J" };
             lines.other("", format!("residual energy {}", self.quantity("residual_energy_j", energy)));
         }
         let after = if scenario.plan.is_some() { " after the manoeuvre" } else { "" };
-        let late = if scenario.duration.seconds() > LATE {
-            format!(", {} over the last {}", self.quantity("angle_error_late_rad", "rad"), time(LATE))
-        } else {
-            String::new()
-        };
-        lines.main("error", format!("at most {}{after}{late}", self.quantity("angle_error_peak_rad", "rad")));
+        let [peak, late] = ["angle_error_peak_rad", "angle_error_late_rad"].map(|name| self.number(name));
+        if !is_nothing(&units.quantity(peak, "rad")) {
+            let end = match units.quantity(late, "rad") {
+                _ if scenario.duration.seconds() <= LATE => String::new(),
+                _ if late == peak => format!(", also over the last {}", time(LATE)),
+                late => format!(", {late} over the last {}", time(LATE)),
+            };
+            let at = self.observed.and_then(|observed| observed.largest_angle);
+            let at = at.map_or_else(String::new, |largest| match largest.at {
+                0.0 => " at the start".to_owned(),
+                at => format!(" at {}", time(at)),
+            });
+            lines.main("error", format!("at most {}{at}{after}{end}", units.quantity(peak, "rad")));
+        }
         let (name, unit) = scenario.model.commanded_quantity();
-        let law_part = match self.number("peak_feedback_torque_nm") {
-            0.0 => String::new(),
-            peak => format!(", of the law {}", units.quantity(peak, unit)),
+        let [torque, law] = ["peak_torque_nm", "peak_feedback_torque_nm"].map(|name| self.number(name));
+        let law = match law {
+            law if law > torque => format!("; the law asks for up to {}", units.quantity(law, unit)),
+            law if law > 0.0 && law < torque => format!(", {} of the law", units.quantity(law, unit)),
+            _ => String::new(),
         };
-        lines.main(name, format!("at most {}{law_part}", self.quantity("peak_torque_nm", unit)));
+        lines.main(name, format!("at most {}{law}", units.quantity(torque, unit)));
         if let Some(settling) = self.known("settling_time_s") {
             lines.other(
                 "settling",
                 format!("{} to the band of {}", time(settling), self.quantity("goal_band_rad", "rad")),
             );
         }
-        if let Some(radius) = self.known("spectral_radius") {
-            let verdict = if radius < 1.0 { "stable" } else { "unstable" };
-            lines.main("loop", format!("{verdict}, spectral radius {radius:.5}"));
+        // A loop that is unstable has a warning.
+        if let Some(radius) = self.known("spectral_radius").filter(|radius| *radius < 1.0) {
+            let decay = scenario.law.period().filter(|_| radius > 0.0).map_or_else(String::new, |period| {
+                let constant = -period.seconds() / libm::log(radius);
+                format!(", time constant of the slowest pole {}", time(constant))
+            });
+            lines.main("loop", format!("stable{decay}"));
         }
     }
 

@@ -4,12 +4,14 @@ use flexsc_formats::reader_units::{number, percent};
 use flexsc_scenario::RequirementSource;
 use serde::Serialize;
 
+use super::largest_sample::LargestSample;
 use super::lines::RunData;
-use super::run_observer::LargestSample;
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 
 /// Margin above which only its bound is shown.
 const AMPLE: f64 = 0.99;
+/// Relative difference by which rounding may part a value from the same value.
+const ROUNDING: f64 = 1e-9;
 
 /// Requirement of a run, and whether it is met.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -65,8 +67,8 @@ pub struct RequirementText {
     /// Margin; absent without a value.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub margin: String,
-    /// Largest value, or of a requirement over time the one that decides, with instant and mode; absent without one, or if it is
-    /// the value.
+    /// Largest value with instant and mode, or these alone if it is the value; of a requirement over time the value that decides;
+    /// absent without one.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub largest: String,
     /// Word before it.
@@ -101,6 +103,7 @@ impl RequirementAnswer {
             "" => number,
             name => format!("{number} {name}"),
         };
+        let is_value = |own: &LargestValue| (own.value - value).abs() <= ROUNDING * value.abs();
         let text = RequirementText {
             unit: unit.name.to_string(),
             limit: unit.limit(limit, written),
@@ -111,14 +114,16 @@ impl RequirementAnswer {
                 Decision::Met | Decision::Missed => "no value".to_owned(),
             },
             margin: margin_text(margin, value / limit),
-            largest: largest
-                .as_ref()
-                .filter(|own| is_timed || own.value != value || own.mode.is_some())
-                .map_or_else(String::new, |own| {
-                    let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
-                    format!("{} at {} s{mode}", unit.quantity(own.value), number(own.at_s))
-                }),
-            largest_word: if is_timed { "decided by" } else { "largest" },
+            largest: largest.as_ref().map_or_else(String::new, |own| {
+                let mode = own.mode.as_ref().map_or_else(String::new, |mode| format!(", {mode}"));
+                let when = format!("at {} s{mode}", number(own.at_s));
+                if is_value(own) { when } else { format!("{} {when}", unit.quantity(own.value)) }
+            }),
+            largest_word: match (is_timed, largest.as_ref().is_some_and(is_value)) {
+                (true, true) => "decided",
+                (true, false) => "decided by",
+                (false, _) => "largest",
+            },
         };
         Self {
             id: requirement_id(index),

@@ -4,16 +4,19 @@
 use std::collections::BTreeMap;
 
 use flexsc_control::operation::OperatingMode;
+use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{
-    BlindingEvent, FaultEvent, LineOfSightSample, ModeEvent, Onset, Record, RecordError, RequirementErrors,
-    RequirementScopes, Sample, ThreeAxisCycle, Wheels,
+    BlindingEvent, FaultEvent, LineOfSightSample, LogRow, ModeEvent, Onset, PieceDemand, Pointing, Record,
+    RecordError, RequirementErrors, RequirementScopes, Sample, ThreeAxisCycle, Wheels,
 };
 use flexsc_scenario::{RequirementSource, Scenario};
 
+use super::angle_watch::AngleWatch;
 use super::error_statistics::{ErrorStatistics, ErrorSummary};
 use super::event::{EventKind, RunEvent};
+use super::largest_sample::LargestSample;
 use super::limit_watch::{LimitStay, LimitWatch};
 use crate::metrics::ErrorStream;
 
@@ -39,6 +42,8 @@ pub struct RunObserver {
     open: BTreeMap<(EventKind, String, String), usize>,
     names: Vec<String>,
     limits: LimitWatch,
+    /// Watch of the angle of a one-axis body without a switching law, whose pieces of motion are all computed.
+    angle: Option<AngleWatch>,
     /// True if the body has three axes, and thus control cycles; true if it has wheels; true if errors are required.
     has_cycles: bool,
     has_wheels: bool,
@@ -48,17 +53,6 @@ pub struct RunObserver {
     last: Option<(Instant, f64, usize, bool)>,
     late_from: f64,
     end: Instant,
-}
-
-/// Largest value of the index of a requirement.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct LargestSample {
-    /// Value, in the unit of the requirement.
-    pub value: f64,
-    /// Time (s).
-    pub at: f64,
-    /// Index of the mode of operation; 0 without modes.
-    pub mode: usize,
 }
 
 /// Observations in a mode of operation.
@@ -93,6 +87,8 @@ pub struct Observed {
     pub slewing: Option<[f64; 2]>,
     /// Number of slews.
     pub slew_count: u64,
+    /// Largest distance of the angle of a one-axis body from the goal after the manoeuvre (rad).
+    pub largest_angle: Option<LargestSample>,
     /// Largest value of each requirement on an error.
     pub peaks: Vec<Option<LargestSample>>,
     /// Events, in the order of their starts.
@@ -125,6 +121,8 @@ impl RunObserver {
             open: BTreeMap::new(),
             names: scenario.mode.iter().map(|mode| mode.name.clone()).collect(),
             limits: LimitWatch::new(scenario.actuator_limits(), MOST_EVENTS),
+            angle: (scenario.axis_count() == 1 && !scenario.law.is_switching())
+                .then(|| AngleWatch::new(scenario.goal())),
             has_cycles: scenario.axis_count() == 3,
             has_wheels: scenario.actuator.wheels().is_some(),
             has_errors: scenario
@@ -162,6 +160,7 @@ impl RunObserver {
             late: self.late.finish(),
             slewing: self.slewing,
             slew_count: self.slew_count,
+            largest_angle: self.angle.and_then(AngleWatch::finish),
             peaks: self.requirements.into_iter().map(|own| own.map(|(_, peak)| peak)).collect(),
             events: self.events,
             modes: self.modes,
@@ -189,9 +188,7 @@ impl RunObserver {
 
     fn observe_cycle(&mut self, now: Instant, cycle: &ThreeAxisCycle) {
         let was_slewing = self.last.is_some_and(|(.., slews)| slews);
-        self.close_cycle(now);
-        let square: f64 = cycle.error_rad.iter().map(|error| error * error).sum();
-        self.last = Some((now, square.sqrt(), cycle.visit.mode, cycle.slewing));
+        self.observe_error(now, cycle.error_rad, cycle.visit.mode, cycle.slewing);
         if cycle.slewing {
             self.slew_count += u64::from(!was_slewing);
             self.slewing.get_or_insert([now.seconds(); 2]);
@@ -199,6 +196,23 @@ impl RunObserver {
         if let (true, Some(slewing)) = (cycle.slewing || was_slewing, &mut self.slewing) {
             slewing[1] = now.seconds();
         }
+    }
+
+    /// Takes the error about each axis (rad) in a mode of operation, which lasts until the next one.
+    fn observe_error(&mut self, now: Instant, error: [f64; 3], mode: usize, slews: bool) {
+        self.close_cycle(now);
+        let square: f64 = error.iter().map(|error| error * error).sum();
+        self.last = Some((now, square.sqrt(), mode, slews));
+    }
+
+    /// Takes a row of a log at its time. Errors of requirements are not in the rows.
+    pub(super) fn observe_row(&mut self, now: Instant, row: &dyn LogRow) {
+        if let Some(row) = row.downcast::<Pointing>() {
+            let error = [row.roll_error_rad, row.pitch_error_rad, row.yaw_error_rad];
+            self.observe_error(now, error, self.mode, false);
+        }
+        row.downcast().into_iter().for_each(|wheels| self.observe_wheels(wheels));
+        self.observe_event(row);
     }
 
     fn observe_wheels(&mut self, wheels: &Wheels) {
@@ -246,6 +260,19 @@ impl RunObserver {
         }
     }
 
+    fn observe_event(&mut self, row: &dyn LogRow) {
+        row.downcast().into_iter().for_each(|event| self.observe_mode(event));
+        if let Some(event) = row.downcast::<BlindingEvent>() {
+            let part = format!("sensor[{}]", event.sensor);
+            self.observe_onset((EventKind::Blinding, event.onset), event.time_s, (&part, &event.body));
+        }
+        if let Some(event) = row.downcast::<FaultEvent>() {
+            let of =
+                if event.of.is_empty() { event.part.clone() } else { format!("{} {}", event.part, event.of) };
+            self.observe_onset((EventKind::Failure, event.onset), event.time_s, (&of, &event.fault));
+        }
+    }
+
     /// Takes a sample of the error of a requirement.
     fn push(&mut self, now: Instant, requirement: usize, error: Vector) {
         let mode = self.mode;
@@ -284,6 +311,15 @@ impl Record for RunObserver {
         false
     }
 
+    fn piece_demand(&self) -> PieceDemand {
+        if self.angle.is_some() { PieceDemand::All } else { PieceDemand::None }
+    }
+
+    fn piece(&mut self, _: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        self.angle.iter_mut().for_each(|angle| angle.observe(piece));
+        Ok(())
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // The most frequent samples come first; most runs need few of their values.
         if let (true, Sample::Report(report)) = (self.has_cycles, sample)
@@ -310,20 +346,8 @@ impl Record for RunObserver {
             }
         }
         if let Sample::Row(row) = sample {
-            row.downcast().into_iter().for_each(|event| self.observe_mode(event));
+            self.observe_event(row);
             row.downcast().into_iter().for_each(|sample| self.observe_line(now, sample));
-            if let Some(event) = row.downcast::<BlindingEvent>() {
-                let part = format!("sensor[{}]", event.sensor);
-                self.observe_onset((EventKind::Blinding, event.onset), event.time_s, (&part, &event.body));
-            }
-            if let Some(event) = row.downcast::<FaultEvent>() {
-                let of = if event.of.is_empty() {
-                    event.part.clone()
-                } else {
-                    format!("{} {}", event.part, event.of)
-                };
-                self.observe_onset((EventKind::Failure, event.onset), event.time_s, (&of, &event.fault));
-            }
         }
         Ok(())
     }

@@ -62,7 +62,8 @@ impl Answer {
     /// Returns the answer as text; `took` is the real time that the run took (s).
     pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
         let mut blocks = vec![self.head(took, options), self.requirement_lines(options)];
-        blocks.push(self.warning_lines(options));
+        let warnings: Vec<&str> = self.warnings.iter().map(|warning| &*warning.text).collect();
+        blocks.push(warning_lines(&warnings, options));
         if !self.by_mode.is_empty() {
             blocks.push(self.mode_table(options));
         }
@@ -78,8 +79,12 @@ impl Answer {
 
     fn head(&self, took: Option<f64>, options: ScreenOptions) -> Vec<String> {
         let first = format!("{}   {}", self.scenario, self.verdict_text);
-        let simulated = format!("{} simulated", time(self.duration_s));
-        let took = took.map_or(simulated.clone(), |took| format!("{simulated} in {}", rough_time(took)));
+        let duration = time(self.duration_s);
+        let took = match (self.from_rows_s, took) {
+            (Some(period), _) => format!("{duration}, from rows every {}", time(period)),
+            (None, Some(took)) => format!("{duration} simulated in {}", rough_time(took)),
+            (None, None) => format!("{duration} simulated"),
+        };
         let [before, after] = [&first, &took].map(|text| text.chars().count());
         if before + 3 + after <= options.width {
             return vec![format!("{first}{}{took}", " ".repeat(options.width - before - after))];
@@ -132,25 +137,6 @@ impl Answer {
             lines.push(format!("    {} more: --all", self.requirements.len() - shown));
         }
         lines
-    }
-
-    fn warning_lines(&self, options: ScreenOptions) -> Vec<String> {
-        let (warnings, lines) = if options.all { (usize::MAX, usize::MAX) } else { (MOST[1], MOST[2]) };
-        let mut all: Vec<String> = Vec::new();
-        for warning in self.warnings.iter().take(warnings) {
-            let mut own = wrapped(&format!("  ! {}", warning.text), options.width, 4);
-            if own.len() > lines {
-                own.truncate(lines);
-                if let Some(last) = own.last_mut() {
-                    last.push_str(" ...");
-                }
-            }
-            all.extend(own);
-        }
-        if self.warnings.len() > warnings {
-            all.push(format!("    {} more: --all", counted(self.warnings.len() - warnings, "warning")));
-        }
-        all
     }
 
     fn mode_table(&self, options: ScreenOptions) -> Vec<String> {
@@ -208,6 +194,26 @@ impl Answer {
     }
 }
 
+/// Returns the lines of warnings: on a first screen those of the gravest ones.
+pub(super) fn warning_lines(texts: &[&str], options: ScreenOptions) -> Vec<String> {
+    let (warnings, lines) = if options.all { (usize::MAX, usize::MAX) } else { (MOST[1], MOST[2]) };
+    let mut all: Vec<String> = Vec::new();
+    for text in texts.iter().take(warnings) {
+        let mut own = wrapped(&format!("  ! {text}"), options.width, 4);
+        if own.len() > lines {
+            own.truncate(lines);
+            if let Some(last) = own.last_mut() {
+                last.push_str(" ...");
+            }
+        }
+        all.extend(own);
+    }
+    if texts.len() > warnings {
+        all.push(format!("    {} more: --all", counted(texts.len() - warnings, "warning")));
+    }
+    all
+}
+
 fn heads(unit: &ReaderUnit, [errors, wheel, limit]: [bool; 3]) -> Vec<String> {
     let mut heads = vec!["mode".to_owned(), "visits".to_owned(), "time".to_owned()];
     if errors {
@@ -240,7 +246,8 @@ fn cells(
         cells.push(row.wheel_speed_rad_s.map_or_else(none, |value| speed.quantity(value)));
     }
     if limit {
-        cells.push(row.at_limit_s.filter(|time| *time > 0.0).map_or_else(none, time));
+        let at_limit = row.at_limit_s.zip(row.at_limit_of);
+        cells.push(at_limit.map_or_else(none, |(seconds, of)| format!("{} {of}", time(seconds))));
     }
     cells
 }

@@ -1,11 +1,11 @@
-//! AnswerLines on a run of a three-axis body.
+//! Lines on a run of a three-axis body.
 
 use std::f64::consts::TAU;
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::{number, percent, time};
+use flexsc_formats::reader_units::{ReaderUnit, number, percent, time};
 use flexsc_numerics::attitude::AXES;
-use flexsc_numerics::quantity::Time;
+use flexsc_numerics::quantity::{Positive, Time};
 
 use super::error_statistics::ErrorSummary;
 use super::lines::{AnswerLines, RunData};
@@ -86,7 +86,10 @@ impl RunData<'_> {
             let unit = self.units.fitting(errors.p95, "rad");
             let rms = unit.quantity(errors.rms);
             let [p95, largest] = [errors.p95, errors.largest].map(|value| unit.number(value));
-            format!("error {rms} rms, 95 % {p95}, largest {largest} at {}", time(errors.at_s))
+            let goal = self.scenario.reference.band.and_then(|_| self.known("goal_band_rad"));
+            // The goal is about each axis.
+            let norm = if goal.is_some_and(|band| errors.rms > band) { " of the norm" } else { "" };
+            format!("error {rms} rms{norm}, 95 % {p95}, largest {largest} at {}", time(errors.at_s))
         };
         let knowledge = self.known("attitude_estimate_error_rms_rad").map_or_else(String::new, |error| {
             let end = self.scenario.duration.seconds();
@@ -132,17 +135,28 @@ impl RunData<'_> {
     }
 
     fn wheels(&self, lines: &mut AnswerLines) {
-        let Some(peak) = self.known("wheel_speed_peak_rad_s") else { return };
+        let Some((wheels, _)) = self.scenario.actuator.wheels() else { return };
+        let (Some(peak), Some(one)) =
+            (self.known("wheel_speed_peak_rad_s"), self.known("one_wheel_momentum_peak_nm_s"))
+        else {
+            return;
+        };
+        // A largest value, and its limit if there is one.
+        let of_limit = |unit: &ReaderUnit, peak: f64, limit: Option<f64>| match limit {
+            Some(limit) => format!("{} of {}", unit.beside(peak, limit), unit.quantity(limit)),
+            None => unit.quantity(peak),
+        };
         let unit = self.units.rotor_speed();
         let least = self
             .observed
             .map(|observed| observed.modes.iter().map(|mode| mode.wheel_speed[0]).fold(f64::NAN, f64::min));
-        let speeds = match least.filter(|least| least.is_finite()) {
-            Some(least) if least > STILL * peak => {
-                format!("{} to {}", unit.number(least), unit.quantity(peak))
-            }
-            _ => format!("up to {}", unit.quantity(peak)),
+        let from = match least.filter(|least| *least > STILL * peak) {
+            Some(least) => format!("{} to", unit.number(least)),
+            None => "up to".to_owned(),
         };
+        let speeds = format!("{from} {}", of_limit(&unit, peak, wheels.speed_limit.map(Positive::get)));
+        let limit = wheels.momentum.map(Positive::get);
+        let momentum = of_limit(&self.units.fitting(limit.unwrap_or(one), "N m s"), one, limit);
         let limits = [
             ("wheel_torque_limit_share", "limit of torque"),
             ("wheel_momentum_limit_share", "limit of momentum or speed"),
@@ -152,8 +166,7 @@ impl RunData<'_> {
             Some(format!("; at the {limit} for {} of the time", percent(share)))
         };
         let text = format!(
-            "{speeds}, {} in one, {} in all{}",
-            self.quantity("one_wheel_momentum_peak_nm_s", "N m s"),
+            "{speeds}, {momentum} in one wheel, {} in all{}",
             self.quantity("wheel_momentum_peak_nm_s", "N m s"),
             limits.iter().filter_map(at_limit).collect::<String>()
         );
@@ -169,8 +182,10 @@ impl RunData<'_> {
             if parts.len() > THRUSTERS || parts.len() != names.len() || parts.is_empty() {
                 return String::new();
             }
-            let part = |(name, part): (&String, &f64)| format!("{name} {}", unit.number(*part));
-            format!(": {}", names.iter().zip(&parts).map(part).collect::<Vec<_>>().join(", "))
+            let used = names.iter().zip(&parts).filter(|(_, part)| **part > 0.0);
+            let used: Vec<String> =
+                used.map(|(name, part)| format!("{name} {}", unit.number(*part))).collect();
+            format!(": {}", used.join(", "))
         };
         let thrusters = self.scenario.actuator.jets().map_or_else(Vec::new, |(jets, _)| jets.names());
         let text = format!(
@@ -227,8 +242,12 @@ impl RunData<'_> {
         lines.other("", format!("{} {} (identified / true)", each.join(", "), unit.name));
         if self.metrics.get("damping_cycles").is_some() {
             let [cycles, pauses] = ["damping_cycles", "damping_pauses"].map(|name| self.number(name));
-            let text = format!("in {}, paused {}", counted(cycles, "cycle"), counted(pauses, "time"));
-            lines.main("active damping", text);
+            let paused = match pauses {
+                0.0 => String::new(),
+                pauses => format!(", paused {}", counted(pauses, "time")),
+            };
+            let text = if cycles == 0.0 { "never on".to_owned() } else { counted(cycles, "cycle") };
+            lines.main("active damping", format!("{text}{paused}"));
         }
     }
 

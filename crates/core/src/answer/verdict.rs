@@ -1,4 +1,4 @@
-//! RunVerdict on a run: failed, missed, met with a warning, met, or not asked.
+//! Verdict on a run: failed, missed, met with a warning, met, or not asked.
 
 use flexsc_formats::count::counted;
 use flexsc_formats::reader_units::time;
@@ -7,10 +7,9 @@ use serde::Serialize;
 use super::lines::RunData;
 use super::requirement_answer::RequirementAnswer;
 use super::warning::Warning;
-use crate::metrics::MetricValue;
 use crate::requirement_verdict::Decision;
 
-/// RunVerdict on a run.
+/// Verdict on a run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunVerdict {
@@ -47,12 +46,12 @@ impl GoalAnswer {
     /// Returns the goal of a run; `None` unless the scenario gives its band.
     pub(super) fn new(run: &RunData<'_>) -> Option<Self> {
         run.scenario.reference.band?;
-        let Some(MetricValue::Word(word)) = run.metrics.get("goal") else { return None };
+        let word = run.metrics.word("goal")?;
         let (band, outside) = (run.number("goal_band_rad"), run.number("time_outside_s"));
         if !band.is_finite() {
             return None;
         }
-        let met = *word == "met";
+        let met = word == "met";
         let each = if run.scenario.axis_count() == 3 { "each axis " } else { "" };
         let within = format!("{each}within {}", run.units.quantity(band, "rad"));
         let settled = run.number("settling_time_s");

@@ -52,6 +52,9 @@ pub struct Warning {
     pub mode: Option<String>,
     /// Words, without the kind.
     pub text: String,
+    /// Number by which the gravest of several warnings of this kind is found.
+    #[serde(skip)]
+    pub(super) severity: f64,
 }
 
 impl WarningKind {
@@ -83,34 +86,37 @@ struct ListedLoss<'a> {
 /// Returns the warnings about a run, the gravest first.
 pub(super) fn warnings(run: &RunData<'_>, requirements: &[RequirementAnswer]) -> Vec<Warning> {
     let mut warnings = run.target_losses();
-    let mut add = |kind: WarningKind, text: String| warnings.push(Warning { kind, mode: None, text });
+    let mut add = |kind: WarningKind, severity: f64, text: String| {
+        warnings.push(Warning { kind, mode: None, text, severity });
+    };
     let peak = run.number("angle_error_peak_rad");
     if peak > DIVERGED {
         add(
             WarningKind::Diverges,
+            peak,
             "results: of no use from the time at which the error exceeds ten revolutions".to_owned(),
         );
     }
     if let Some(radius) = run.known("spectral_radius").filter(|radius| *radius >= 1.0) {
-        add(WarningKind::Unstable, unstable(run, radius));
+        add(WarningKind::Unstable, radius, unstable(run, radius));
     }
     if let Some(share) = run.known("wheel_momentum_limit_share").filter(|share| *share > FULL) {
         let text = format!(
             "wheels: at the limit of momentum or speed for {} of the run, where a wheel gives no torque one way",
             percent(share)
         );
-        add(WarningKind::Saturation, text);
+        add(WarningKind::Saturation, share, text);
     }
-    if let (Some(MetricValue::Word(word)), Some(share)) =
-        (run.metrics.get("actuator_end"), run.metrics.number("actuator_limit_late_share"))
+    if let (Some(word), Some(share)) =
+        (run.metrics.word("actuator_end"), run.metrics.number("actuator_limit_late_share"))
         && let Some(text) =
             EndState::warning(word, share, Saturation::late_seconds(run.scenario.duration.seconds()))
     {
-        let cycles = *word == EndState::Cycling.word();
-        add(if cycles { WarningKind::Oscillation } else { WarningKind::SaturatedEnd }, text);
+        let cycles = word == EndState::Cycling.word();
+        add(if cycles { WarningKind::Oscillation } else { WarningKind::SaturatedEnd }, share, text);
     }
     if let Some(text) = filter(run) {
-        add(WarningKind::Filter, text);
+        add(WarningKind::Filter, run.number("nees_mean"), text);
     }
     let hidden = |own: &&RequirementAnswer| {
         own.met && own.largest.as_ref().is_some_and(|largest| largest.value > HIDDEN * own.limit)
@@ -126,6 +132,7 @@ pub(super) fn warnings(run: &RunData<'_>, requirements: &[RequirementAnswer]) ->
         kind: WarningKind::LevelHides,
         mode: None,
         text: format!("{}: met by its level; largest {}", own.name, own.text.largest),
+        severity: -own.margin,
     });
     let hides: Vec<Warning> = hides.collect();
     warnings.extend(hides);
@@ -201,6 +208,7 @@ impl RunData<'_> {
                 kind: WarningKind::TargetLost,
                 mode,
                 text: format!("{head}, {}", self.causes(&own)),
+                severity: own.iter().map(|loss| loss.error).fold(0.0, f64::max),
             })
         };
         (0..self.scenario.mode.len().max(1)).filter_map(about).collect()

@@ -3,11 +3,42 @@
 use toml::Value;
 
 use super::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
-use crate::metrics::{MetricValue, Metrics, goal};
+use crate::metrics::{MetricDescription, Metrics, Selection, goal, meaning};
 use crate::requirement_verdict::{RequirementRuns, RequirementVerdict};
 
 /// Name of the metric that says whether a run meets its goal.
 const GOAL: &str = goal::NAMES[0];
+
+/// Columns of requirements and the goal.
+const COLUMNS: [&str; 5] = [RUN, ERROR, GOAL, "requirement_values", "requirement_shares"];
+
+/// Metrics, apart from requirements and the goal, from which the answer of a campaign is made: warnings and modes of operation.
+const NOTED: [&str; 24] = [
+    "mode_times_s",
+    "mode_visits",
+    "angle_error_peak_rad",
+    "spectral_radius",
+    "wheel_momentum_limit_share",
+    "actuator_end",
+    "actuator_limit_late_share",
+    "wheel_torque_limit_times_s",
+    "wheel_momentum_limit_times_s",
+    "moment_limit_times_s",
+    "jet_limit_times_s",
+    "gimbal_rate_limit_times_s",
+    "target_losses",
+    "target_loss_modes",
+    "target_loss_limits",
+    "target_loss_starts_s",
+    "target_loss_times_s",
+    "target_loss_errors_before_rad",
+    "target_loss_errors_rad",
+    "nees_mean",
+    "nis_mean",
+    "lock_lost_at_s",
+    "lock_lost",
+    "goal_band_rad",
+];
 
 /// Values of runs, as they are collected.
 #[derive(Clone, Debug)]
@@ -20,6 +51,8 @@ pub struct CampaignRuns {
     /// Number of runs, and of those that failed.
     pub(crate) runs: u64,
     pub(crate) failed: u64,
+    /// Metrics that are noted, each with a cell for every run.
+    noted: Vec<(&'static MetricDescription, ColumnCells)>,
     /// Number of varied keys before the uncertain ones.
     designed: usize,
 }
@@ -47,7 +80,13 @@ impl CampaignRuns {
             values: Vec::new(),
         };
         let keys: Vec<UncertainValues> = scenario.uncertain.keys().map(uncertain).collect();
+        let fields = campaign.fields(&Selection::ALL);
+        let noted = |name: &str| {
+            let field = fields.iter().find(|field| field.name == name)?;
+            Some((meaning(name, Some(scenario))?, ColumnCells::empty(field.kind)))
+        };
         Self {
+            noted: NOTED.into_iter().filter_map(noted).collect(),
             requirements: RequirementRuns::new(scenario),
             designed: campaign.keys().count() - keys.len(),
             keys,
@@ -57,17 +96,21 @@ impl CampaignRuns {
         }
     }
 
+    /// Returns the names of the columns of which the values are, besides those of the keys.
+    pub fn columns() -> impl Iterator<Item = &'static str> {
+        COLUMNS.into_iter().chain(NOTED)
+    }
+
     /// Adds a run of this number by the values of all keys that vary and by its metrics; one that failed has none.
     pub fn add(&mut self, run: u64, drawn: &[Value], metrics: Option<&Metrics>) {
         self.requirements.add(run, metrics);
         for (own, value) in self.keys.iter_mut().zip(drawn.iter().skip(self.designed)) {
             own.values.push(number(value));
         }
-        let word = metrics.and_then(|metrics| metrics.get(GOAL));
-        self.add_goal(word.and_then(|word| match word {
-            MetricValue::Word(word) => goal::score(word),
-            _ => None,
-        }));
+        for (meaning, cells) in &mut self.noted {
+            cells.push_metric(metrics.and_then(|metrics| metrics.get(meaning.name)));
+        }
+        self.add_goal(metrics.and_then(|metrics| metrics.word(GOAL)).and_then(goal::score));
         self.runs += 1;
         self.failed += u64::from(metrics.is_none());
     }
@@ -87,6 +130,14 @@ impl CampaignRuns {
         self.requirements.clone().finish()
     }
 
+    /// Returns the metrics of the run in a row that are noted.
+    pub(crate) fn noted(&self, row: usize) -> Metrics {
+        let metric = |(meaning, cells): &(&'static MetricDescription, ColumnCells)| {
+            Some((*meaning, cells.metric(row)?))
+        };
+        Metrics(self.noted.iter().filter_map(metric).collect())
+    }
+
     fn add_goal(&mut self, score: Option<f64>) {
         if let Some(score) = score {
             self.goals[0] += u64::from(score > 0.5);
@@ -103,10 +154,15 @@ impl RowMaker {
     ) -> Result<CampaignRuns, E> {
         let mut all = CampaignRuns::new(&self.campaign);
         let keys: Vec<String> = all.keys.iter().map(|own| own.key.clone()).collect();
-        let mut names = vec![RUN, ERROR, GOAL, "requirement_values", "requirement_shares"];
+        let mut names: Vec<&str> = COLUMNS.to_vec();
         names.extend(keys.iter().map(String::as_str));
+        names.extend(all.noted.iter().map(|(meaning, _)| meaning.name));
         let mut found = columns(&names)?;
-        for (own, cells) in all.keys.iter_mut().zip(found.drain(5..)) {
+        for ((_, own), cells) in all.noted.iter_mut().zip(found.drain(COLUMNS.len() + keys.len()..)) {
+            // A table may have only some of the metrics.
+            *own = cells.unwrap_or_else(|| ColumnCells::Numbers(Vec::new()));
+        }
+        for (own, cells) in all.keys.iter_mut().zip(found.drain(COLUMNS.len()..)) {
             own.values = cells.map_or_else(Vec::new, |cells| cells.numbers());
         }
         let [runs, errors, goals, values, shares] = [0, 1, 2, 3, 4].map(|place| found[place].take());
@@ -115,7 +171,7 @@ impl RowMaker {
             Some(ColumnCells::Lists(cells)) => cells.get(row).cloned().flatten().unwrap_or_default(),
             _ => Vec::new(),
         };
-        let has_values = values.is_some();
+        let has_values = values.is_some() || all.requirements.is_empty();
         for (row, run) in runs.iter().enumerate() {
             if has_values {
                 let run = run.unwrap_or_default().cast_unsigned();

@@ -228,6 +228,27 @@ impl ColumnCells {
         }
     }
 
+    /// Appends the value of a metric, or null without one.
+    pub(super) fn push_metric(&mut self, value: Option<&MetricValue>) {
+        match value {
+            Some(value) => self.push(value),
+            None => self.push_null(),
+        }
+    }
+
+    /// Returns the value of a metric in a row; `None` for null. Words are a list.
+    pub(super) fn metric(&self, row: usize) -> Option<MetricValue> {
+        Some(match self {
+            Self::Integers(cells) => MetricValue::Count((*cells.get(row)?)?.cast_unsigned()),
+            Self::Numbers(cells) => MetricValue::Number(*cells.get(row)?),
+            Self::Text(cells) => {
+                let words = cells.get(row)?.as_ref()?.split(WORD_SEPARATOR);
+                MetricValue::Words(words.filter(|word| !word.is_empty()).map(str::to_owned).collect())
+            }
+            Self::Lists(cells) => MetricValue::Numbers(cells.get(row)?.clone()?),
+        })
+    }
+
     fn push(&mut self, value: &MetricValue) {
         match (self, value) {
             (Self::Integers(cells), MetricValue::Count(count)) => cells.push(i64::try_from(*count).ok()),
@@ -301,10 +322,7 @@ impl RunRows {
                 (ERROR, ColumnCells::Text(cells)) => {
                     cells.push(outcome.metrics.as_ref().err().map(ToString::to_string));
                 }
-                (name, column) => match metrics.as_mut().and_then(|metrics| metrics.get(name)) {
-                    Some(value) => column.push(value),
-                    None => column.push_null(),
-                },
+                (name, column) => column.push_metric(metrics.as_mut().and_then(|metrics| metrics.get(name))),
             }
         }
     }

@@ -207,8 +207,8 @@ impl Document {
     /// keys.
     ///
     /// # Errors
-    /// An unknown unit, or one that does not fit its key.
-    pub fn in_si(
+    /// An unknown unit, or one that does not fit its key, with all other errors of the document as a value of type `T`.
+    pub fn in_si<T: serde::de::DeserializeOwned>(
         &self,
         schema: impl FnOnce() -> &'static serde_json::Value,
     ) -> Result<Cow<'_, Self>, ScenarioError> {
@@ -216,10 +216,50 @@ impl Document {
             return Ok(Cow::Borrowed(self));
         }
         let mut converted = self.clone();
-        match &quantity::to_si(&mut converted.table, schema())[..] {
-            [] => Ok(Cow::Owned(converted)),
-            faults => Err(self.at_keys(faults)),
+        let faults = quantity::to_si(&mut converted.table, schema());
+        if faults.is_empty() {
+            return Ok(Cow::Owned(converted));
         }
+        let ScenarioError::Invalid(mut all) = self.at_keys(&faults) else {
+            return Err(self.at_keys(&faults));
+        };
+        if let Err(wrong) = reader::read::<T>(&converted.table) {
+            let is_known = |wrong: &Mismatch| faults.iter().any(|fault| fault.key == wrong.path());
+            let others = mistakes::all::<T>(&converted.table, wrong).into_iter();
+            all.extend(others.filter(|wrong| !is_known(wrong)).map(|wrong| self.unfit(&wrong)));
+            all.sort_by_key(|diagnostic| diagnostic.place.as_ref().map_or(usize::MAX, |place| place.line));
+        }
+        Err(ScenarioError::Invalid(all))
+    }
+
+    /// Returns the text with numbers of keys in place of theirs, in the units in which they are written; each number with its key
+    /// is in an SI unit. `None` if the text does not have all of them as numbers.
+    pub fn text_with_numbers<'a>(
+        &self,
+        numbers: impl Iterator<Item = (&'a str, f64, &'a str)>,
+    ) -> Option<String> {
+        let text = self.text.as_deref().filter(|_| self.changed.is_empty())?;
+        let table = DeTable::parse(text).ok()?;
+        let mut places = Vec::new();
+        for (key, number, unit) in numbers {
+            let written = key::get(&self.table, key)?;
+            let new = match written.as_str() {
+                Some(old) => {
+                    let own = unit_of_text(old)?;
+                    let size = quantity::number_in(&format!("1 {own}"), unit).ok()?;
+                    format!("\"{} {own}\"", number / size)
+                }
+                None if written.is_float() || written.is_integer() => format!("{number:?}"),
+                None => return None,
+            };
+            places.push((span_of(table.get_ref(), key)?, new));
+        }
+        places.sort_by_key(|(span, _)| span.start);
+        let mut changed = text.to_owned();
+        for (span, new) in places.into_iter().rev() {
+            changed.replace_range(span, &new);
+        }
+        Some(changed)
     }
 
     /// Reads the document as a value of type `T`.

@@ -30,6 +30,7 @@ from flexsc import _native as engine
 from flexsc._analysis import analysis as _analysis
 from flexsc._answer import Answer, CampaignAnswer
 from flexsc._campaign import campaign, read_campaign, sweep
+from flexsc._comparison import Comparison, compare
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._log import Log
 from flexsc._missing import reading as _reading
@@ -106,6 +107,7 @@ __all__ = [
     "Answer",
     "BudgetLevel",
     "CampaignAnswer",
+    "Comparison",
     "CompiledLaw",
     "Effort",
     "Estimator",
@@ -157,6 +159,7 @@ __all__ = [
     "appendage_from_matrices",
     "appendage_from_nastran",
     "campaign",
+    "compare",
     "estimate",
     "evaluate",
     "examples",

@@ -8,18 +8,11 @@ from typing import Any
 from flexsc import _native as engine
 
 
-class _Fields:
-    """Fields and text of an answer."""
-
-    verdict: str
-    verdict_text: str
-    requirements: tuple[dict[str, Any], ...]
+class Text:
+    """Fields of the engine, and their text."""
 
     def __init__(self, native: engine.RunAnswer) -> None:
         self._native = native
-        fields = self.to_dict()
-        self.verdict, self.verdict_text = fields["verdict"], fields["verdict_text"]
-        self.requirements = tuple(fields.get("requirements", ()))
 
     def to_dict(self) -> dict[str, Any]:
         """Return the fields as dictionaries and lists, as `flexsc simulate --json` has them.
@@ -48,9 +41,6 @@ class _Fields:
     def __str__(self) -> str:
         return self.text()
 
-    def __repr__(self) -> str:
-        return f"<flexsc.{type(self).__name__}: {self.verdict_text}>"
-
     def __eq__(self, other: object) -> bool:
         return self.to_dict() == other.to_dict() if isinstance(other, type(self)) else NotImplemented
 
@@ -61,6 +51,26 @@ class _Fields:
         from html import escape
 
         return f"<pre>{escape(self.text())}</pre>"
+
+
+class _Fields(Text):
+    """Fields and text of an answer."""
+
+    verdict: str
+    verdict_text: str
+    requirements: tuple[dict[str, Any], ...]
+    warnings: tuple[dict[str, Any], ...]
+    by_mode: tuple[dict[str, Any], ...]
+
+    def __init__(self, native: engine.RunAnswer) -> None:
+        super().__init__(native)
+        fields = self.to_dict()
+        self.verdict, self.verdict_text = fields["verdict"], fields["verdict_text"]
+        for name in ("requirements", "warnings", "by_mode"):
+            setattr(self, name, tuple(fields.get(name, ())))
+
+    def __repr__(self) -> str:
+        return f"<flexsc.{type(self).__name__}: {self.verdict_text}>"
 
 
 class Answer(_Fields):
@@ -117,9 +127,7 @@ class Answer(_Fields):
 
     def __init__(self, native: engine.RunAnswer) -> None:
         super().__init__(native)
-        fields = self.to_dict()
-        for name in ("warnings", "by_mode", "events"):
-            setattr(self, name, tuple(fields.get(name, ())))
+        self.events = tuple(self.to_dict().get("events", ()))
 
     def robustness(self, name: str) -> float:
         """Return (limit - value)/limit of a requirement: how far it is from failing; negative if it fails.
@@ -153,7 +161,8 @@ class CampaignAnswer(_Fields):
     """
 
     verdict: str
-    """`missed`, `met`, `goal_met`, `goal_missed`, or `not_asked` without a requirement.
+    """`missed`, `met_but` (a warning says that target, filter or loop is lost in some run), `met`,
+    `goal_met`, `goal_missed`, or `not_asked` without a requirement.
 
     >>> answer.verdict
     'missed'
@@ -189,6 +198,19 @@ class CampaignAnswer(_Fields):
 
     >>> answer.requirements[0]["driven_by"][0]["key"]
     'spacecraft.inertia[2][2]'
+    """
+    warnings: tuple[dict[str, Any], ...]
+    """The warnings, the gravest first: `kind`, `mode`, the number of `runs` with it, `worst_run` and `text`.
+
+    >>> answer.warnings
+    ()
+    """
+    by_mode: tuple[dict[str, Any], ...]
+    """The modes of operation: `mode`, the number of `runs` that enter it, `time_s` and `at_limit_s` with
+    `median`, `p95` and `largest`, and `runs_lost`, those that lose its target.
+
+    >>> answer.by_mode
+    ()
     """
 
     def __init__(self, native: engine.RunAnswer) -> None:

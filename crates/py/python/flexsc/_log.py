@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
+from flexsc._answer import Answer
 from flexsc._handover import Exportable
 from flexsc._result import Topics
 from flexsc._topic import Topic
@@ -69,6 +70,15 @@ class Log(Topics, Exportable):
 
         text = self._native.scenario
         return None if text is None else Scenario.parse(text, self.metadata.get("scenario", "scenario"))
+
+    @property
+    def answer(self) -> Answer:
+        """The answer of the run: it is repeated, or, where that is impossible, its rows are read.
+
+        >>> log.answer.verdict
+        'not_asked'
+        """
+        return Answer(engine.log_answer(self._native)[1])
 
     def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
         """Draw a figure of the run in the log with Matplotlib: see `Result.plot`.

@@ -200,7 +200,7 @@ class Table(Columns):
         >>> table.answer.requirements[0]["text"]["limit"]
         '7 arcsec'
         """
-        names = ("run", "error", "goal", "requirement_values", "requirement_shares", *self.varied)
+        names = (*engine.answer_columns(), *self.varied)
         columns = {
             # Texts, and lists, as lists.
             name: self[name] if self[name].dtype in ("float64", "int64") else self[name].tolist()

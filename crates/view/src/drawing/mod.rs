@@ -45,15 +45,8 @@ struct Boresight {
 /// Returns the drawing of a scenario's spacecraft; `None` of a body that is not built from its parts.
 pub fn spacecraft_svg(scenario: &Scenario) -> Option<String> {
     let craft = scenario.spacecraft.as_ref()?;
-    let hub = Solid::from_inertia(
-        craft.mass.get(),
-        &tensor(&craft.inertia),
-        vector(&craft.centre),
-        &Matrix3::identity(),
-    );
-    let panels: Vec<Solid> = scenario.appendage.iter().map(appendage).collect();
-    let mut solids = panels.clone();
-    solids.push(hub.clone());
+    let solids = solids(scenario)?;
+    let (hub, panels) = solids.split_last()?;
     let reach = 0.5 * hub.size.norm();
     let boresights: Vec<Boresight> = scenario
         .sensor
@@ -76,7 +69,7 @@ pub fn spacecraft_svg(scenario: &Scenario) -> Option<String> {
         format!("hub {}", mass(craft.mass.get())),
         format!("{} × {} × {}, from its inertia", number(hub.size.x), number(hub.size.y), length(hub.size.z)),
     )];
-    labels.extend(scenario.appendage.iter().zip(&panels).map(|(own, solid)| named(scenario, own, solid)));
+    labels.extend(scenario.appendage.iter().zip(panels).map(|(own, solid)| named(scenario, own, solid)));
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" \
          aria-label=\"the spacecraft, drawn from the scenario\" font-family=\"Helvetica, Arial, sans-serif\">\n",
@@ -95,13 +88,52 @@ pub fn spacecraft_svg(scenario: &Scenario) -> Option<String> {
         labels.push(Label::new(ends[1], first.clone(), second.clone()));
     }
     if let Some((wheels, _)) = scenario.actuator.wheels() {
-        svg += &discs(&mut labels, wheels, &hub, &view);
+        svg += &discs(&mut labels, wheels, hub, &view);
     }
     svg += &thrusters(&mut labels, scenario, craft, (&view, reach));
     svg += &label::drawn(&labels, &view);
     svg += &axes_and_scale(&view);
     svg += "</svg>\n";
     Some(svg)
+}
+
+/// Face of a model in the body's axes, about the centre of the hub and its appendages.
+#[derive(Clone, Debug)]
+pub struct ModelFace {
+    /// Corners (m).
+    pub corners: [[f64; 3]; 4],
+    /// Direction out of the box.
+    pub normal: [f64; 3],
+    /// Red, green and blue, to 255.
+    pub colour: [f64; 3],
+}
+
+/// Returns the faces of a scenario's spacecraft; `None` of a body that is not built from its parts.
+pub fn model_faces(scenario: &Scenario) -> Option<Vec<ModelFace>> {
+    let solids = solids(scenario)?;
+    let corners: Vec<Vector> = solids.iter().flat_map(Solid::corners).collect();
+    let [low, high] = [f64::min as fn(f64, f64) -> f64, f64::max].map(|end| {
+        let ends = corners.iter().copied().reduce(|a, b| a.zip_map(&b, end));
+        ends.unwrap_or_else(Vector::zeros)
+    });
+    let middle = 0.5 * (low + high);
+    let mut faces = Vec::new();
+    for own in &solids {
+        faces.extend(own.sides().map(|(corners, normal)| ModelFace {
+            corners: corners.map(|corner| (corner - middle).into()),
+            normal: normal.into(),
+            colour: own.colour(),
+        }));
+    }
+    Some(faces)
+}
+
+/// Returns the boxes of the appendages, then that of the hub.
+fn solids(scenario: &Scenario) -> Option<Vec<Solid>> {
+    let craft = scenario.spacecraft.as_ref()?;
+    let centre = vector(&craft.centre);
+    let hub = Solid::from_inertia(craft.mass.get(), &tensor(&craft.inertia), centre, &Matrix3::identity());
+    Some(scenario.appendage.iter().map(appendage).chain([hub]).collect())
 }
 
 fn appendage(own: &Appendage) -> Solid {

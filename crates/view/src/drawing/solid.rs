@@ -97,31 +97,41 @@ impl Solid {
         if (one - from).norm() > (other - from).norm() { one } else { other }
     }
 
+    /// Returns the colour: red, green and blue, to 255.
+    pub fn colour(&self) -> [f64; 3] {
+        self.colour
+    }
+
+    /// Returns the corners of each of the six faces with the direction out of it, two to each axis.
+    pub fn sides(&self) -> impl Iterator<Item = ([Vector; 4], Vector)> + '_ {
+        (0..6).map(|side| {
+            let (axis, sign) = (side / 2, if side % 2 == 0 { 1.0 } else { -1.0 });
+            let normal: Vector = self.axes.column(axis) * sign;
+            let along = |axis: usize| -> Vector { self.axes.column(axis) * (0.5 * self.size[axis]) };
+            let (u, v) = (along((axis + 1) % 3), along((axis + 2) % 3));
+            let middle = self.centre + normal * (0.5 * self.size[axis]);
+            ([middle + u + v, middle + u - v, middle - u - v, middle - u + v], normal)
+        })
+    }
+
     fn faces(&self, view: &Projection) -> Vec<Face> {
         let mut faces = Vec::new();
-        for axis in 0..3 {
-            for sign in [1.0, -1.0] {
-                let normal: Vector = self.axes.column(axis) * sign;
-                if normal.dot(&view.eye) <= 1e-9 {
-                    continue;
-                }
-                let along = |axis: usize| -> Vector { self.axes.column(axis) * (0.5 * self.size[axis]) };
-                let (u, v) = (along((axis + 1) % 3), along((axis + 2) % 3));
-                let middle = self.centre + normal * (0.5 * self.size[axis]);
-                let corners = [middle + u + v, middle + u - v, middle - u - v, middle - u + v];
-                let light = SHADE + (1.0 - SHADE) * normal.dot(&Vector::from(LIGHT)).max(0.0);
-                let fill: Vec<String> =
-                    self.colour.iter().map(|own| format!("{:02x}", (own * light).min(255.0) as u8)).collect();
-                let mut svg = format!(
-                    "<path d=\"M{} Z\" fill=\"#{}\" stroke=\"#1b2733\" stroke-linejoin=\"round\"/>",
-                    view.path(&corners),
-                    fill.concat()
-                );
-                if self.has_cells && axis == self.size.imin() {
-                    add_cells(&mut svg, &corners, view);
-                }
-                faces.push(Face { depth: view.depth(&middle), svg });
+        for (side, (corners, normal)) in self.sides().enumerate() {
+            if normal.dot(&view.eye) <= 1e-9 {
+                continue;
             }
+            let light = SHADE + (1.0 - SHADE) * normal.dot(&Vector::from(LIGHT)).max(0.0);
+            let fill: Vec<String> =
+                self.colour.iter().map(|own| format!("{:02x}", (own * light).min(255.0) as u8)).collect();
+            let mut svg = format!(
+                "<path d=\"M{} Z\" fill=\"#{}\" stroke=\"#1b2733\" stroke-linejoin=\"round\"/>",
+                view.path(&corners),
+                fill.concat()
+            );
+            if self.has_cells && side / 2 == self.size.imin() {
+                add_cells(&mut svg, &corners, view);
+            }
+            faces.push(Face { depth: view.depth(&(0.5 * (corners[0] + corners[2]))), svg });
         }
         faces
     }
