@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use flexsc_core::answer::CampaignAnswer;
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR, MANIFEST,
-    Manifest, RowMaker as Whole, RunRows, SECONDS,
+    Campaign, CampaignRun, CampaignRuns, ColumnCells, DesignBlock, Directory as Parts, DirectoryError, ERROR,
+    MANIFEST, Manifest, RowMaker as Whole, RunRows, SECONDS,
 };
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
@@ -19,7 +19,6 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
-use serde_json::json;
 
 use super::answer::RunAnswer;
 use super::aside::aside;

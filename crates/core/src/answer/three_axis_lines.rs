@@ -246,7 +246,11 @@ impl RunData<'_> {
                 0.0 => String::new(),
                 pauses => format!(", paused {}", counted(pauses, "time")),
             };
-            let text = if cycles == 0.0 { "never on".to_owned() } else { counted(cycles, "cycle") };
+            let text = if cycles == 0.0 {
+                "never on".to_owned()
+            } else {
+                format!("in {}", counted(cycles, "cycle"))
+            };
             lines.main("active damping", format!("{text}{paused}"));
         }
     }
