@@ -218,7 +218,9 @@ impl UntilRobustness {
             let mut lowest = Vec::new();
             held.push_lesser(&before.piece(held.from, held.to), held.from, held.to, &mut lowest);
             let mut both = Vec::new();
-            lowest.iter().for_each(|part| part.push_lesser(reached, part.from, part.to, &mut both));
+            for part in &lowest {
+                part.push_lesser(reached, part.from, part.to, &mut both);
+            }
             for part in both.iter().filter(|part| part.to > from && part.from <= to) {
                 let negative = part.clone().scaled(-1.0, 0.0);
                 let [from, to] = [part.from.max(from), part.to.min(to)];

@@ -133,7 +133,9 @@ impl Stream {
             Self::Sliding(inner, minimum) => {
                 let mut new = Vec::new();
                 inner.push(chunk, &mut new);
-                new.iter().for_each(|piece| minimum.push(piece, into));
+                for piece in &new {
+                    minimum.push(piece, into);
+                }
                 if matches!(chunk, Chunk::After(..)) {
                     minimum.finish(into);
                 }
@@ -141,7 +143,9 @@ impl Stream {
             Self::Sign(inner) => {
                 let mut new = Vec::new();
                 inner.push(chunk, &mut new);
-                new.iter().for_each(|piece| piece.push_signs(into));
+                for piece in &new {
+                    piece.push_signs(into);
+                }
             }
         }
     }

@@ -3281,14 +3281,21 @@ class Relay(Part):
 
 
 class Requirement(Part):
-    """Requirement: the largest accepted value of a quantity.
+    """Requirement: the largest accepted value of a quantity, or what holds over time.
 
     Args:
         name: Name of the requirement.
+        holds: What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of
+            `quantity` and `limit`; without an operator over time, always.
+        after: Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that
+            becomes true.
+        within: Longest time (s) after the event, or after the start, at which `holds` begins to hold.
+        for_: Time (s) for which `holds` then holds.
+        mode: Mode of operation in which the requirement counts; default: all.
+        during: Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or
+            `"blinded(star_tracker)"`.
         quantity: Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as
             `fuel_kg` or `fuel_axes_kg[2]`; of a list without an index, its largest element.
-        limit: Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as
-            "2 arcsec".
         point: Point of the line of sight, which is a `[[line_of_sight]]` of the scenario.
         axis: Component of the error about an axis of the body; default: the norm of all components.
         index: Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none.
@@ -3301,6 +3308,8 @@ class Requirement(Part):
             s. A line of sight is sampled with its own period.
         from_: Start of the part of the run that counts (s); default: 0.
         to: End of the part of the run that counts (s); default: the end of the run.
+        limit: Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as
+            "2 arcsec".
         level: Probability at which the value is at most the limit; default: 1, always and in every run.
         interpretation: Statistical interpretation of the level; an error with a level below 1 needs one.
         confidence: Confidence at which a campaign shows the level, for the ensemble interpretation;
@@ -3309,13 +3318,27 @@ class Requirement(Part):
 
     name: str
     """Name of the requirement."""
-    quantity: str
+    holds: str | None = None
+    """What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of
+    `quantity` and `limit`; without an operator over time, always.
+    """
+    after: str | None = None
+    """Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that becomes
+    true.
+    """
+    within: float | None = None
+    """Longest time (s) after the event, or after the start, at which `holds` begins to hold."""
+    for_: float | None = None
+    """Time (s) for which `holds` then holds."""
+    mode: str | None = None
+    """Mode of operation in which the requirement counts; default: all."""
+    during: str | None = None
+    """Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or
+    `"blinded(star_tracker)"`.
+    """
+    quantity: str | None = None
     """Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
     `fuel_axes_kg[2]`; of a list without an index, its largest element.
-    """
-    limit: float | str
-    """Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2
-    arcsec".
     """
     point: str | None = None
     """Point of the line of sight, which is a `[[line_of_sight]]` of the scenario."""
@@ -3337,6 +3360,10 @@ class Requirement(Part):
     """Start of the part of the run that counts (s); default: 0."""
     to: float | None = None
     """End of the part of the run that counts (s); default: the end of the run."""
+    limit: float | str | None = None
+    """Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2
+    arcsec".
+    """
     level: float | None = None
     """Probability at which the value is at most the limit; default: 1, always and in every run."""
     interpretation: Literal["temporal", "ensemble", "mixed"] | None = None

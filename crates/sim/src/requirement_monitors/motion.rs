@@ -61,7 +61,9 @@ impl RequirementMonitors {
             self.add_three_axis(span, copy, plant, pieces);
         }
         self.copy = copy;
-        pieces.iter_mut().for_each(|pieces| join(pieces, [from, to]));
+        for pieces in pieces {
+            join(pieces, [from, to]);
+        }
     }
 
     /// Returns true if no requirement depends on the motion up to `to` (s) while each quantity stays within its range.
@@ -142,7 +144,9 @@ impl RequirementMonitors {
                         ModeQuantity::TrueRateError => rate.minus(&aims[1]),
                         _ => rate,
                     };
-                    curve(begin, length, polynomial).iter().for_each(|piece| piece.push_magnitude(into));
+                    if let Some(piece) = curve(begin, length, polynomial) {
+                        piece.push_magnitude(into);
+                    }
                 }
             };
             fit([start, end], &[least, least], &mut reference, &mut take);
