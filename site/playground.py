@@ -2,7 +2,8 @@
 
 It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of
 rustup with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library:
-`rustc-web`, `rust-web-src` and an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is there.
+`rustc-web`, `rust-web-src` and an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is
+there.
 """
 
 from __future__ import annotations
