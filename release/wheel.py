@@ -32,13 +32,20 @@ def add_library(python: Path, target: str) -> None:
 
 
 def fit_lock(archive: Path) -> None:
-    """Takes the crates that a source distribution does not contain out of its lock file, so that it builds with `--locked`."""
+    """Takes crates that a source distribution lacks out of its lock file: it then builds with `--locked`."""
     with tempfile.TemporaryDirectory() as name:
         with tarfile.open(archive) as packed:
             members = packed.getmembers()
             packed.extractall(name, filter="data")
         (folder,) = Path(name).iterdir()
-        metadata = ["cargo", "metadata", "--format-version", "1", "--manifest-path", folder / "crates/py/Cargo.toml"]
+        metadata = [
+            "cargo",
+            "metadata",
+            "--format-version",
+            "1",
+            "--manifest-path",
+            folder / "crates/py/Cargo.toml",
+        ]
         subprocess.run([*metadata, "--offline"], stdout=subprocess.DEVNULL, check=True)
         subprocess.run([*metadata, "--locked"], stdout=subprocess.DEVNULL, check=True)
         with tarfile.open(archive, "w:gz", format=tarfile.PAX_FORMAT) as packed:

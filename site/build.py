@@ -1,8 +1,8 @@
 """Builds the documentation site into target/site: `python3 site/build.py`.
 
 It needs the wheel that `pip wheel --no-deps -w target/wheels .` makes, and makes it if there is none. With
-`--playground` it builds the engine for browsers first, and says so if it cannot; without, the site has the one that
-is in target/playground, if any.
+`--playground` it builds the engine for browsers first, and says so if it cannot; without, the site has the
+one that is in target/playground, if any.
 """
 
 import os

@@ -13,7 +13,9 @@ import gallery
 
 ROOT = Path(__file__).resolve().parents[1]
 TOML = re.compile(r"^```toml\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
-BLOCK = re.compile(r"(?:^ {4}\S.*\n(?:(?:^ {4}.*)?\n)*)|^```(?:sh|text|bash|python)\n.*?^```\n", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(
+    r"(?:^ {4}\S.*\n(?:(?:^ {4}.*)?\n)*)|^```(?:sh|text|bash|python)\n.*?^```\n", re.MULTILINE | re.DOTALL
+)
 NAMED = re.compile(r"scenarios/([\w-]+)\.toml|--like ([\w-]+)|Scenario\.example\(\"([\w-]+)\"\)")
 
 
@@ -29,19 +31,25 @@ def opening(text: str) -> str:
 
 def pages() -> dict[str, str]:
     """A page for each shipped scenario, and their index."""
-    index = "# Scenarios\n\nThe command has them built in: `flexsc new NAME --like SCENARIO` copies one.\n\n| scenario | shows |\n|---|---|\n"
+    index = "# Scenarios\n\nThe command has them built in: `flexsc new NAME --like SCENARIO` copies one.\n\n"
+    index += "| scenario | shows |\n|---|---|\n"
     made = {}
     has_playground = (ROOT / "target/playground").is_dir()
     for name, about in sorted(flexsc.examples().items()):
         text = (ROOT / f"scenarios/{name}.toml").read_text("utf-8")
         index += f"| [`{name}`]({name}.md) | {about} |\n"
-        there = f"[Open in the playground](../playground.md#{name}){{ .md-button }}\n\n" if has_playground else ""
+        there = (
+            f"[Open in the playground](../playground.md#{name}){{ .md-button }}\n\n" if has_playground else ""
+        )
         tiles = "".join(
-            f"![{tile.title}](../gallery/{tile.name}.svg)\n\n" for tile in gallery.TILES if tile.scenario == name
+            f"![{tile.title}](../gallery/{tile.name}.svg)\n\n"
+            for tile in gallery.TILES
+            if tile.scenario == name
         )
         made[f"examples/{name}.md"] = (
             f"# {name}\n\n{about}.\n\n{opening(text)}\n\n{there}{tiles}"
-            f"    flexsc new mine --like {name}\n\n<div data-search-exclude markdown>\n\n```toml\n{text.rstrip()}\n```\n\n</div>\n"
+            f"    flexsc new mine --like {name}\n\n<div data-search-exclude markdown>\n\n"
+            f"```toml\n{text.rstrip()}\n```\n\n</div>\n"
         )
     return {"examples/index.md": index} | made
 
@@ -85,7 +93,11 @@ def linked(markdown: str, above: str) -> str:
         nonlocal before
         whole = next((text for text in (match[1], before + match[1]) if is_accepted(text)), None)
         before += match[1] + "\n"
-        return match[0] if whole is None else match[0] + "\n" + link(packed("mine", whole), "open in the playground")
+        return (
+            match[0]
+            if whole is None
+            else match[0] + "\n" + link(packed("mine", whole), "open in the playground")
+        )
 
     seen: set[str] = set()
 

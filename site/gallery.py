@@ -33,7 +33,7 @@ DRAWN = re.compile(r'<svg [^>]*aria-label="the spacecraft.*?</svg>', re.DOTALL)
 
 
 class Tile(NamedTuple):
-    """One picture: its title, its scenario, the commands that draw it, the file that they write, and the page that explains it."""
+    """One picture: title, scenario, the commands that draw it, the file they write, the page about it."""
 
     title: str
     scenario: str
@@ -51,7 +51,9 @@ class Tile(NamedTuple):
 def figure(title: str, scenario: str, what: str, page: str, options: str = "") -> Tile:
     """A figure of a full log."""
     plot = f"flexsc plot {scenario}.mcap --what {what}{options}"
-    return Tile(title, scenario, (f"flexsc simulate {scenario}.toml --log full", plot), f"{scenario}-{what}.svg", page)
+    return Tile(
+        title, scenario, (f"flexsc simulate {scenario}.toml --log full", plot), f"{scenario}-{what}.svg", page
+    )
 
 
 TILES = [
@@ -108,7 +110,8 @@ TILES = [
         "Where it is quiet: a map over two keys",
         "relay-fixed",
         (
-            "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.28:0.40:61 --vary law.relay.weak=5e-7:2e-6:31 -o sweep",
+            "flexsc sweep relay-fixed.toml --vary law.relay.k_t=0.28:0.40:61 "
+            "--vary law.relay.weak=5e-7:2e-6:31 -o sweep",
             "flexsc plot sweep --metric envelope_late_mean_rad",
         ),
         "sweep/relay-fixed-region-envelope_late_mean_rad.svg",
@@ -159,7 +162,7 @@ def run(command: str, folder: Path) -> None:
 
 
 def folder_pictures(scenario: str) -> dict[str, str]:
-    """The pictures of all tiles of a scenario, by their paths on the site; with the CubeSat, that of the README."""
+    """The pictures of all tiles of a scenario, by their paths on the site; with the README's."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copyfile(SCENARIOS / f"{scenario}.toml", folder / f"{scenario}.toml")
@@ -189,7 +192,10 @@ def folder_pictures(scenario: str) -> dict[str, str]:
 def known() -> dict[str, dict[str, str]]:
     """The title of each scenario of the gallery, and the SHA-256 of the log that the command writes of it."""
     titles = {tile.scenario: tile.title for tile in reversed(TILES)}
-    return {name: {"title": titles[name], "sha256": SHA256[name]} for name in dict.fromkeys(t.scenario for t in TILES)}
+    return {
+        name: {"title": titles[name], "sha256": SHA256[name]}
+        for name in dict.fromkeys(t.scenario for t in TILES)
+    }
 
 
 def pictures() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What MkDocs adds to docs/: references made from the engine, tutorials with their outputs, formulas, the gallery and the playground."""
+"""What MkDocs adds to docs/: references, tutorials with their outputs, formulas, gallery, playground."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from mkdocs.plugins import event_priority
 from mkdocs.structure.files import File, Files
 
 sys.path.insert(0, str(Path(__file__).parent))
-import examples
 import gallery
 import reference
 import search
 import tutorials
 from scenario_keys import Keys
+
+import examples
 
 ROOT = Path(__file__).resolve().parents[1]
 MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)

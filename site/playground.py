@@ -1,8 +1,9 @@
-"""Builds the playground, the engine in a page of the site, into target/playground: `python3 site/playground.py`.
+"""Builds the playground, the engine in a page, into target/playground: `python3 site/playground.py`.
 
-It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of rustup
-with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library: `rustc-web`, `rust-web-src` and
-an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is there.
+It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of
+rustup with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library:
+`rustc-web`, `rust-web-src` and an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is
+there.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ def compiler() -> tuple[dict[str, str], list[str]]:
     library = Path(said("rustc", "--print", "sysroot").strip()) / "lib/rustlib" / TARGET
     if library.is_dir():
         return {}, []
-    why = f"no Rust library for {TARGET}: `rustup target add {TARGET}`, or Debian's rustc-web, rust-web-src and lld"
+    debian = "Debian's rustc-web, rust-web-src and lld"
+    why = f"no Rust library for {TARGET}: `rustup target add {TARGET}`, or {debian}"
     if not DEBIAN.exists():
         raise Absent(why)
     sources = Path(said(DEBIAN, "--print", "sysroot").strip()) / "lib/rustlib/src/rust/library"
@@ -86,7 +88,7 @@ def coded(value: int) -> bytes:
 
 
 def without_other_exports(code: bytes) -> bytes:
-    """A module with the memory and its own functions as exports alone: crates of its dependencies export thousands of stubs."""
+    """A module that exports its memory and functions alone: crates that it depends on export thousands."""
     at, made = 8, bytearray(code[:8])
     while at < len(code):
         kind, (length, start) = code[at], number(code, at + 1)
@@ -112,7 +114,20 @@ def engine() -> bytes:
     if shutil.which("clang") is None:
         raise Absent("no clang, which compiles the C of zstd for WebAssembly")
     folder = ROOT / "target/web"
-    words = ["cargo", "rustc", "--quiet", "--locked", "--profile", "web", "--target", TARGET, "-p", "flexsc-web", "--features", "page"]
+    words = [
+        "cargo",
+        "rustc",
+        "--quiet",
+        "--locked",
+        "--profile",
+        "web",
+        "--target",
+        TARGET,
+        "-p",
+        "flexsc-web",
+        "--features",
+        "page",
+    ]
     exported = [word for name in EXPORTED for word in ("-C", f"link-arg=--export={name}")]
     environment = {**os.environ, **own, "CARGO_TARGET_DIR": str(folder)}
     command = [*words, "--bin", "flexsc-web", *options, "--", *exported]
@@ -126,7 +141,12 @@ def engine() -> bytes:
     if (optimiser := shutil.which("wasm-opt")) is None:
         return trimmed.read_bytes()
     small = built.with_suffix(".small.wasm")
-    features = ("--enable-bulk-memory", "--enable-sign-ext", "--enable-mutable-globals", "--enable-nontrapping-float-to-int")
+    features = (
+        "--enable-bulk-memory",
+        "--enable-sign-ext",
+        "--enable-mutable-globals",
+        "--enable-nontrapping-float-to-int",
+    )
     subprocess.run([optimiser, *LIGHT, *features, trimmed, "-o", small], check=True)
     return small.read_bytes()
 
@@ -153,9 +173,10 @@ def build() -> str | None:
     except Absent as absent:
         shutil.rmtree(MADE)
         return str(absent)
-    for name, packed in {"engine.wasm": packed, "model.js": gzip.compress(model.read_bytes(), 9, mtime=0)}.items():
-        (MADE / f"{name}.gz").write_bytes(packed)
-        text = base64.b64encode(packed).decode("ascii")
+    files = {"engine.wasm": packed, "model.js": gzip.compress(model.read_bytes(), 9, mtime=0)}
+    for name, data in files.items():
+        (MADE / f"{name}.gz").write_bytes(data)
+        text = base64.b64encode(data).decode("ascii")
         (MADE / f"{name}.gz.js").write_text(f'(self.FLEXSC_FILES ??= {{}})["{name}"]="{text}";\n', "ascii")
     model.unlink()
     shutil.copyfile(SOURCE / "style.css", MADE / "style.css")
@@ -164,7 +185,8 @@ def build() -> str | None:
     sizes = {path.name: path.stat().st_size for path in sent}
     if sum(sizes.values()) > MOST_BYTES:
         raise SystemExit(f"the playground is above {MOST_BYTES} bytes: {sizes}")
-    print(f"the playground has {sum(sizes.values()) / 1e6:.2f} MB, built in {time.monotonic() - began:.0f} s: {sizes}")
+    took = time.monotonic() - began
+    print(f"the playground has {sum(sizes.values()) / 1e6:.2f} MB, built in {took:.0f} s: {sizes}")
     return None
 
 

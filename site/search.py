@@ -27,7 +27,7 @@ SYNONYMS = {
     "install.html": "pip download setup",
     "figures.html#a-page-for-a-design-review": "design review report PDF HTML",
     "validity.html": "limitations accuracy verification validation",
-    "scenario/actuators.html": "reaction wheels thrusters magnetorquers CMG",
+    "scenario/actuators.html": "RCS CMG torque rods",
     "scenario/sensors.html": "star tracker gyro IMU magnetometer Sun sensor",
     "scenario/modes.html": "state machine safe mode",
 }

@@ -226,7 +226,7 @@ def extras() -> None:
 
 
 def site() -> str:
-    """The documentation: every tutorial runs, every link leads somewhere, the search finds every key, and the playground runs."""
+    """The documentation: tutorials run, links lead somewhere, the search finds keys, the playground runs."""
     wait_for_wheel()
     run(sys.executable, "site/build.py", "--playground")
     run(sys.executable, "tests/site_search.py")

@@ -372,8 +372,8 @@ fn an_explorer_has_the_numbers_of_the_table_and_repeats_each_run() {
     }
     let command = data["runs"][4]["command"].as_str().expect("a command").to_owned();
     let words = command.strip_prefix("flexsc ").expect("a command of flexsc");
-    let repeated: Json =
-        serde_json::from_str(&dir.run(&format!("{words} --json")).printed()).expect("an object");
+    let printed = dir.run(&format!("{words} --json")).printed();
+    let repeated: Json = serde_json::from_str(printed.lines().next().expect("a run")).expect("an object");
     let value = repeated["metrics"]["envelope_late_mean_rad"].as_f64();
     assert_eq!(value, Some(column(&dir, "out/runs.csv", "envelope_late_mean_rad")[4]));
 }

@@ -1,4 +1,4 @@
-"""Runs tests/site_browser.mjs, the site in a real Chromium, where its parts are there; else says what is missing."""
+"""Runs tests/site_browser.mjs, the site in a real Chromium, or says what is missing for it."""
 
 from __future__ import annotations
 

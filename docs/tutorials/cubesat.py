@@ -108,7 +108,11 @@ terminal("flexsc simulate larger.toml --log full")
 # meet the requirements. A review has more than eight runs.
 
 # %%
-text = (folder / "larger.toml").read_text("utf-8").replace('["-5 deg/s", "5 deg/s"]', '["-0.6 deg/s", "0.6 deg/s"]')
+text = (
+    (folder / "larger.toml")
+    .read_text("utf-8")
+    .replace('["-5 deg/s", "5 deg/s"]', '["-0.6 deg/s", "0.6 deg/s"]')
+)
 (folder / "larger.toml").write_text(text, "utf-8")
 terminal("flexsc simulate larger.toml --runs 8 -o runs")
 

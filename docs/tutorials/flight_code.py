@@ -42,7 +42,9 @@ terminal("flexsc simulate earth-observer.toml")
 # %%
 terminal("flexsc export-c earth-observer.toml -o flight --name aocs --calls 400")
 header = (folder / "flight" / "aocs.h").read_text("utf-8")
-print("\n".join(line for line in header.splitlines() if line.startswith("void aocs_") or "aocs_step(" in line))
+print(
+    "\n".join(line for line in header.splitlines() if line.startswith("void aocs_") or "aocs_step(" in line)
+)
 
 # %% [markdown]
 # ## This machine

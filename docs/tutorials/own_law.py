@@ -12,6 +12,7 @@
 
 # %%
 import time
+from typing import ClassVar
 
 import flexsc
 import matplotlib.pyplot as plt
@@ -22,7 +23,7 @@ class Pd(flexsc.Law):
     """Proportional and derivative feedback of the angle."""
 
     period = 4.5  # s
-    signals = {"error": "rad"}  # a column of the log
+    signals: ClassVar = {"error": "rad"}  # a column of the log
     error = 0.0
 
     def __init__(self, k_p: float, k_d: float) -> None:
@@ -65,7 +66,9 @@ plt.show()
 # %%
 for name, scenario in both.items():
     settled = np.asarray(flexsc.campaign(scenario, runs=30)["settling_time_s"], float)
-    print(f"{name}: settles in {np.nanmedian(settled):.0f} s in the median, {np.nanmax(settled):.0f} s in the worst of 30 runs")
+    print(
+        f"{name}: settles in {np.nanmedian(settled):.0f} s in the median, {np.nanmax(settled):.0f} s in the worst of 30 runs"
+    )
 
 # %% [markdown]
 # ## Three axes

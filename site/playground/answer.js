@@ -26,6 +26,6 @@ export function answerHtml({ answer, screen }) {
   for (const warning of answer.warnings ?? []) {
     html += `<p class="warning">! ${escaped(warning.text)}</p>`;
   }
-  const rest = screen.split("\n").slice(1).join("\n").trim();
+  const rest = screen.split("\n").slice(1).join("\n").replace(/^\n+|\s+$/g, "");
   return `${html}<details ${answer.requirements?.length ? "" : "open"}><summary>all of the first screen</summary><pre>${escaped(rest)}</pre></details>`;
 }
