@@ -61,6 +61,7 @@ __all__ = [
     "ControlMomentGyros",
     "Correlated",
     "Cosine",
+    "CraigBampton",
     "DampingGuards",
     "Dead",
     "Dipole",
@@ -74,6 +75,7 @@ __all__ = [
     "EarthSensor",
     "Ei",
     "ElasticStates",
+    "ElementMessage",
     "Envelope",
     "Environment",
     "EphemerisOrbit",
@@ -200,6 +202,7 @@ __all__ = [
     "TwoLineOrbit",
     "Uniform",
     "UniformPlate",
+    "UnitPair",
     "Unloading",
     "Unloads",
     "UnscentedKalman",
@@ -457,6 +460,8 @@ class Appendage(Part):
         modes: Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of
             Nastran or MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt`
             of 42. Without modes it is rigid.
+        craig_bampton: Craig-Bampton model in place of `modes`; `damping` is then needed, and `mass`,
+            `centre` and `inertia` are compared with it. Default: none.
         damping: Damping ratio of modes read from finite-element results, or a list with one for each;
             required where the file has none, as all but those of 42.
         keep: Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first;
@@ -464,8 +469,10 @@ class Appendage(Part):
         frequency_factor: Factor on its natural frequencies, whichever way they are given; damping ratios
             and shapes stay. Default: 1.
         thermal: Thermal bending in sunlight; default: none.
-        units: Units of finite-element results, except for 42, whose files are in SI units; default: metres
-            and kilograms.
+        units: Units of finite-element results, except for 42, whose files are in SI units: `m` (metres,
+            kilograms), `mm` (millimetres, tonnes), `in` (inches, pound-force seconds squared an inch), or
+            `length` (`m`, `cm`, `mm`, `in`, `ft`) and `mass` (`kg`, `g`, `t`, `lb`, `slug`, `slinch`);
+            default: `m`.
     """
 
     name: str
@@ -502,6 +509,10 @@ class Appendage(Part):
     MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt` of 42. Without
     modes it is rigid.
     """
+    craig_bampton: CraigBampton | None = None
+    """Craig-Bampton model in place of `modes`; `damping` is then needed, and `mass`, `centre` and `inertia`
+    are compared with it. Default: none.
+    """
     damping: float | Vector | None = None
     """Damping ratio of modes read from finite-element results, or a list with one for each; required where
     the file has none, as all but those of 42.
@@ -516,9 +527,10 @@ class Appendage(Part):
     """
     thermal: Thermal | None = None
     """Thermal bending in sunlight; default: none."""
-    units: Literal["m", "mm"] | None = None
-    """Units of finite-element results, except for 42, whose files are in SI units; default: metres and
-    kilograms.
+    units: str | UnitPair | None = None
+    """Units of finite-element results, except for 42, whose files are in SI units: `m` (metres, kilograms),
+    `mm` (millimetres, tonnes), `in` (inches, pound-force seconds squared an inch), or `length` (`m`,
+    `cm`, `mm`, `in`, `ft`) and `mass` (`kg`, `g`, `t`, `lb`, `slug`, `slinch`); default: `m`.
     """
 
 
@@ -1110,6 +1122,26 @@ class Cosine(Part):
     """Further zeros."""
 
 
+class CraigBampton(Part):
+    """Craig-Bampton model of an appendage, as its supplier hands it over: `MXX` and `KXX` of Nastran.
+
+    Args:
+        mass: Reduced mass matrix: rows of the root's displacements and rotations, and of modes that are
+            clamped there.
+        stiffness: Reduced stiffness matrix, in the same order.
+        interface: Rows of the root, from 0: displacements along x, y and z, rotations about them.
+    """
+
+    mass: Rows | str
+    """Reduced mass matrix: rows of the root's displacements and rotations, and of modes that are clamped
+    there.
+    """
+    stiffness: Rows | str
+    """Reduced stiffness matrix, in the same order."""
+    interface: Sequence[int] | None = None
+    """Rows of the root, from 0: displacements along x, y and z, rotations about them."""
+
+
 class DampingGuards(Part):
     """Guards of active damping.
 
@@ -1454,6 +1486,38 @@ class ElasticStates(Part):
     """
     feeds: Literal["modes", "hub", "rigid"] | None = None
     """Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid."""
+
+
+class ElementMessage(Part):
+    """Mean elements of SGP4 with the keys and units of a message.
+
+    Args:
+        EPOCH: Date (UTC), as 2026-07-21T04:06:53.604864.
+        MEAN_MOTION: Mean motion (revolutions a day).
+        ECCENTRICITY: Eccentricity.
+        INCLINATION: Inclination (deg).
+        RA_OF_ASC_NODE: Right ascension of the ascending node (deg).
+        ARG_OF_PERICENTER: Argument of perigee (deg).
+        MEAN_ANOMALY: Mean anomaly (deg).
+        BSTAR: Drag coefficient B* (1/radii of the Earth).
+    """
+
+    EPOCH: str
+    """Date (UTC), as 2026-07-21T04:06:53.604864."""
+    MEAN_MOTION: float
+    """Mean motion (revolutions a day)."""
+    ECCENTRICITY: float
+    """Eccentricity."""
+    INCLINATION: float
+    """Inclination (deg)."""
+    RA_OF_ASC_NODE: float
+    """Right ascension of the ascending node (deg)."""
+    ARG_OF_PERICENTER: float
+    """Argument of perigee (deg)."""
+    MEAN_ANOMALY: float
+    """Mean anomaly (deg)."""
+    BSTAR: float
+    """Drag coefficient B* (1/radii of the Earth)."""
 
 
 class Envelope(Part):
@@ -4393,23 +4457,25 @@ class TwoLineOrbit(Part):
     the mean equator and equinox by the nutation.
 
     Args:
-        tle: Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18
-            revolutions a day: SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and
-            resonances. The run starts at the `epoch`, else at that of the elements (`check` remarks more
-            than 14 days between them), in axes of the true equator and mean equinox, without nutation, up
-            to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
+        tle: Mean elements about the Earth, from 0.05 to 18 revolutions a day: both lines of a two-line
+            element set, three with a name, one text of them, or the path of a file of them or of an OMM
+            (keywords, XML, JSON). SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon
+            and resonances. The run starts at the `epoch`, else at that of the elements (`check` remarks
+            more than 14 days between them), in axes of the true equator and mean equinox, without nutation,
+            up to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
         gravity: Gravitational parameter of the planet (m³/s²); default: the Earth's. Default:
             398600441800000.0.
         planet_radius: Radius of the planet (m), for its shadow; default: the Earth's equatorial radius.
             Default: 6378137.0.
     """
 
-    tle: Sequence[str]
-    """Both lines of a two-line element set of the Earth, of 69 characters, from 0.05 to 18 revolutions a
-    day: SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run
-    starts at the `epoch`, else at that of the elements (`check` remarks more than 14 days between them),
-    in axes of the true equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of SDP4
-    of more than 2 km are refused.
+    tle: Sequence[str] | str | ElementMessage
+    """Mean elements about the Earth, from 0.05 to 18 revolutions a day: both lines of a two-line element
+    set, three with a name, one text of them, or the path of a file of them or of an OMM (keywords, XML,
+    JSON). SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The
+    run starts at the `epoch`, else at that of the elements (`check` remarks more than 14 days between
+    them), in axes of the true equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of
+    SDP4 of more than 2 km are refused.
     """
     gravity: float | None = None
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
@@ -4449,6 +4515,18 @@ class UniformPlate(Part):
     """Axis along which it extends from the root; it bends out of the plane of x and y. Default: "y"."""
     damping: float | None = None
     """Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0."""
+
+
+class UnitPair(Part):
+    """Both units, as a scenario has them.
+
+    Args:
+        length:
+        mass:
+    """
+
+    length: Literal["m", "cm", "mm", "in", "ft"]
+    mass: Literal["kg", "g", "t", "lb", "slug", "slinch"]
 
 
 class Unloading(Part):
