@@ -15,8 +15,8 @@ use super::study::{Study, StudyRun};
 /// Largest number of frequencies in a line.
 const MOST: usize = 4;
 
-/// Returns the block.
-pub fn block(study: &Study, run: &StudyRun) -> String {
+/// Returns the block, with the animated model of a run if there is one.
+pub fn block(study: &Study, run: Option<&StudyRun>) -> String {
     let scenario = &study.scenario;
     let mut lines = body_lines(scenario);
     lines.extend(part_lines(scenario));
@@ -37,7 +37,7 @@ pub fn block(study: &Study, run: &StudyRun) -> String {
         Some(figure) => format!("<div class=\"cols\">{figure}{table}</div>\n"),
         None => table,
     };
-    let model = model_block::block(study, &run.log).unwrap_or_default();
+    let model = run.and_then(|run| model_block::block(study, &run.log)).unwrap_or_default();
     body + &model + &command(&study.command("modes", ""))
 }
 

@@ -69,7 +69,7 @@ impl EditableStudy {
 
     /// Returns the block of the spacecraft.
     pub fn spacecraft(&self) -> String {
-        html::numbered(&craft_block::block(&self.study))
+        html::numbered(&craft_block::block(&self.study, None))
     }
 
     /// Returns the block of the margins, without a search for the worst.

@@ -57,7 +57,7 @@ pub fn html(review: &Review<'_>) -> String {
         let table = requirement_block::table(answer, campaign_answer);
         add("requirements", "Requirements", table + &command(&study.command("simulate", "")));
     }
-    add("spacecraft", "Spacecraft", craft_block::block(study, run));
+    add("spacecraft", "Spacecraft", craft_block::block(study, Some(run)));
     add("time", "Time line", time_block(review));
     if answer.by_mode.is_empty() {
         add("run", "The run", mode_block::lines(answer) + &command(&study.command("simulate", "--all")));
