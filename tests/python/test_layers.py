@@ -21,8 +21,8 @@ LAYERS = {
         _model_state _noise _optimisation _plan _read _report _result _review_figures _sampled_loop results
     """,
     "scenario": """
-        _campaign _copies _executor _log _own_parts_campaign _population _row _scenario _sensitivity
-        _simulator _simulators _sources _table _threads
+        _campaign _comparison _copies _executor _log _own_parts_campaign _population _row _scenario
+        _sensitivity _simulator _simulators _sources _table _threads
     """,
     "tools": """
         __init__ __main__ _episodes _frequency_figures _stable_baselines _tutorials _vector_env basilisk

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._answer import Text
+from flexsc._campaign import read_campaign
 from flexsc._log import Log
+from flexsc._missing import reading
 from flexsc._result import Result
 from flexsc._scenario import Scenario
 from flexsc._table import Table
@@ -23,7 +25,7 @@ class Comparison(Text):
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("half-turn")
-    >>> both = flexsc.compare(scenario, scenario.with_("requirement[0].limit", "1 arcsec"))
+    >>> both = flexsc.compare(scenario, scenario.with_("reference.pointing.rms", "1 arcsec"))
     >>> [answer["verdict"] for answer in both.answers]
     ['met', 'missed']
     """
@@ -38,7 +40,7 @@ class Comparison(Text):
     """The keys in which the scenarios differ, defaults included: `key`, and `texts` of both sides.
 
     >>> both.keys[0]["key"], both.keys[0]["texts"]
-    ('requirement[0].limit', ['7 arcsec', '1 arcsec'])
+    ('reference.pointing.rms', ['7.00 arcsec', '1 arcsec'])
     """
     answers: tuple[dict[str, Any], dict[str, Any]]
     """The fields of both answers: see `Answer` and `CampaignAnswer`.
@@ -95,11 +97,9 @@ def _side(side: Side) -> tuple[str, engine.Scenario, engine.RunAnswer]:
 
 
 def _read(path: str) -> Scenario | Log | Table:
-    from flexsc import read_campaign, read_log
-
     if os.path.isdir(path):
         return read_campaign(path)
-    return read_log(path) if path.endswith(".mcap") else Scenario.load(path)
+    return Log(reading(path, engine.Log.open)) if path.endswith(".mcap") else Scenario.load(path)
 
 
 Comparison.__module__ = "flexsc"
