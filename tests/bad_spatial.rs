@@ -111,7 +111,7 @@ const FILES: &[(&str, &[&str])] = &[
     ("frequency,hub.tw\n", &["line 1", "got `hub.tw`"]),
     ("frequency,hub.tx\n1,2\n3\n", &["line 3: must have 2 numbers, as the header, got 1"]),
     ("frequency,hub.tx\n1,x\n", &["line 2: `hub.tx` must be a number, got `x`"]),
-    ("frequency,hub.tx\n1,inf\n", &["line 2: `hub.tx` must be a finite number, got inf"]),
+    ("frequency,hub.tx\n1,inf\n", &["line 2: `hub.tx` must be a number, got `inf`"]),
     ("frequency,hub.tx\n0,1\n", &["line 2: `frequency` must be a natural frequency of 1e-4 to 1e3 rad/s, got 0"]),
     ("hub.tx,frequency,damping\n1,1,-1\n", &["line 2: `damping` must be a number of 0 or more, got -1"]),
 ];

@@ -9,7 +9,7 @@ use flexsc_core::numerics::attitude::Vector;
 use crate::orbits::{drifting, scenario};
 use crate::util::Dir;
 
-/// What an example of the page leaves out.
+/// Tables that an example of the page leaves out.
 const CRAFT: &str = "[spacecraft]\nmass = 600.0\ninertia = [[250, 0, 0], [0, 300, 0], [0, 0, 220]]\n";
 const LAW: &str = "[law.attitude]\nperiod = 0.5\nbandwidth = 0.01\n";
 
@@ -35,7 +35,8 @@ fn every_example_of_the_page_is_accepted() {
         let (top, tables) = example.split_at(example.find("[").unwrap_or_default());
         let rest = if example.contains("[body") { "" } else { &[CRAFT, LAW].concat() };
         dir.write("example.toml", format!("duration = 10.0\n{top}{rest}{tables}"));
-        let printed = dir.run("check example.toml").exits(0).printed();
+        let run = dir.run("check example.toml").exits(0);
+        let printed = [run.out, run.err].concat();
         assert!(printed.contains("accepted"), "{example}\n{printed}");
     }
 }

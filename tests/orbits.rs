@@ -163,7 +163,7 @@ fn orbits_that_do_not_hold_are_refused() {
     refused(&orbit("{ semi_major_axis = 6903 }"), &[inside[0], inside[1], "is it meant as \"6903 km\"?"]);
     let nadir = "[[target]]\nfrom = 0\nprimary = { body = [0, 0, 1], along = \"nadir\" }\nsecondary = { body = [1, 0, 0], along = \"velocity\" }\n";
     refused(&drifting("{ semi_major_axis = 6903 }", nadir), &inside);
-    refused(&orbit("{ tle = [\"1\", \"2\"] }"), &["`environment.orbit.tle[0]`", "69 characters, got 1"]);
+    refused(&orbit("{ tle = [\"1\", \"2\"] }"), &["`environment.orbit.tle[0]`", "69 characters", "got 1"]);
     refused(&orbit("{ tle = [\"1\"] }"), &["environment.orbit"]);
     refused(&orbit(&TLE.replace("tle =", "node = 0.1, tle =")), &["`node`", "`tle`"]);
     refused(&orbit(&TLE.replace("06177", "06178")), &["checksum"]);

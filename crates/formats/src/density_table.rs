@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::foreign_file;
 use crate::number::real;
-use crate::structure::open_text_up_to;
+use crate::text_file::open_text_up_to;
 
 /// Largest number of rows.
 const MOST: usize = 10_000;

@@ -20,7 +20,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::celestial_frame::CelestialFrame;
 use crate::foreign_file;
 use crate::number::real;
-use crate::structure::open_text_up_to;
+use crate::text_file::open_text_up_to;
 
 /// Least number of rows, those of one polynomial.
 const LEAST: usize = 8;

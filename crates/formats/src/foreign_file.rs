@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::structure::open_text_up_to;
+use crate::text_file::open_text_up_to;
 
 /// Number of bytes from which a format is recognised.
 const START: usize = 4096;

@@ -15,7 +15,7 @@ use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::foreign_file;
-use crate::structure::open_text_up_to;
+use crate::text_file::open_text_up_to;
 
 /// Largest size of a file (bytes).
 const LONGEST: u64 = 4 << 20;

@@ -15,3 +15,4 @@ pub mod read_files;
 pub mod reader_units;
 pub mod structure;
 pub mod text_columns;
+pub mod text_file;

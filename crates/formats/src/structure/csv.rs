@@ -7,8 +7,8 @@ use ::csv::StringRecord;
 use nalgebra::DMatrix;
 
 use super::LARGEST;
-use super::file::open_text;
 use crate::number::real;
+use crate::text_file::open_text;
 
 /// Reads a matrix.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {

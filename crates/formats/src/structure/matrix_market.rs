@@ -7,8 +7,8 @@ use std::path::Path;
 use nalgebra::DMatrix;
 
 use super::LARGEST;
-use super::file::open_text;
 use crate::number::real;
+use crate::text_file::open_text;
 
 const HEADER: &str = "must begin with `%%MatrixMarket matrix`, then `coordinate` or `array`, `real` or `integer`, \
                       `general` or `symmetric`";

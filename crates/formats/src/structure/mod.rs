@@ -12,7 +12,6 @@ mod eigen;
 mod eigen_large;
 mod eigen_reduced;
 pub mod fe;
-mod file;
 mod matrix;
 mod matrix_market;
 pub mod mode_table;
@@ -27,7 +26,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
 use eigen_reduced::EigenError;
-pub use file::{open_text_up_to, read_text_up_to};
+
 pub use matrix::Matrix;
 pub use matrix_market::{MatrixElements, read_elements as read_matrix_market};
 pub use shape::Shape;

@@ -9,7 +9,7 @@ use npyz::{NpyFile, Order};
 use zip::ZipArchive;
 
 use super::LARGEST;
-use super::file::open;
+use crate::text_file::open;
 
 /// Largest length of an array's header (bytes): those of numeric arrays have at most 128.
 const LONGEST_HEADER: usize = 1024;

@@ -10,7 +10,7 @@ use flexsc_formats::calendar_date;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::element_message::{self, ElementMessage};
 use flexsc_formats::foreign_file;
-use flexsc_formats::structure::read_text_up_to;
+use flexsc_formats::text_file::read_text_up_to;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
@@ -33,7 +33,7 @@ pub struct ElementSet {
 /// Elements as they are given.
 #[derive(Clone, Debug, PartialEq)]
 enum GivenElements {
-    /// Those of a file that is not read yet.
+    /// Elements in a file that is not read yet.
     Unread,
     /// Both lines, and the index of the first in the list of the scenario, if they are in one.
     Lines([String; 2], Option<usize>),

@@ -3,7 +3,7 @@
 
 use flexsc_numerics::attitude::Vector;
 
-/// Angle from row to row (rad) above which positions alone tell too little: three minutes in a low orbit.
+/// Angle from row to row (rad) above which positions alone are too few: three minutes in a low orbit.
 const WIDE: f64 = 0.2;
 
 /// Angle between rows that are computed (rad): one minute in a low orbit.
@@ -117,7 +117,7 @@ mod tests {
 
     /// Errors that a computation of the same polynomials in another language has: 0.04 km in the middle of rows of 15 minutes.
     #[test]
-    fn velocities_tell_the_orbit_between_rows() {
+    fn velocities_give_the_orbit_between_rows() {
         for (step, inside, known) in [
             (60.0, None, 0.0),
             (300.0, Some(1e-3), 1.0),

@@ -9,12 +9,12 @@ use nalgebra::Vector3;
 use super::element::{HollowSection, MassRule};
 use super::text::{Lines, TextLine};
 use crate::number::real;
-use crate::structure::file::open_text_up_to;
+use crate::text_file::open_text_up_to;
 
 /// Mass of an element.
 #[derive(Copy, Clone)]
 enum ElementMass {
-    /// That of its volume, by a rule of integration.
+    /// Mass of the volume, by a rule of integration.
     Solid(MassRule),
     Point,
     /// None: springs, dashpots, gaps.
@@ -93,7 +93,7 @@ pub struct Deck {
 pub struct HollowBeam {
     /// Nodes at both ends.
     pub ends: [usize; 2],
-    /// Its section.
+    /// Section with its wall.
     pub section: HollowSection,
 }
 

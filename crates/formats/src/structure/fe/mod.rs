@@ -20,8 +20,8 @@ mod text;
 
 use std::path::Path;
 
-use super::file::open_text_up_to;
 use super::mode_table::MOST_MODES;
+use crate::text_file::open_text_up_to;
 pub use craig_bampton::craig_bampton_modes;
 use tables::ParticipationTable;
 

@@ -13,7 +13,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Opens a file.
 #[cfg(feature = "matrices")]
-pub fn open(path: &Path) -> Result<File, String> {
+pub(crate) fn open(path: &Path) -> Result<File, String> {
     open_up_to(path, LONGEST)
 }
 
@@ -33,11 +33,14 @@ fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
 }
 
 /// Opens a text for sequential reading, limited to the largest size.
-pub fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
+pub(crate) fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
     open_text_up_to(path, LONGEST)
 }
 
 /// Opens a text for sequential reading, limited to `longest` bytes, behind its byte order mark if it has one.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is no text in UTF-8.
 pub fn open_text_up_to(path: &Path, longest: u64) -> Result<BufReader<Take<File>>, String> {
     let mut text = BufReader::new(open_up_to(path, longest)?.take(longest));
     let start = text.fill_buf().map_err(|error| error.to_string())?;
@@ -50,6 +53,9 @@ pub fn open_text_up_to(path: &Path, longest: u64) -> Result<BufReader<Take<File>
 }
 
 /// Reads a whole text of at most `longest` bytes, in which what is no UTF-8 is replaced.
+///
+/// # Errors
+/// A file that cannot be read, is too large, or is in UTF-16.
 pub fn read_text_up_to(path: &Path, longest: u64) -> Result<String, String> {
     let mut bytes = Vec::new();
     open_text_up_to(path, longest)?.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
