@@ -115,10 +115,7 @@ fn the_motion_counts_and_not_its_rows() {
     let pi = std::f64::consts::PI;
     assert_near(&numbers(&found, "requirement_values"), &[4e-4, 2e-4, 6e-4, 0.8], 1e-13);
     let times = numbers(&found, "requirement_times_s");
-    assert!(
-        (times[0] / pi).fract().min(1.0 - (times[0] / pi).fract()) < 1e-6 && times[3] == 0.0,
-        "{times:?}"
-    );
+    assert!((times[0] / pi).fract().min(1.0 - (times[0] / pi).fract()) < 1e-6, "{times:?}");
     // Rows of a log, and stops, change nothing.
     let logged = metrics(&text, Some(Detail::Full));
     for name in ["requirement_values", "requirement_times_s"] {
@@ -196,7 +193,7 @@ fn modes_and_events_select_the_time() {
         "modes: 0 is undecided",
     ]);
     dir.write("missed.toml", bad.replace("1e-3", "1e-9"));
-    dir.run("simulate missed.toml --log none").exits(3).says(&["MISSED: 1 of 1 requirement", "decided by"]);
+    dir.run("simulate missed.toml --log none").exits(3).says(&["MISSED: 1 of 1 requirement", "decided at"]);
 }
 
 #[test]

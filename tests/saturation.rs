@@ -74,7 +74,7 @@ fn steady_saturation_is_reported() {
     let dir = Dir::holding("a.toml", body(0.1, more));
     dir.run("simulate a.toml --log none")
         .exits(0)
-        .says(&["  ! the run ends in saturation: an actuator is at its limit", "at the limit of torque for"]);
+        .says(&["  ! the run ends in saturation: an actuator is at its limit", "torque for 61 % of the time"]);
 }
 
 /// Wheels that hold a body against a torque take its impulse: 0.01 N m for 300 s, in 0.02 kg m².

@@ -15,7 +15,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub struct Requirement {
     /// Name of the requirement.
     pub name: String,
-    /// What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of `quantity` and `limit`;
+    /// Expression that holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of `quantity` and `limit`;
     /// without an operator over time, always.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub holds: Option<String>,

@@ -345,12 +345,17 @@ impl Simulation {
     /// Returns the parts of the run for reading, and the recorder, which reads them.
     fn view(&mut self) -> (RunView<'_>, &mut Recorder) {
         let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, recorder, .. } = self;
-        (RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, operation }, recorder)
+        let (modes, sky) = (operation.sequence(), &**operation.sky());
+        (
+            RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, modes, sky },
+            recorder,
+        )
     }
 
     /// Returns the parts of the run for reading.
     fn read_view(&self) -> RunView<'_> {
         let Self { clock, plant, sensors, estimation, guidance, laws, loads, operation, .. } = self;
-        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, operation }
+        let (modes, sky) = (operation.sequence(), &**operation.sky());
+        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads, modes, sky }
     }
 }

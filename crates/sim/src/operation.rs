@@ -37,6 +37,13 @@ struct KnownQuantities<'a> {
     sky: &'a ModeSky,
 }
 
+impl<'a> KnownQuantities<'a> {
+    /// Creates the quantities of a run.
+    fn new(run: RunView<'a>) -> Self {
+        Self { run, sequence: run.modes, sky: run.sky }
+    }
+}
+
 impl Operation {
     /// Creates the modes of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
@@ -60,8 +67,9 @@ impl Operation {
         &self.sky
     }
 
-    fn quantities<'a>(&'a self, run: &RunView<'a>) -> KnownQuantities<'a> {
-        KnownQuantities { run: *run, sequence: self.sequence.as_ref(), sky: &self.sky }
+    /// Returns the sequence of the modes; `None` without modes.
+    pub fn sequence(&self) -> Option<&ModeSequence> {
+        self.sequence.as_ref()
     }
 
     /// Returns the row of the first mode, at the start of a run with modes.
@@ -195,12 +203,12 @@ impl ModeReadings for KnownQuantities<'_> {
 impl RunView<'_> {
     /// Returns the value of a quantity of a requirement; 1 or 0 of a flag, NaN while it is not known.
     pub(super) fn quantity(&self, quantity: ModeQuantity) -> f64 {
-        self.operation.quantities(self).value(quantity)
+        KnownQuantities::new(*self).value(quantity)
     }
 
     /// Returns true if a condition of a requirement is met.
     pub(super) fn meets(&self, condition: &Expression) -> bool {
-        condition.holds(&self.operation.quantities(self))
+        condition.holds(&KnownQuantities::new(*self))
     }
 
     /// Returns a vector or list that the control system knows; nothing for those that no condition reads.

@@ -1,5 +1,6 @@
 //! Parts of a run at one instant, as the record and the observation read them.
 
+use flexsc_control::operation::ModeSequence;
 use flexsc_control::sensor::Orientation;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
@@ -8,7 +9,7 @@ use super::controllers::ControlLaws;
 use super::estimation::Estimation;
 use super::guidance::Guidance;
 use super::loads::Loads;
-use super::operation::Operation;
+use super::mode_sky::ModeSky;
 use super::plant::Plant;
 use super::sensors::Sensors;
 
@@ -23,7 +24,9 @@ pub struct RunView<'a> {
     pub guidance: &'a Guidance,
     pub laws: &'a ControlLaws,
     pub loads: &'a Loads,
-    pub operation: &'a Operation,
+    /// Sequence of the modes of operation, if there are any, and the sky of their conditions.
+    pub modes: Option<&'a ModeSequence>,
+    pub sky: &'a ModeSky,
 }
 
 /// Returns the error of the attitude (rad) or of the rate (rad/s) about the body's axes.

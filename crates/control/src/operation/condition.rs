@@ -7,7 +7,6 @@ use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;
 
 use super::quantity::ModeQuantity;
-use super::timed::Timed;
 
 /// Part of a condition that cannot be read, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,6 +76,33 @@ pub enum Expression {
     Timed(Box<Timed>),
 }
 
+/// Closed window of time after an instant.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct TimeWindow {
+    /// Start (s).
+    pub from: f64,
+    /// End (s); `None` for the end of the run.
+    pub to: Option<f64>,
+}
+
+impl TimeWindow {
+    /// Window from an instant to the end of the run.
+    pub const REST: Self = Self { from: 0.0, to: None };
+}
+
+/// Expression that depends on more than one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Timed {
+    /// True if the expression is throughout a window.
+    Always(TimeWindow, Expression),
+    /// True if the second expression is at an instant of the window, and the first one up to that instant.
+    Until(Expression, TimeWindow, Expression),
+    /// True if the second expression is at each instant at which the first one becomes true.
+    When(Expression, Expression),
+    /// True if the second expression is, or the first one is not.
+    While(Expression, Expression),
+}
+
 /// Access to the quantities at one instant.
 pub trait ModeReadings {
     /// Returns the value of a quantity in its unit, 1 or 0 of a flag; NaN while it is not known.
@@ -141,5 +167,38 @@ impl Expression {
     /// Returns true if the condition reads the truth.
     pub fn reads_truth(&self) -> bool {
         self.leaves().iter().any(|(quantity, _)| quantity.is_truth())
+    }
+}
+
+impl Expression {
+    /// Returns the expression, throughout a window.
+    #[must_use]
+    pub fn always(self, window: TimeWindow) -> Self {
+        Self::Timed(Box::new(Timed::Always(window, self)))
+    }
+
+    /// Returns the expression, at any instant of a window.
+    #[must_use]
+    pub fn eventually(self, window: TimeWindow) -> Self {
+        self.negated().always(window).negated()
+    }
+
+    /// Returns the expression with the opposite sense.
+    #[must_use]
+    pub fn negated(self) -> Self {
+        Self::Not(Box::new(self))
+    }
+
+    /// Returns the comparisons and flags whose size counts, and not only whether they hold.
+    pub fn measured(&self) -> Vec<&Self> {
+        match self {
+            Self::Compared { .. } | Self::Flag(_) => vec![self],
+            Self::Not(inner) => inner.measured(),
+            Self::All(inner) | Self::Any(inner) => inner.iter().flat_map(Self::measured).collect(),
+            Self::Timed(timed) => match &**timed {
+                Timed::Always(_, inner) | Timed::When(_, inner) | Timed::While(_, inner) => inner.measured(),
+                Timed::Until(held, _, reached) => [held.measured(), reached.measured()].concat(),
+            },
+        }
     }
 }

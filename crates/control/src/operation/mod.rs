@@ -7,13 +7,13 @@ mod operating_mode;
 mod parser;
 mod quantity;
 mod sequence;
-mod timed;
 
-pub use condition::{Comparison, ConditionFault, Expression, ModeReadings, RequirementNames, Vocabulary};
+pub use condition::{
+    Comparison, ConditionFault, Expression, ModeReadings, RequirementNames, TimeWindow, Timed, Vocabulary,
+};
 pub use mode_condition::ModeCondition;
 pub use mode_tables::{ModeReading, ModeTables, WrittenExit};
 pub use operating_mode::{ModeExit, ModeTarget, OperatingMode, SlewStart};
 pub use parser::parse_trigger;
 pub use quantity::{ModeFormula, ModeQuantity};
 pub use sequence::{ModeChange, ModeSequence};
-pub use timed::{TimeWindow, Timed};

@@ -7,7 +7,7 @@
 mod point;
 mod stream;
 
-use flexsc_numerics::signal::{Piece, Witnessed};
+use flexsc_numerics::signal::{SignalPiece, Witnessed};
 
 use crate::operation::{Comparison, Expression, ModeQuantity};
 use point::PointRobustness;
@@ -32,7 +32,7 @@ struct Leaf {
 #[derive(Copy, Clone)]
 enum Chunk<'a> {
     /// Pieces of each leaf.
-    Known(&'a [Vec<Piece>]),
+    Known(&'a [Vec<SignalPiece>]),
     /// Time after the end of the run (s), where nothing is known; the requirement is to have this sign there.
     After(f64, f64),
 }
@@ -61,17 +61,17 @@ impl RequirementMonitor {
 
     /// Takes the pieces of each quantity between two times; they continue those before. A comparison with a value that is
     /// not known, NaN, does not hold.
-    pub fn push(&mut self, pieces: &[&[Piece]]) {
-        let scaled = |(source, (of, leaf)): (usize, (&&[Piece], &Leaf))| -> Vec<Piece> {
-            let scaled = |piece: &Piece| {
+    pub fn push(&mut self, pieces: &[&[SignalPiece]]) {
+        let scaled = |(source, (of, leaf)): (usize, (&&[SignalPiece], &Leaf))| -> Vec<SignalPiece> {
+            let scaled = |piece: &SignalPiece| {
                 if piece.at(piece.from).value.is_nan() {
-                    return Piece::constant(piece.from, piece.to, f64::NEG_INFINITY, source);
+                    return SignalPiece::constant(piece.from, piece.to, f64::NEG_INFINITY, source);
                 }
-                Piece { source, ..piece.clone().scaled(leaf.gain, leaf.offset) }
+                SignalPiece { source, ..piece.clone().scaled(leaf.gain, leaf.offset) }
             };
             of.iter().map(scaled).collect()
         };
-        let leaves: Vec<Vec<Piece>> = pieces.iter().zip(&self.leaves).enumerate().map(scaled).collect();
+        let leaves: Vec<Vec<SignalPiece>> = pieces.iter().zip(&self.leaves).enumerate().map(scaled).collect();
         self.point.push(Chunk::Known(&leaves));
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use flexsc_numerics::signal::{Piece, Witnessed};
+use flexsc_numerics::signal::{SignalPiece, Witnessed};
 
 use super::Chunk;
 use super::stream::{Stream, aligned};
@@ -17,7 +17,7 @@ pub(super) enum PointRobustness {
         inner: Stream,
         /// Start and end (s).
         span: [f64; 2],
-        /// Least value so far.
+        /// Least value of what is known.
         least: Witnessed,
         /// True once the signal is known up to the end.
         is_known: bool,
@@ -35,11 +35,11 @@ pub(super) enum PointRobustness {
 /// Largest value of the least of one signal at a time and another one up to then.
 #[derive(Clone, Debug)]
 pub(super) struct UntilRobustness {
-    held: (Stream, VecDeque<Piece>),
-    reached: (Stream, VecDeque<Piece>),
+    held: (Stream, VecDeque<SignalPiece>),
+    reached: (Stream, VecDeque<SignalPiece>),
     /// Start and end of the window (s).
     span: [f64; 2],
-    /// Least value of the first signal so far, and the largest value of `until`, negative.
+    /// Least known value of the first signal, and the largest value of `until`, negative.
     least: Witnessed,
     opposite: Witnessed,
     is_known: bool,
@@ -210,11 +210,11 @@ impl UntilRobustness {
     }
 
     /// Takes a part on which the first signal only rises or falls.
-    fn add(&mut self, held: &Piece, reached: &Piece) {
+    fn add(&mut self, held: &SignalPiece, reached: &SignalPiece) {
         let before = lesser(self.least, held.at(held.from));
         let [from, to] = self.span;
         if held.from <= to && held.to > from {
-            // The least value so far: that before, or the signal itself where it falls below.
+            // The least known value: that before, or the signal itself where it falls below.
             let mut lowest = Vec::new();
             held.push_lesser(&before.piece(held.from, held.to), held.from, held.to, &mut lowest);
             let mut both = Vec::new();

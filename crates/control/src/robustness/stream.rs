@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use flexsc_numerics::signal::{Piece, SlidingMinimum};
+use flexsc_numerics::signal::{SignalPiece, SlidingMinimum};
 
 use super::Chunk;
 use crate::operation::{Expression, TimeWindow, Timed};
@@ -19,12 +19,12 @@ pub(super) enum Stream {
         /// True within an odd number of negations.
         is_negated: bool,
         /// Last piece.
-        last: Option<Piece>,
+        last: Option<SignalPiece>,
     },
     /// Opposite.
     Not(Box<Stream>),
     /// Least, with the pieces of each that wait for the others.
-    Least(Vec<(Stream, VecDeque<Piece>)>),
+    Least(Vec<(Stream, VecDeque<SignalPiece>)>),
     /// Least over a window that slides.
     Sliding(Box<Stream>, SlidingMinimum),
     /// Infinite with the sign of another.
@@ -84,7 +84,7 @@ impl Stream {
     }
 
     /// Takes a part of the signals, and appends the robustness as far as it is known.
-    pub fn push(&mut self, chunk: Chunk<'_>, into: &mut Vec<Piece>) {
+    pub fn push(&mut self, chunk: Chunk<'_>, into: &mut Vec<SignalPiece>) {
         match self {
             Self::Leaf { source, span: [start, end], is_negated, last } => match chunk {
                 Chunk::Known(pieces) => {
@@ -102,7 +102,7 @@ impl Stream {
                     let from = at.next_up().max(*start);
                     into.extend(last.take().filter(|_| *start <= at).map(|piece| piece.part(at, from)));
                     let value = if *is_negated { -sign } else { sign };
-                    into.push(Piece::constant(from, f64::INFINITY, value, *source));
+                    into.push(SignalPiece::constant(from, f64::INFINITY, value, *source));
                 }
             },
             Self::Not(inner) => {
@@ -152,8 +152,10 @@ impl Stream {
 }
 
 /// Removes the next part that all queues have, cut to one length; `None` if one of them is empty.
-pub(super) fn aligned<'a>(queues: impl Iterator<Item = &'a mut VecDeque<Piece>>) -> Option<Vec<Piece>> {
-    let mut queues: Vec<&mut VecDeque<Piece>> = queues.collect();
+pub(super) fn aligned<'a>(
+    queues: impl Iterator<Item = &'a mut VecDeque<SignalPiece>>,
+) -> Option<Vec<SignalPiece>> {
+    let mut queues: Vec<&mut VecDeque<SignalPiece>> = queues.collect();
     let ends = queues.iter().map(|queue| queue.front().map(|piece| [piece.from, piece.to]));
     let ends = ends.collect::<Option<Vec<[f64; 2]>>>()?;
     let from = ends.iter().map(|[from, _]| *from).fold(f64::NEG_INFINITY, f64::max);

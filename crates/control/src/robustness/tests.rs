@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use flexsc_numerics::polynomial::{Polynomial, TERMS};
-use flexsc_numerics::signal::{Curve, Piece, Shape};
+use flexsc_numerics::signal::{Curve, PieceValues, SignalPiece};
 
 use super::stream::Stream;
 use super::{Chunk, RequirementMonitor, RobustnessRange};
@@ -23,7 +23,7 @@ fn read(text: &str) -> Expression {
 }
 
 /// Returns e(t) = 3e-3 exp(-t/40) cos(0.35 t + 0.4) + 2e-4 sin(2.13 t) in (rad) from a time on, or its rate (rad/s).
-fn wave(from: f64, is_rate: bool) -> Piece {
+fn wave(from: f64, is_rate: bool) -> SignalPiece {
     let mut terms = [0.0; TERMS];
     let start = libm::exp(-from / 40.0) * 3e-3;
     let angle = 0.35 * from + 0.4;
@@ -39,19 +39,19 @@ fn wave(from: f64, is_rate: bool) -> Piece {
     let polynomial = Polynomial::new(terms);
     let polynomial = if is_rate { polynomial.derivative().scaled(1.0 / STEP) } else { polynomial };
     let curve = Arc::new(Curve { begin: from, length: STEP, polynomial });
-    let shape = Shape::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
-    Piece { from, to: from + STEP, shape, source: 0 }
+    let shape = PieceValues::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
+    SignalPiece { from, to: from + STEP, shape, source: 0 }
 }
 
 /// Returns the pieces of a quantity: the size of the wave or of its rate, or whether a mode is active.
-fn pieces(quantity: ModeQuantity, from: f64, mode: &dyn Fn(f64) -> usize) -> Vec<Piece> {
+fn pieces(quantity: ModeQuantity, from: f64, mode: &dyn Fn(f64) -> usize) -> Vec<SignalPiece> {
     let mut all = Vec::new();
     match quantity {
         ModeQuantity::PointingError => wave(from, false).push_magnitude(&mut all),
         ModeQuantity::TrueRate => wave(from, true).push_magnitude(&mut all),
         ModeQuantity::Mode(index) => {
             let value = f64::from(u8::from(mode(from) == index));
-            all.push(Piece::constant(from, from + STEP, value, 0));
+            all.push(SignalPiece::constant(from, from + STEP, value, 0));
         }
         other => panic!("{other:?}"),
     }
@@ -64,7 +64,7 @@ fn judged(text: &str, end: f64, mode: &dyn Fn(f64) -> usize) -> RobustnessRange 
     let quantities: Vec<ModeQuantity> = monitor.quantities().collect();
     let mut from = 0.0;
     while from < end {
-        let all: Vec<Vec<Piece>> = quantities.iter().map(|of| pieces(*of, from, mode)).collect();
+        let all: Vec<Vec<SignalPiece>> = quantities.iter().map(|of| pieces(*of, from, mode)).collect();
         monitor.push(&all.iter().map(Vec::as_slice).collect::<Vec<_>>());
         from += STEP;
     }
@@ -117,7 +117,8 @@ fn signs_change_where_the_wave_crosses() {
         let mut all = Vec::new();
         for step in 0..1200 {
             let of = pieces(ModeQuantity::PointingError, f64::from(step) * STEP, &|_| 0);
-            let scaled: Vec<Piece> = of.into_iter().map(|of| of.scaled(leaf.gain, leaf.offset)).collect();
+            let scaled: Vec<SignalPiece> =
+                of.into_iter().map(|of| of.scaled(leaf.gain, leaf.offset)).collect();
             stream.push(Chunk::Known(&[scaled]), &mut all);
         }
         all
@@ -129,8 +130,9 @@ fn signs_change_where_the_wave_crosses() {
         assert!((last.to - from).abs() < 1e-10, "{limit}: {}", last.to);
     }
     let above = signs("pointing_error > 2.2e-4");
-    let long =
-        |sign: &Piece| if sign.at(sign.from).value > 0.0 { sign.to - sign.from.max(100.0) } else { 0.0 };
+    let long = |sign: &SignalPiece| {
+        if sign.at(sign.from).value > 0.0 { sign.to - sign.from.max(100.0) } else { 0.0 }
+    };
     let share: f64 = above.iter().filter(|sign| sign.to > 100.0).map(long).sum::<f64>() / 500.0;
     assert!((share - 0.030_747_443_364_812_5).abs() < 1e-12, "{share}");
 }
@@ -166,7 +168,7 @@ fn events_and_modes_are_right_continuous() {
     assert!(entries.high.value < 0.0, "{entries:?}");
     let inside = judged("when mode enters fine: pointing_error < 4e-4");
     assert_eq!(inside.low, inside.high);
-    // No mode is ever left unexercised as met.
+    // An event that never occurs is not exercised.
     let never = judged("when not mode(fine) and not mode(safe): pointing_error < 4e-4");
     assert_eq!(never.low.value, f64::INFINITY);
     let implied = judged("always (mode(fine) implies pointing_error < 6e-4)");

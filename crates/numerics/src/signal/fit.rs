@@ -12,7 +12,7 @@ const COSINES: [f64; 5] =
 const SHORTEST: f64 = 1e-7;
 
 /// Values of several functions at increasing times (s), those of each time together; `None` where there are none.
-pub type Evaluation<'a> = dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>> + 'a;
+pub type FitValues<'a> = dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>> + 'a;
 
 /// Fits several functions of time (s) on an interval, each to within its tolerance. Passes the start and length of each part (s) and the polynomials of all
 /// functions there to `take`; returns false if there were no values.
@@ -21,7 +21,7 @@ pub type Evaluation<'a> = dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>> + 'a;
 pub fn fit(
     [from, to]: [f64; 2],
     tolerances: &[f64],
-    evaluate: &mut Evaluation<'_>,
+    evaluate: &mut FitValues<'_>,
     take: &mut dyn FnMut(f64, f64, &[Polynomial]),
 ) -> bool {
     let length = to - from;

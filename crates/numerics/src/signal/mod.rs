@@ -7,5 +7,5 @@ mod piece;
 mod sliding;
 
 pub use fit::fit;
-pub use piece::{Curve, Piece, Shape, Witnessed};
+pub use piece::{Curve, PieceValues, SignalPiece, Witnessed};
 pub use sliding::SlidingMinimum;

@@ -20,7 +20,7 @@ pub struct Curve {
 
 /// Values of a piece.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum PieceValues {
     /// Constant, and the time (s) at which the signal that is observed has it.
     Constant {
         /// Value.
@@ -43,13 +43,13 @@ pub enum Shape {
 
 /// Piece of a signal from one time to another (s).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Piece {
+pub struct SignalPiece {
     /// Start (s).
     pub from: f64,
     /// End (s), which is not part of the piece.
     pub to: f64,
     /// Values.
-    pub shape: Shape,
+    pub shape: PieceValues,
     /// Number of the observed signal.
     pub source: usize,
 }
@@ -67,22 +67,27 @@ pub struct Witnessed {
 
 impl Witnessed {
     /// Returns the value as a piece between two times (s).
-    pub fn piece(&self, from: f64, to: f64) -> Piece {
-        Piece { from, to, shape: Shape::Constant { value: self.value, at: self.at }, source: self.source }
+    pub fn piece(&self, from: f64, to: f64) -> SignalPiece {
+        SignalPiece {
+            from,
+            to,
+            shape: PieceValues::Constant { value: self.value, at: self.at },
+            source: self.source,
+        }
     }
 }
 
-impl Piece {
+impl SignalPiece {
     /// Creates a constant piece of an observed signal.
     pub fn constant(from: f64, to: f64, value: f64, source: usize) -> Self {
-        Self { from, to, shape: Shape::Constant { value, at: from }, source }
+        Self { from, to, shape: PieceValues::Constant { value, at: from }, source }
     }
 
     /// Returns the value at a time, its end included, with the time at which the observed signal has it.
     pub fn at(&self, t: f64) -> Witnessed {
         let (value, at) = match &self.shape {
-            Shape::Constant { value, at } => (*value, *at),
-            Shape::Curve { curve, gain, offset, ahead } => {
+            PieceValues::Constant { value, at } => (*value, *at),
+            PieceValues::Curve { curve, gain, offset, ahead } => {
                 let s = (t + ahead - curve.begin) / curve.length;
                 (offset + gain * curve.polynomial.at(s), t + ahead)
             }
@@ -94,8 +99,8 @@ impl Piece {
     #[must_use]
     pub fn scaled(mut self, by: f64, plus: f64) -> Self {
         match &mut self.shape {
-            Shape::Constant { value, .. } => *value = plus + by * *value,
-            Shape::Curve { gain, offset, .. } => (*gain, *offset) = (by * *gain, plus + by * *offset),
+            PieceValues::Constant { value, .. } => *value = plus + by * *value,
+            PieceValues::Curve { gain, offset, .. } => (*gain, *offset) = (by * *gain, plus + by * *offset),
         }
         self
     }
@@ -104,7 +109,7 @@ impl Piece {
     #[must_use]
     pub fn seen(&self, from: f64, to: f64, ahead: f64) -> Self {
         let mut part = Self { from: from - ahead, to: to - ahead, ..self.clone() };
-        if let Shape::Curve { ahead: already, .. } = &mut part.shape {
+        if let PieceValues::Curve { ahead: already, .. } = &mut part.shape {
             *already += ahead;
         }
         part
@@ -118,7 +123,7 @@ impl Piece {
 
     /// Lets the observed signal have a constant from the start of the piece on.
     pub fn restart(&mut self) {
-        if let Shape::Constant { at, .. } = &mut self.shape {
+        if let PieceValues::Constant { at, .. } = &mut self.shape {
             *at = self.from;
         }
     }
@@ -126,8 +131,8 @@ impl Piece {
     /// Returns lower and upper bounds of the values.
     pub fn bounds(&self) -> (f64, f64) {
         match &self.shape {
-            Shape::Constant { value, .. } => (*value, *value),
-            Shape::Curve { curve, gain, offset, .. } => {
+            PieceValues::Constant { value, .. } => (*value, *value),
+            PieceValues::Curve { curve, gain, offset, .. } => {
                 let (low, high) = curve.polynomial.bounds();
                 let [one, other] = [offset + gain * low, offset + gain * high];
                 (one.min(other), one.max(other))
@@ -137,7 +142,7 @@ impl Piece {
 
     /// Returns the values between two times as a polynomial in the elapsed fraction; `None` of a constant.
     fn polynomial(&self, from: f64, to: f64) -> Option<Polynomial> {
-        let Shape::Curve { curve, gain, offset, ahead } = &self.shape else { return None };
+        let PieceValues::Curve { curve, gain, offset, ahead } = &self.shape else { return None };
         let s = |t: f64| (t + ahead - curve.begin) / curve.length;
         let (first, last) = (s(from), s(to));
         let part = if (first, last) == (0.0, 1.0) {
@@ -148,18 +153,19 @@ impl Piece {
         Some(part.scaled(*gain).minus_line(-offset, 0.0))
     }
 
-    /// Returns the least value between two times, both included, if it is below `most`.
+    /// Returns the least value between two times, both included, if it is below `most`. Of values that rounding alone tells
+    /// apart, the first counts, and the turn of a window before its edge, which reaches it.
     pub fn lowest(&self, from: f64, to: f64, most: f64) -> Option<Witnessed> {
-        let Shape::Curve { ahead, .. } = &self.shape else {
+        let tie = if most.is_finite() { TIE * most.abs() } else { 0.0 };
+        let PieceValues::Curve { ahead, .. } = &self.shape else {
             let own = self.at(from);
-            // The turn of a window counts before its edge, which reaches the same value.
-            let is_turn = own.at > to && own.value <= most + TIE * most.abs();
-            return (own.value < most || is_turn).then_some(Witnessed { at: own.at.max(from), ..own });
+            let is_turn = own.at > to && own.value <= most + tie;
+            return (own.value < most - tie || is_turn).then_some(Witnessed { at: own.at.max(from), ..own });
         };
-        if self.bounds().0 >= most {
+        if self.bounds().0 >= most - tie {
             return None;
         }
-        let (depth, s) = self.polynomial(from, to)?.negative().peak(-most)?;
+        let (depth, s) = self.polynomial(from, to)?.negative().peak(tie - most)?;
         Some(Witnessed { value: -depth, at: from + (to - from) * s + ahead, source: self.source })
     }
 
@@ -239,21 +245,21 @@ impl Piece {
 }
 
 /// Appends a piece, to the last one if it continues it.
-fn push_joined(into: &mut Vec<Piece>, piece: Piece) {
+fn push_joined(into: &mut Vec<SignalPiece>, piece: SignalPiece) {
     match into.last_mut() {
         Some(last) if last.to == piece.from && last.continues_as(&piece) => last.to = piece.to,
         _ => into.push(piece),
     }
 }
 
-impl Piece {
+impl SignalPiece {
     /// Returns true if the next piece has the same values.
     fn continues_as(&self, next: &Self) -> bool {
         match (&self.shape, &next.shape) {
-            (Shape::Constant { value, .. }, Shape::Constant { value: other, .. }) => {
+            (PieceValues::Constant { value, .. }, PieceValues::Constant { value: other, .. }) => {
                 value == other && self.source == next.source
             }
-            (Shape::Curve { curve, .. }, Shape::Curve { curve: other, .. }) => {
+            (PieceValues::Curve { curve, .. }, PieceValues::Curve { curve: other, .. }) => {
                 Arc::ptr_eq(curve, other) && self.shape == next.shape
             }
             _ => false,

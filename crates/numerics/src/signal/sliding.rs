@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::piece::{Piece, Witnessed};
+use super::piece::{SignalPiece, Witnessed};
 
 /// Minimum over the closed window from `after` to `after` + `width` seconds after each time.
 ///
@@ -14,7 +14,7 @@ pub struct SlidingMinimum {
     /// Width (s); infinite for a window to the end of the signal.
     width: f64,
     /// Monotone pieces from the left edge on.
-    left: VecDeque<Piece>,
+    left: VecDeque<SignalPiece>,
     /// Values where pieces meet, with their times (s).
     turns: VecDeque<(f64, Witnessed)>,
     /// Time (s) of the left edge up to which the minimum is known.
@@ -29,7 +29,7 @@ impl SlidingMinimum {
     }
 
     /// Takes the next piece of the signal, and appends the minimum as far as it is known.
-    pub fn push(&mut self, piece: &Piece, into: &mut Vec<Piece>) {
+    pub fn push(&mut self, piece: &SignalPiece, into: &mut Vec<SignalPiece>) {
         if self.width == 0.0 {
             into.push(piece.seen(piece.from, piece.to, self.after));
             return;
@@ -57,7 +57,7 @@ impl SlidingMinimum {
     }
 
     /// Moves the right edge over a piece.
-    fn advance(&mut self, right: &Piece, into: &mut Vec<Piece>) {
+    fn advance(&mut self, right: &SignalPiece, into: &mut Vec<SignalPiece>) {
         let until = right.to - self.width;
         while self.known < until {
             let from = self.known;
@@ -89,7 +89,7 @@ impl SlidingMinimum {
     }
 
     /// Appends the minima over windows to the end of the signal, which a piece without an end may follow.
-    pub fn finish(&mut self, into: &mut Vec<Piece>) {
+    pub fn finish(&mut self, into: &mut Vec<SignalPiece>) {
         if self.width.is_finite() {
             return;
         }

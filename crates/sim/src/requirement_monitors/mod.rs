@@ -12,7 +12,7 @@ use flexsc_control::operation::ModeQuantity;
 use flexsc_control::robustness::RequirementMonitor;
 use flexsc_numerics::polynomial::{Polynomial, TERMS};
 use flexsc_numerics::quantity::Positive;
-use flexsc_numerics::signal::{Curve, Piece, Shape, fit};
+use flexsc_numerics::signal::{Curve, PieceValues, SignalPiece, fit};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, Report, RequirementRobustness, RobustnessOfRequirements, Sample};
 
@@ -142,7 +142,7 @@ impl RequirementMonitors {
         if to <= from {
             return;
         }
-        let mut pieces: Vec<Vec<Piece>> = vec![Vec::new(); self.quantities.len()];
+        let mut pieces: Vec<Vec<SignalPiece>> = vec![Vec::new(); self.quantities.len()];
         let has_sky = self.quantities.iter().any(|observed| observed.quantity.is_of_sky());
         let edges = self.sky.edges().filter(|_| has_sky).map(Instant::seconds);
         let edges: Vec<f64> = edges.filter(|edge| *edge > from && *edge < to).collect();
@@ -151,7 +151,7 @@ impl RequirementMonitors {
             if quantity.is_of_sky() {
                 let sky = &self.sky;
                 if edges.is_empty() && sky.is_steady(*quantity, from) {
-                    into.push(Piece::constant(from, to, sky.value(*quantity, from), 0));
+                    into.push(SignalPiece::constant(from, to, sky.value(*quantity, from), 0));
                     continue;
                 }
                 let mut evaluate =
@@ -179,7 +179,7 @@ impl RequirementMonitors {
         }
         self.add_motion(span, (plant, guidance, loads), &mut pieces);
         for (_, monitor, places) in &mut self.monitors {
-            let read: Vec<&[Piece]> = places.iter().map(|place| &pieces[*place][..]).collect();
+            let read: Vec<&[SignalPiece]> = places.iter().map(|place| &pieces[*place][..]).collect();
             monitor.push(&read);
         }
         self.since = now;
@@ -222,24 +222,24 @@ fn parts([from, to]: [f64; 2], longest: f64, edges: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// Returns the piece of a polynomial; none without length.
-fn curve(begin: f64, length: f64, polynomial: Polynomial) -> Option<Piece> {
+fn curve(begin: f64, length: f64, polynomial: Polynomial) -> Option<SignalPiece> {
     let curve = Arc::new(Curve { begin, length, polynomial });
-    let shape = Shape::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
-    (length > 0.0).then_some(Piece { from: begin, to: begin + length, shape, source: 0 })
+    let shape = PieceValues::Curve { curve, gain: 1.0, offset: 0.0, ahead: 0.0 };
+    (length > 0.0).then_some(SignalPiece { from: begin, to: begin + length, shape, source: 0 })
 }
 
 /// Returns the piece of a known value, which may grow with the time.
-fn known([from, to]: [f64; 2], value: f64, grows: bool) -> Option<Piece> {
+fn known([from, to]: [f64; 2], value: f64, grows: bool) -> Option<SignalPiece> {
     if grows {
         let mut terms = [0.0; TERMS];
         (terms[0], terms[1]) = (value, to - from);
         return curve(from, to - from, Polynomial::new(terms));
     }
-    (to > from).then(|| Piece::constant(from, to, value, 0))
+    (to > from).then(|| SignalPiece::constant(from, to, value, 0))
 }
 
 /// Lets pieces follow each other without gaps by rounding, from the start of a segment to its end.
-fn join(pieces: &mut [Piece], [from, to]: [f64; 2]) {
+fn join(pieces: &mut [SignalPiece], [from, to]: [f64; 2]) {
     let mut begin = from;
     for piece in pieces.iter_mut() {
         piece.from = begin;

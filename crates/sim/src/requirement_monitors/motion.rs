@@ -3,7 +3,7 @@
 use flexsc_control::operation::ModeQuantity;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::polynomial::Polynomial;
-use flexsc_numerics::signal::{Piece, fit};
+use flexsc_numerics::signal::{SignalPiece, fit};
 use flexsc_numerics::time::{Instant, Span};
 
 use super::super::guidance::Guidance;
@@ -22,14 +22,14 @@ impl RequirementMonitors {
         &mut self,
         span: [Instant; 2],
         (plant, guidance, loads): (&Plant, &Guidance, &Loads),
-        pieces: &mut [Vec<Piece>],
+        pieces: &mut [Vec<SignalPiece>],
     ) {
         let [from, to] = span.map(Instant::seconds);
-        let known = |(observed, pieces): (&Observed, &Vec<Piece>)| {
+        let known = |(observed, pieces): (&Observed, &Vec<SignalPiece>)| {
             if observed.quantity.is_of_motion() {
                 return [0.0, f64::INFINITY];
             }
-            pieces.iter().map(Piece::bounds).fold(
+            pieces.iter().map(SignalPiece::bounds).fold(
                 [f64::INFINITY, f64::NEG_INFINITY],
                 |[low, high], (l, h)| {
                     // A value that is not known is no range.
@@ -52,7 +52,7 @@ impl RequirementMonitors {
             for ((observed, into), [low, high]) in self.quantities.iter().zip(&mut *pieces).zip(ranges) {
                 if observed.quantity.is_of_motion() {
                     let value = if high.is_finite() { f64::midpoint(low, high) } else { low };
-                    into.push(Piece::constant(from, to, value, 0));
+                    into.push(SignalPiece::constant(from, to, value, 0));
                 }
             }
         } else if plant.quantities().one_axis().is_some() {
@@ -115,10 +115,10 @@ impl RequirementMonitors {
         &self,
         span: [Instant; 2],
         (plant, guidance, applied): (&Plant, &Guidance, &AppliedTorque),
-        pieces: &mut [Vec<Piece>],
+        pieces: &mut [Vec<SignalPiece>],
     ) {
         let moving = self.quantities.iter().zip(pieces).filter(|(of, _)| of.quantity.is_of_motion());
-        let mut moving: Vec<(&Observed, &mut Vec<Piece>)> = moving.collect();
+        let mut moving: Vec<(&Observed, &mut Vec<SignalPiece>)> = moving.collect();
         if moving.is_empty() {
             return;
         }
@@ -159,11 +159,11 @@ impl RequirementMonitors {
         [since, now]: [Instant; 2],
         copy: &(Plant, Guidance),
         plant: &Plant,
-        pieces: &mut [Vec<Piece>],
+        pieces: &mut [Vec<SignalPiece>],
     ) {
         let (mut base, guidance) = (copy.0.clone(), &copy.1);
         let moving = self.quantities.iter().zip(pieces).filter(|(of, _)| of.quantity.is_of_motion());
-        let mut moving: Vec<(&Observed, &mut Vec<Piece>)> = moving.collect();
+        let mut moving: Vec<(&Observed, &mut Vec<SignalPiece>)> = moving.collect();
         let tolerances: Vec<f64> = moving.iter().flat_map(|(of, _)| [of.tolerance; 3]).collect();
         let quantities: Vec<ModeQuantity> = moving.iter().map(|(of, _)| of.quantity).collect();
         let [from, to] = [since, now].map(Instant::seconds);
@@ -210,7 +210,7 @@ impl RequirementMonitors {
 }
 
 /// Appends the norm of a vector over a part with a start and a length (s).
-fn add_norm([begin, length]: [f64; 2], vector: &[Polynomial], tolerance: f64, into: &mut Vec<Piece>) {
+fn add_norm([begin, length]: [f64; 2], vector: &[Polynomial], tolerance: f64, into: &mut Vec<SignalPiece>) {
     let norm = |t: &f64| {
         let s = (t - begin) / length;
         vec![Vector::from_iterator(vector.iter().map(|component| component.at(s))).norm()]

@@ -2,9 +2,8 @@
 
 use flexsc_formats::document::number_in;
 
-use super::super::condition::{ConditionFault, Expression};
+use super::super::condition::{ConditionFault, Expression, TimeWindow, Timed};
 use super::super::quantity::ModeQuantity;
-use super::super::timed::{TimeWindow, Timed};
 use super::{Parser, Place, fault};
 
 impl Parser<'_> {
