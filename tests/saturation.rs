@@ -72,9 +72,10 @@ fn steady_saturation_is_reported() {
     assert_eq!(word(&of, "actuator_end"), "saturated");
     assert!(of.number("wheel_torque_limit_share").expect("a share") > 0.3);
     let dir = Dir::holding("a.toml", body(0.1, more));
-    dir.run("simulate a.toml --log none")
-        .exits(0)
-        .says(&["  ! the run ends in saturation: an actuator is at its limit", "torque for 61 % of the time"]);
+    dir.run("simulate a.toml --log none").exits(0).says(&[
+        "  ! the run ends in saturation: an actuator is at its limit",
+        "torque for 61 % of the time",
+    ]);
 }
 
 /// Wheels that hold a body against a torque take its impulse: 0.01 N m for 300 s, in 0.02 kg m².

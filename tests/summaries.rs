@@ -33,7 +33,11 @@ fn summaries_hold_what_applies_to_the_run() {
     );
     // Its frequencies are known.
     holds(&summary("slew-wheel-lqg", ""), &["manoeuvre   30 deg in 60 s"], &["frequency"]);
-    holds(&summary("thruster-phase-plane", ""), &["at most 10 N m; the law asks for up to 40.0 N m"], &["manoeuvre"]);
+    holds(
+        &summary("thruster-phase-plane", ""),
+        &["at most 10 N m; the law asks for up to 40.0 N m"],
+        &["manoeuvre"],
+    );
     holds(
         &summary("iss-ringdown", "--all"),
         &["Hz (identified / true)", "active damping   in"],

@@ -52,8 +52,8 @@ pub use screen::{ScreenOptions, ScreenStyle};
 pub use verdict::{GoalAnswer, RunVerdict};
 pub use warning::{Warning, WarningKind};
 
-use lines::RunData;
 use largest_sample::LargestSample;
+use lines::RunData;
 
 /// Name and version of the structure.
 const SCHEMA: &str = "flexsc-answer-1";
