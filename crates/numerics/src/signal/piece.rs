@@ -154,7 +154,7 @@ impl SignalPiece {
     }
 
     /// Returns the least value between two times, both included, if it is below `most`. Of values that differ by rounding alone
-    /// apart, the first counts, and the turn of a window before its edge, which reaches it.
+    /// the first counts, and the turn of a window before its edge, which reaches it.
     pub fn lowest(&self, from: f64, to: f64, most: f64) -> Option<Witnessed> {
         let tie = if most.is_finite() { TIE * most.abs() } else { 0.0 };
         let PieceValues::Curve { ahead, .. } = &self.shape else {
