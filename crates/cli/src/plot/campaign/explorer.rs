@@ -27,7 +27,7 @@ pub fn page(runs: &CampaignRuns, directory: &Path) -> Result<String, CliError> {
     }
     // Keys are in the units of the scenario.
     let plain = ReaderUnits::Si.fitting(1.0, "");
-    let keys = runs.keys.iter().map(|key| column(&key.name, (&key.name, &plain), &key.values, Json::Null));
+    let keys = runs.keys.iter().map(|key| column(&key.name, (&key.name, &plain), &key.values, None));
     let varying = |metric: &&MetricColumn| metric.varies() || metric.requirement.is_some();
     let metrics: Vec<Json> =
         runs.metrics.iter().filter(varying).map(|metric| metric_column(runs, metric)).collect();
@@ -35,7 +35,9 @@ pub fn page(runs: &CampaignRuns, directory: &Path) -> Result<String, CliError> {
         return Err(wrong("no metric varies from run to run".to_owned()));
     }
     let mut columns: Vec<Json> = keys.collect();
-    columns.iter_mut().for_each(|column| column["isKey"] = json!(true));
+    for column in &mut columns {
+        column["isKey"] = json!(true);
+    }
     columns.extend(metrics);
     let run = |index: usize| {
         json!({
@@ -53,7 +55,7 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }
 
-fn column(name: &str, (label, unit): (&str, &ReaderUnit), values: &[f64], limit: Json) -> Json {
+fn column(name: &str, (label, unit): (&str, &ReaderUnit), values: &[f64], limit: Option<f64>) -> Json {
     let shown: Vec<Json> = values.iter().map(|value| json!(unit.value(*value))).collect();
     json!({ "name": name, "label": label, "unit": unit.name, "values": shown, "limit": limit, "isKey": false })
 }
@@ -68,7 +70,7 @@ fn metric_column(runs: &CampaignRuns, metric: &MetricColumn) -> Json {
         Some(own) if !own.unit.name.is_empty() => own.unit.clone(),
         _ => ReaderUnits::Engineering.fitting(largest, si),
     };
-    let limit = required.map_or(Json::Null, |own| json!(unit.value(own.limit)));
+    let limit = required.map(|own| unit.value(own.limit));
     let mut made = column(&metric.name, (&label, &unit), &metric.values, limit);
     let order: Vec<Json> = (0..metric.values.len())
         .map(|index| json!(worst::badness(metric, index).map_or(-1.0, |bad| bad.min(1e300))))
