@@ -3285,8 +3285,8 @@ class Requirement(Part):
 
     Args:
         name: Name of the requirement.
-        holds: What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of
-            `quantity` and `limit`; without an operator over time, always.
+        holds: Expression that holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in
+            place of `quantity` and `limit`; without an operator over time, always.
         after: Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that
             becomes true.
         within: Longest time (s) after the event, or after the start, at which `holds` begins to hold.
@@ -3319,8 +3319,8 @@ class Requirement(Part):
     name: str
     """Name of the requirement."""
     holds: str | None = None
-    """What holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place of
-    `quantity` and `limit`; without an operator over time, always.
+    """Expression that holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place
+    of `quantity` and `limit`; without an operator over time, always.
     """
     after: str | None = None
     """Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that becomes
