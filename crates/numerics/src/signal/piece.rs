@@ -153,8 +153,8 @@ impl SignalPiece {
         Some(part.scaled(*gain).minus_line(-offset, 0.0))
     }
 
-    /// Returns the least value between two times, both included, if it is below `most`. Of values that differ by rounding alone,
-    /// the first counts, and the turn of a window before its edge, which reaches it.
+    /// Returns the least value between two times, both included, if it is below `most`. Of values that differ by rounding
+    /// alone, the first counts, and the turn of a window before its edge, which reaches it.
     pub fn lowest(&self, from: f64, to: f64, most: f64) -> Option<Witnessed> {
         let tie = if most.is_finite() { TIE * most.abs() } else { 0.0 };
         let PieceValues::Curve { ahead, .. } = &self.shape else {
