@@ -59,14 +59,17 @@ fn message(chance: &mut Chance) -> String {
         let state = format!(" {x:.6} {y:.6} {:.6} {vx:.6} {vy:.6} 0\n", 0.1 * radius);
         let minute = row * spacing;
         let date = format!("2026-11-24T{:02}:{:02}:00.5", minute / 60 % 24, minute % 60);
-        text += &format!("{date}{state}");
+        let line = date + &state;
+        text += &line;
         if chance.percent(3) {
-            text += &format!("{date}{state}");
+            text += &line;
         }
         if chance.percent(3) {
-            text +=
-                &text[text.find("META_START").unwrap_or(0)..text.find("META_STOP").unwrap_or(0)].to_owned();
-            text += &format!("META_STOP\n{date}{state}");
+            text.extend_from_within(
+                text.find("META_START").unwrap_or(0)..text.find("META_STOP").unwrap_or(0),
+            );
+            text += "META_STOP\n";
+            text += &line;
         }
     }
     if chance.percent(15) {
