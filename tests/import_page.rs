@@ -32,7 +32,7 @@ fn every_example_of_the_page_is_accepted() {
         page.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     assert!(examples.len() >= 8, "{}", examples.len());
     for example in examples {
-        let (top, tables) = example.split_at(example.find("[").unwrap_or_default());
+        let (top, tables) = example.split_at(example.find('[').unwrap_or_default());
         let rest = if example.contains("[body") { "" } else { &[CRAFT, LAW].concat() };
         dir.write("example.toml", format!("duration = 10.0\n{top}{rest}{tables}"));
         let run = dir.run("check example.toml").exits(0);

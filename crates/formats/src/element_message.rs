@@ -141,11 +141,8 @@ mod tests {
         let found = ElementMessage::parse(KEYWORDS).expect("a message");
         assert_eq!((found.mean_motion, found.eccentricity, found.bstar), (1.002_701_76, 3.35e-5, 1e-4));
         let pairs = keyword_pairs(KEYWORDS);
-        let body: String = pairs
-            .iter()
-            .skip(2)
-            .map(|(key, value)| format!("<{key} units=\"x\">{value}</{key}>\n"))
-            .collect();
+        let element = |(key, value): &(String, String)| format!("<{key} units=\"x\">{value}</{key}>\n");
+        let body = pairs.iter().skip(2).map(element).collect::<Vec<_>>().concat();
         let xml = format!(
             "<?xml version=\"1.0\"?>\n<ndm><omm id=\"CCSDS_OMM_VERS\"><body>{body}</body></omm></ndm>"
         );

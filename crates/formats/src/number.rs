@@ -8,12 +8,10 @@ pub fn real(field: &str) -> Option<f64> {
     {
         return Some(number).filter(|number| number.is_finite());
     }
-    let (digits, exponent) = match field.find(['e', 'E', 'd', 'D']) {
-        Some(at) => (&field[..at], &field[at + 1..]),
-        None => {
-            let at = field.rfind(['+', '-']).filter(|at| field[..*at].contains('.'))?;
-            field.split_at(at)
-        }
+    let (digits, exponent) = if let Some(at) = field.find(['e', 'E', 'd', 'D']) {
+        (&field[..at], &field[at + 1..])
+    } else {
+        field.split_at(field.rfind(['+', '-']).filter(|at| field[..*at].contains('.'))?)
     };
     let is_number = |text: &str, more: &str| {
         text.bytes().all(|byte| byte.is_ascii_digit() || more.as_bytes().contains(&byte))
@@ -37,7 +35,7 @@ mod tests {
             (".5E+01", 5.0),
             ("0.25D+01", 2.5),
             ("2.5d-3", 2.5e-3),
-            ("0.1234567-100", 0.1234567e-100),
+            ("0.1234567-100", 1.234_567e-101),
             ("-.5+102", -0.5e102),
             ("+1E0", 1.0),
             ("1.5-4", 1.5e-4),

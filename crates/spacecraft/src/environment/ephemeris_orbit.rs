@@ -127,7 +127,7 @@ impl EphemerisOrbit {
         if let Some(gap) =
             self.least_known(duration, epoch_ns).filter(|gap| gap.distance.is_nan() || gap.distance > MOST)
         {
-            return Err(apart(self.ephemeris.place(gap.row), gap.gap, gap.distance));
+            return Err(apart(self.ephemeris.place(gap.row), gap.length, gap.distance));
         }
         let orbit = self.path(epoch_ns).ok_or_else(|| {
             let of_dates = self.ephemeris.epoch_ns().is_some();
@@ -212,9 +212,10 @@ impl EphemerisOrbit {
     #[expect(clippy::type_complexity, reason = "three columns of one table")]
     fn states(&self, epoch_ns: Option<u64>) -> Option<(Vec<f64>, Vec<Vector>, Option<Vec<Vector>>)> {
         let rows = self.ephemeris.rows(epoch_ns)?;
-        let turn = match self.is_rotated() {
-            true => UnitQuaternion::new_normalize(to_mean_of_date(self.row_frame(), epoch_ns?)?),
-            false => UnitQuaternion::identity(),
+        let turn = if self.is_rotated() {
+            UnitQuaternion::new_normalize(to_mean_of_date(self.row_frame(), epoch_ns?)?)
+        } else {
+            UnitQuaternion::identity()
         };
         let along =
             |vector: [f64; 3]| if self.is_rotated() { turn * Vector::from(vector) } else { vector.into() };

@@ -26,7 +26,7 @@ pub(super) struct Gap {
     /// Index of the row before it.
     pub row: usize,
     /// Time to the next row (s).
-    pub gap: f64,
+    pub length: f64,
     /// Distance (m) to which the position between them is known.
     pub distance: f64,
 }
@@ -72,7 +72,7 @@ impl WideRows<'_> {
             }
             let middle = 0.5 * (before + after);
             let distance = (self.at(row, ROWS, middle) - self.at(row, FEWER, middle)).norm();
-            Some(Gap { row: row - 1, gap: after - before, distance })
+            Some(Gap { row: row - 1, length: after - before, distance })
         };
         (1..self.times.len()).filter_map(gap).max_by(|a, b| a.distance.total_cmp(&b.distance))
     }

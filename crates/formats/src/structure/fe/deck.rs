@@ -296,11 +296,10 @@ impl Reader {
         match section_of {
             At::Elsewhere => {}
             At::Nodes => {
-                let mut position = Vector3::zeros();
-                for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                    // Omitted coordinates are 0.
-                    position[axis] = if words.len() > axis + 1 { number_at(axis + 1, name)? } else { 0.0 };
-                }
+                // Omitted coordinates are 0.
+                let part =
+                    |at: usize, name: &str| if words.len() > at { number_at(at, name) } else { Ok(0.0) };
+                let position = Vector3::new(part(1, "x")?, part(2, "y")?, part(3, "z")?);
                 self.deck.positions.insert(whole(0, "node")?, position);
             }
             At::Elements { missing, kind, set } => {
@@ -322,10 +321,7 @@ impl Reader {
                     ));
                 }
                 *missing = nodes + 1 - words.len();
-                let is_known = self.deck.rules.contains_key(&element)
-                    || self.points.contains_key(&element)
-                    || self.deck.massless.contains(&element);
-                if is_known {
+                if self.has(element) {
                     return Err(format!(
                         "line {number}: must have each element once, got element {element} again"
                     ));
@@ -373,22 +369,7 @@ impl Reader {
                 *section_of = At::Elsewhere;
             }
             At::Section { set, pipe } => {
-                // Behind the outer radius of a pipe, and both sides of a box.
-                let from = if *pipe { 1 } else { 2 };
-                let walls = (from..words.len()).map(|index| number_at(index, "thickness"));
-                let walls: Vec<f64> = walls.collect::<Result<_, _>>()?;
-                let wall = walls.first().copied().unwrap_or_default();
-                if wall.is_nan() || wall <= 0.0 {
-                    return Err(format!("line {number}: `thickness` must be positive, got {wall}"));
-                }
-                if walls.iter().any(|other| *other != wall) {
-                    return Err(format!(
-                        "line {number}: must have one thickness of all walls, got {}: take `modes` from the .dat",
-                        line.text.trim()
-                    ));
-                }
-                let section = if *pipe { HollowSection::Pipe { wall } } else { HollowSection::Box { wall } };
-                self.sections.push((set.clone(), section, number));
+                self.sections.push((set.clone(), hollow_section(line, &words, *pipe)?, number));
                 *section_of = At::Elsewhere;
             }
             At::Mass { set } => {
@@ -401,6 +382,13 @@ impl Reader {
             }
         }
         Ok(())
+    }
+
+    /// Returns true if an element was read.
+    fn has(&self, element: usize) -> bool {
+        self.deck.rules.contains_key(&element)
+            || self.points.contains_key(&element)
+            || self.deck.massless.contains(&element)
     }
 
     /// Returns the point masses and beams of a set that a line names.
@@ -445,6 +433,28 @@ impl Reader {
         }
         Ok(self.deck)
     }
+}
+
+/// Returns the hollow section of a line with its outer sizes and the thickness of its walls.
+fn hollow_section(line: &TextLine, words: &[&str], pipe: bool) -> Result<HollowSection, String> {
+    let number = line.number;
+    // Behind the outer radius of a pipe, and both sides of a box.
+    let walls = words.iter().skip(if pipe { 1 } else { 2 }).map(|word| {
+        real(word)
+            .filter(|wall| *wall > 0.0)
+            .ok_or_else(|| format!("line {number}: `thickness` must be a positive number, got `{word}`"))
+    });
+    let walls: Vec<f64> = walls.collect::<Result<_, _>>()?;
+    let Some(wall) = walls.first().copied() else {
+        return Err(format!("line {number}: must have the thickness of the wall behind the outer sizes"));
+    };
+    if walls.iter().any(|other| *other != wall) {
+        return Err(format!(
+            "line {number}: must have one thickness of all walls, got {}: take `modes` from the .dat",
+            line.text.trim()
+        ));
+    }
+    Ok(if pipe { HollowSection::Pipe { wall } } else { HollowSection::Box { wall } })
 }
 
 /// Counts members of sets that are looked up, up to the most.

@@ -96,7 +96,7 @@ pub fn read(text: impl BufRead, massless: &BTreeSet<usize>) -> Result<Frd, Strin
                 break;
             }
             _ if start.starts_with(" -1") || start.starts_with(" -2") => {
-                frd.read_line(&line, &section, massless)?
+                frd.read_line(&line, &section, massless)?;
             }
             _ if start.starts_with(" -4") => {
                 let name = line.text.get(5..13).or_else(|| line.text.get(5..)).unwrap_or_default().trim();
