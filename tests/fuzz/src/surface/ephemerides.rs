@@ -59,17 +59,15 @@ fn message(chance: &mut Chance) -> String {
         let state = format!(" {x:.6} {y:.6} {:.6} {vx:.6} {vy:.6} 0\n", 0.1 * radius);
         let minute = row * spacing;
         let date = format!("2026-11-24T{:02}:{:02}:00.5", minute / 60 % 24, minute % 60);
-        let line = date + &state;
-        text += &line;
+        let row = format!("{date}{state}");
+        text += &row;
         if chance.percent(3) {
-            text += &line;
+            text += &row;
         }
         if chance.percent(3) {
-            text.extend_from_within(
-                text.find("META_START").unwrap_or(0)..text.find("META_STOP").unwrap_or(0),
-            );
-            text += "META_STOP\n";
-            text += &line;
+            let place = |word: &str| text.find(word).unwrap_or(0);
+            let metadata = text[place("META_START")..place("META_STOP")].to_owned();
+            text += &[&metadata, "META_STOP\n", &row].concat();
         }
     }
     if chance.percent(15) {
