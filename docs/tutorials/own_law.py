@@ -12,7 +12,6 @@
 
 # %%
 import time
-from typing import ClassVar
 
 import flexsc
 import matplotlib.pyplot as plt
@@ -23,11 +22,11 @@ class Pd(flexsc.Law):
     """Proportional and derivative feedback of the angle."""
 
     period = 4.5  # s
-    signals: ClassVar = {"error": "rad"}  # a column of the log
     error = 0.0
 
     def __init__(self, k_p: float, k_d: float) -> None:
         self.k_p, self.k_d = k_p, k_d
+        self.signals = {"error": "rad"}  # a column of the log
 
     def decide(self, event: flexsc.parts.Event) -> flexsc.Hold:
         self.error = event.angle - event.goal_angle

@@ -100,7 +100,7 @@ def _decomposed(a: Numbers) -> _Motions:
             f"A: must have motions that are modes of their own, and their condition number is "
             f"{condition:.1e}: some drive each other, or the state has scales too far apart"
         )
-    return _Motions(poles, right, np.linalg.inv(right), condition)
+    return _Motions(poles, right, np.linalg.inv(right).astype(np.complex128), condition)
 
 
 def _modes(
@@ -187,8 +187,11 @@ def _deviation(model: StateSpace, a: Numbers, b: Numbers, c: Numbers) -> tuple[f
     """The largest relative deviation of the transfer function from that of the matrices, and where it is."""
     # Each costs a solution, in which threads of the linear algebra may wait for each other.
     places = _places(model, SOLVED)
-    unit = np.eye(len(a))
-    return _worst(model, places, (c @ np.linalg.solve(1j * w * unit - a, b) for w in places.tolist()))
+    unit = np.eye(len(a), dtype=np.complex128)
+    inputs, outputs = b.astype(np.complex128), c.astype(np.complex128)
+    return _worst(
+        model, places, (outputs @ np.linalg.solve(1j * w * unit - a, inputs) for w in places.tolist())
+    )
 
 
 def _modal_deviation(model: StateSpace, motions: _Motions, b: Numbers, c: Numbers) -> tuple[float, float]:

@@ -11,7 +11,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 /// Units of length and mass of a file.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct FileUnits {
+    /// Unit of length.
     length: LengthUnit,
+    /// Unit of mass.
     mass: MassUnit,
 }
 
