@@ -4521,14 +4521,12 @@ class UnitPair(Part):
     """Both units, as a scenario has them.
 
     Args:
-        length: Unit of length.
-        mass: Unit of mass.
+        length:
+        mass:
     """
 
     length: Literal["m", "cm", "mm", "in", "ft"]
-    """Unit of length."""
     mass: Literal["kg", "g", "t", "lb", "slug", "slinch"]
-    """Unit of mass."""
 
 
 class Unloading(Part):
