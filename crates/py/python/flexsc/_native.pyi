@@ -61,6 +61,7 @@ __all__ = [
     "log_figures",
     "log_of",
     "main",
+    "matrix_market",
     "modes_figure",
     "parts_of",
     "persistence",

@@ -82,7 +82,8 @@ def _momenta(sums: Integrals) -> Numbers:
     scale = np.sqrt(np.maximum(np.diagonal(sums.rigid), np.finfo(np.float64).tiny))
     inverse = np.linalg.pinv(sums.rigid / np.outer(scale, scale), rcond=1e-9, hermitian=True)
     scaled = carried / scale
-    return np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", scaled, inverse, scaled), 0.0))
+    parts: Numbers = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", scaled, inverse, scaled), 0.0))
+    return parts
 
 
 def _equal_parts(bulk: Any) -> list[Lump]:

@@ -100,7 +100,8 @@ def _decomposed(a: Numbers) -> _Motions:
             f"A: must have motions that are modes of their own, and their condition number is "
             f"{condition:.1e}: some drive each other, or the state has scales too far apart"
         )
-    return _Motions(poles, right, np.linalg.inv(right), condition)
+    left = np.asarray(np.linalg.inv(right), dtype=np.complex128)
+    return _Motions(poles, right, left, condition)
 
 
 def _modes(
@@ -188,7 +189,11 @@ def _deviation(model: StateSpace, a: Numbers, b: Numbers, c: Numbers) -> tuple[f
     # Each costs a solution, in which threads of the linear algebra may wait for each other.
     places = _places(model, SOLVED)
     unit = np.eye(len(a))
-    return _worst(model, places, (c @ np.linalg.solve(1j * w * unit - a, b) for w in places.tolist()))
+    return _worst(
+        model,
+        places,
+        (np.asarray(c @ np.linalg.solve(1j * w * unit - a, b), dtype=np.complex128) for w in places.tolist()),
+    )
 
 
 def _modal_deviation(model: StateSpace, motions: _Motions, b: Numbers, c: Numbers) -> tuple[float, float]:
