@@ -4494,12 +4494,14 @@ class UnitPair(Part):
     """Both units, as a scenario has them.
 
     Args:
-        length:
-        mass:
+        length: Unit of length.
+        mass: Unit of mass.
     """
 
     length: Literal["m", "cm", "mm", "in", "ft"]
+    """Unit of length."""
     mass: Literal["kg", "g", "t", "lb", "slug", "slinch"]
+    """Unit of mass."""
 
 
 class Unloading(Part):
