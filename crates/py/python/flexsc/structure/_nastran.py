@@ -82,9 +82,9 @@ def from_nastran(
 def _pynastran(module: str) -> Any:
     try:
         return import_module(f"pyNastran.{module}")
-    except ImportError as error:
+    except (ImportError, AttributeError) as error:  # of an older version, or beside NumPy 2
         raise ImportError(
-            f"pyNastran cannot be used: {error}; `pip install flexsc[nastran]` brings it"
+            f"pyNastran cannot be used: {error}; `pip install flexsc[nastran]` brings it, with NumPy below 2"
         ) from error
 
 

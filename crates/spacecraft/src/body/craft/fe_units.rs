@@ -57,7 +57,9 @@ enum MassUnit {
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct UnitPair {
+    /// Unit of length.
     length: LengthUnit,
+    /// Unit of mass.
     mass: MassUnit,
 }
 
