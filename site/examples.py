@@ -10,6 +10,7 @@ from pathlib import Path
 
 import flexsc
 import gallery
+from playground import is_built
 
 ROOT = Path(__file__).resolve().parents[1]
 TOML = re.compile(r"^```toml\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
@@ -34,13 +35,10 @@ def pages() -> dict[str, str]:
     index = "# Scenarios\n\nThe command has them built in: `flexsc new NAME --like SCENARIO` copies one.\n\n"
     index += "| scenario | shows |\n|---|---|\n"
     made = {}
-    has_playground = (ROOT / "target/playground").is_dir()
     for name, about in sorted(flexsc.examples().items()):
         text = (ROOT / f"scenarios/{name}.toml").read_text("utf-8")
         index += f"| [`{name}`]({name}.md) | {about} |\n"
-        there = (
-            f"[Open in the playground](../playground.md#{name}){{ .md-button }}\n\n" if has_playground else ""
-        )
+        there = f"[Open in the playground](../playground.md#{name}){{ .md-button }}\n\n" if is_built() else ""
         tiles = "".join(
             f"![{tile.title}](../gallery/{tile.name}.svg)\n\n"
             for tile in gallery.TILES

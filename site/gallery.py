@@ -25,9 +25,9 @@ README = "images/cubesat.svg"
 COMMAND = shutil.which("flexsc", path=str(Path(sys.executable).parent)) or shutil.which("flexsc") or "flexsc"
 # Verbs that draw, and how they draw for a tile.
 DRAWING = ("plot", "margins", "spectrum", "worst", "budget", "map", "plan")
+FOR_A_TILE = ("--width", "66", "--font", "6")
 # SHA-256 of the log of each scenario, once its pictures are drawn.
 SHA256: dict[str, str] = {}
-FOR_A_TILE = ("--width", "66", "--font", "6")
 # The drawing of the spacecraft, in a page of `flexsc report`.
 DRAWN = re.compile(r'<svg [^>]*aria-label="the spacecraft.*?</svg>', re.DOTALL)
 
@@ -56,6 +56,13 @@ def figure(title: str, scenario: str, what: str, page: str, options: str = "") -
     )
 
 
+def analysis(title: str, scenario: str, command: str, what: str, page: str) -> Tile:
+    """A figure of a verb, `VERB OPTIONS`, that analyses a scenario."""
+    verb, _, options = command.partition(" ")
+    line = " ".join(filter(None, ("flexsc", verb, f"{scenario}.toml", options, "-o .")))
+    return Tile(title, scenario, (line,), f"{scenario}-{what}.svg", page)
+
+
 TILES = [
     figure("A day in orbit, with a failed star tracker", "cubesat-day", "pointing", "scenario/modes.md"),
     Tile(
@@ -66,18 +73,18 @@ TILES = [
         "figures.md#a-page-for-a-design-review",
     ),
     figure("A slew of 54 degrees", "earth-observer", "pointing", "scenario/targets.md"),
-    Tile(
+    analysis(
         "Margins of three loops, and a mask that they keep",
         "earth-observer",
-        ("flexsc margins earth-observer.toml --mask '6 dB, 30 deg' --what nichols -o .",),
-        "earth-observer-nichols.svg",
+        "margins --mask '6 dB, 30 deg' --what nichols",
+        "nichols",
         "linear-models.md#margins",
     ),
-    Tile(
+    analysis(
         "Lines of unbalanced wheels through the modes",
         "wheel-run-up",
-        ("flexsc spectrum wheel-run-up.toml --speeds 30:115:86 -o .",),
-        "wheel-run-up-waterfall_pitch.svg",
+        "spectrum --speeds 30:115:86",
+        "waterfall_pitch",
         "noise.md#lines-of-wheels",
     ),
     Tile(
@@ -90,18 +97,12 @@ TILES = [
         "runs/half-turn-distribution-pointing.svg",
         "campaigns.md",
     ),
-    Tile(
-        "The worst case, found",
-        "half-turn",
-        ("flexsc worst half-turn.toml -o .",),
-        "half-turn-worst.svg",
-        "campaigns.md#worst-cases",
-    ),
-    Tile(
+    analysis("The worst case, found", "half-turn", "worst", "worst", "campaigns.md#worst-cases"),
+    analysis(
         "A pointing budget",
         "slew-wheel-lqg",
-        ("flexsc budget slew-wheel-lqg.toml --runs 60 -o .",),
-        "slew-wheel-lqg-budget-stability.svg",
+        "budget --runs 60",
+        "budget-stability",
         "campaigns.md#pointing-budgets",
     ),
     figure("Phase plane of a relay", "relay-adaptive", "phase-plane", "theory/relay.md"),
@@ -124,18 +125,14 @@ TILES = [
         "wheel-unstable-band-map.svg",
         "sampled-loops.md#stability-map",
     ),
-    Tile(
-        "A plan that leaves the modes at rest",
-        "rotation-robust",
-        ("flexsc plan rotation-robust.toml --figures .",),
-        "rotation-robust-plan-torque.svg",
-        "manoeuvres.md",
+    analysis(
+        "A plan that leaves the modes at rest", "rotation-robust", "plan", "plan-torque", "manoeuvres.md"
     ),
-    Tile(
+    analysis(
         "Poles of a loop as its gain grows",
         "earth-observer",
-        ("flexsc margins earth-observer.toml --what root-locus -o .",),
-        "earth-observer-root-locus.svg",
+        "margins --what root-locus",
+        "root-locus",
         "linear-models.md#margins",
     ),
     figure("Solar wings ring down, damped by jets", "iss-ringdown", "energy", "active-damping.md"),

@@ -16,6 +16,7 @@ from mkdocs.structure.files import File, Files
 
 sys.path.insert(0, str(Path(__file__).parent))
 import gallery
+import playground
 import reference
 import search
 import tutorials
@@ -28,14 +29,13 @@ MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', 
 # Comments that mark the numbers of a page for its test.
 MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
 KEYS = Keys(flexsc.schema())
-PLAYGROUND = ROOT / "target/playground"
 # Pages that end with what tests make and compare.
 WHOLE = {"combinations.md": "tests/frozen/combinations.md", "papers.md": "tests/frozen/papers.md"}
 
 
 def on_config(config: Any) -> Any:
     """Adds the playground to the menu, where it has been built."""
-    if PLAYGROUND.is_dir():
+    if playground.is_built():
         config.nav.insert(1, {"Playground": "playground.md"})
     return config
 
@@ -48,9 +48,9 @@ def on_files(files: Files, config: Any) -> Files:
         raise SystemExit(f"docs/{gallery.README} is not current: python3 site/gallery.py")
     for path, svg in pictures.items():
         files.append(File.generated(config, path, content=svg))
-    if PLAYGROUND.is_dir():
+    if playground.is_built():
         files.append(File.generated(config, "playground.md", content=examples.playground()))
-        for path in sorted(PLAYGROUND.iterdir()):
+        for path in sorted(playground.MADE.iterdir()):
             files.append(File.generated(config, f"playground/{path.name}", content=path.read_bytes()))
         hashes = f"globalThis.FLEXSC_GALLERY={json.dumps(gallery.known())};"
         files.append(File.generated(config, "playground/gallery.js", content=hashes))
@@ -81,11 +81,13 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
         markdown += "\n" + made[re.search("^## ", made, re.MULTILINE).start() :]
     if page.file.src_uri == "index.md":
         buttons = "[Install](install.md){ .md-button }"
-        if PLAYGROUND.is_dir():
+        if playground.is_built():
             buttons = f"[Try it in the browser](playground.md){{ .md-button .md-button--primary }} {buttons}"
         markdown = markdown.replace("<!-- start -->", buttons)
-        markdown = markdown.replace("<!-- gallery -->", gallery.page(PLAYGROUND.is_dir()))
-    if PLAYGROUND.is_dir() and not page.file.src_uri.startswith(("examples/", "reference/")):
+        markdown = markdown.replace("<!-- gallery -->", gallery.page(playground.is_built()))
+    if page.file.src_uri == "install.md" and playground.is_built():
+        markdown = markdown.replace("<!-- playground -->", " This site has it: [open it](playground.md).")
+    if playground.is_built() and not page.file.src_uri.startswith(("examples/", "reference/")):
         markdown = examples.linked(markdown, "../" * page.file.src_uri.count("/"))
     above = "../" * (1 + page.file.src_uri.count("/"))
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")

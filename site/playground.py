@@ -1,7 +1,7 @@
 """Builds the playground, the engine in a page, into target/playground: `python3 site/playground.py`.
 
-It needs a Rust compiler with the standard library of wasm32-unknown-unknown, and npm. The compiler is that of
-rustup with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library:
+It needs a Rust compiler with the standard library of wasm32-unknown-unknown, clang and npm. The compiler is
+that of rustup with `rustup target add wasm32-unknown-unknown`, or Debian's with the source of its library:
 `rustc-web`, `rust-web-src` and an LLD of the same LLVM. `wasm-opt` (binaryen) makes it smaller, if it is
 there.
 """
@@ -21,6 +21,8 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "site/playground"
 MADE = ROOT / "target/playground"
 TARGET = "wasm32-unknown-unknown"
+# Folder in which the playground is built; it becomes MADE once it is whole.
+NEW = ROOT / "target/playground-new"
 # Node's packages, beside which esbuild runs.
 PACKAGES = ROOT / "target/playground-packages"
 DEBIAN = Path("/usr/bin/rustc")
@@ -158,33 +160,39 @@ def bundle() -> None:
     shutil.copytree(SOURCE, PACKAGES, dirs_exist_ok=True)
     npm = ["npm", "ci", "--no-audit", "--no-fund", "--silent", "--ignore-scripts"]
     subprocess.run(npm, cwd=PACKAGES, check=True)
-    subprocess.run(["node", "bundle.mjs", MADE], cwd=PACKAGES, check=True)
+    subprocess.run(["node", "bundle.mjs", NEW], cwd=PACKAGES, check=True)
+
+
+def is_built() -> bool:
+    """True if the playground has been built."""
+    return MADE.is_dir()
 
 
 def build() -> str | None:
     """Builds the playground; returns the reason if it cannot be built here."""
     began = time.monotonic()
-    shutil.rmtree(MADE, ignore_errors=True)
-    MADE.mkdir(parents=True)
-    model = MADE / "model.js"
+    for folder in (MADE, NEW):
+        shutil.rmtree(folder, ignore_errors=True)
+    NEW.mkdir(parents=True)
+    model = NEW / "model.js"
     try:
-        packed = gzip.compress(engine(), 9, mtime=0)
         bundle()
+        packed = gzip.compress(engine(), 9, mtime=0)
     except Absent as absent:
-        shutil.rmtree(MADE)
         return str(absent)
     files = {"engine.wasm": packed, "model.js": gzip.compress(model.read_bytes(), 9, mtime=0)}
     for name, data in files.items():
-        (MADE / f"{name}.gz").write_bytes(data)
+        (NEW / f"{name}.gz").write_bytes(data)
         text = base64.b64encode(data).decode("ascii")
-        (MADE / f"{name}.gz.js").write_text(f'(self.FLEXSC_FILES ??= {{}})["{name}"]="{text}";\n', "ascii")
+        (NEW / f"{name}.gz.js").write_text(f'(self.FLEXSC_FILES ??= {{}})["{name}"]="{text}";\n', "ascii")
     model.unlink()
-    shutil.copyfile(SOURCE / "style.css", MADE / "style.css")
+    shutil.copyfile(SOURCE / "style.css", NEW / "style.css")
     # What is in base64 is for pages that are opened from a folder.
-    sent = (path for path in sorted(MADE.iterdir()) if not path.name.endswith(".gz.js"))
+    sent = (path for path in sorted(NEW.iterdir()) if not path.name.endswith(".gz.js"))
     sizes = {path.name: path.stat().st_size for path in sent}
     if sum(sizes.values()) > MOST_BYTES:
         raise SystemExit(f"the playground is above {MOST_BYTES} bytes: {sizes}")
+    NEW.rename(MADE)
     took = time.monotonic() - began
     print(f"the playground has {sum(sizes.values()) / 1e6:.2f} MB, built in {took:.0f} s: {sizes}")
     return None

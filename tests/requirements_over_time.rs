@@ -238,6 +238,14 @@ fn what_cannot_be_read_is_refused_at_its_place() {
         ),
         ("holds = \"always (mode(fine) until[0, 2] mode(safe))\"", "cannot be within `always`", "^^^^^"),
         ("holds = \"when always mode(fine): mode(safe)\"", "cannot be in an event", "^^^^^^"),
+        (
+            "holds = \"(mode(fine) until mode(safe)) until mode(coarse)\"",
+            "cannot be within `until`",
+            "^^^^^^^^^^^^^^^^^^^^^^^^^^^^^",
+        ),
+        ("holds = \"mode(fine) until when mode(safe): mode(coarse)\"", "cannot be within `always`", "^^^^"),
+        ("holds = \"estimate.mode(fine)\"", "must be `mode`, got `estimate.mode`", "^^^^^^^^^^^^^"),
+        ("holds = \"estimate.rat < 1\"", "did you mean `estimate.rate`?", "^^^^^^^^^^^^"),
         ("holds = \"mode(fine) within 3 s\"", "must end or go on with", "^^^^^^"),
         ("holds = \"when mode enters fine pointing_error < 1\"", "needs a `:`", "^^^^"),
         ("holds = \"blinded(sampled)\"", "which nothing blinds", ""),
@@ -250,6 +258,8 @@ fn what_cannot_be_read_is_refused_at_its_place() {
             "",
         ),
         ("holds = \"mode(fine)\"\nduring = \"mode(fien)\"", "must name one of the modes", "^^^^"),
+        ("holds = \"mode(fine)\"\nduring = \"mode enters fine\"", "needs a mode in brackets", "^^^^"),
+        ("holds = \"mode(fine)\"\nduring = \"always mode(fine)\"", "in `during`", "^^^^^^"),
         ("quantity = \"pointing_error\"\nlimit = 1\nwithin = 3", "is for `holds`: write", ""),
         ("quantity = \"settling_time_s\"\nlimit = 1\nmode = \"fine\"", "the quantity is the metric", ""),
         ("limit = 1", "a `quantity` with its `limit`, or `holds`", ""),
@@ -262,4 +272,8 @@ fn what_cannot_be_read_is_refused_at_its_place() {
     dir.run("check mode.toml").exits(2).says(&["is for requirements", "^^^^^^"]);
     dir.write("metric.toml", holding(MODES, &["holds = \"time_outside_s < 1 min\""]));
     dir.run("simulate metric.toml --log none").exits(0).says(&["at most 1 min"]);
+    dir.write("absent.toml", holding(MODES, &["holds = \"fuel_kg < 1\""]));
+    dir.run("check absent.toml")
+        .exits(2)
+        .says(&["requirement[0].holds", "runs of this scenario do not have"]);
 }

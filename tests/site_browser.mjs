@@ -1,7 +1,7 @@
 // The built site in a real Chromium: `node tests/site_browser.mjs`, after `python3 site/build.py --playground`.
 //
 // The playground checks, edits, runs and draws; its logs have the bytes of the command's; the search finds what readers type; no page is
-// wider than the screen. `python3 tests/site_browser.py` tells what is missing where it cannot run.
+// wider than the screen. `python3 tests/site_browser.py` prints what is missing where it cannot run.
 
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";

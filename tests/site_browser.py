@@ -25,7 +25,7 @@ def browser() -> str | None:
 
 def main() -> None:
     if reason := missing():
-        print(f"SKIPPED: the site in a browser: {reason}")
+        print(f"SKIPPED: {reason}")
         return
     command = ROOT / "target/ci/flexsc"
     native = str(command) if command.is_file() else shutil.which("flexsc") or "flexsc"

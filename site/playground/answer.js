@@ -8,10 +8,14 @@ const COLOURS = { failed: "red", missed: "red", met_but: "amber", goal_missed: "
 // A button that shows an instant in the figures.
 const instant = (text, from, to) => `<button class="instant" data-from="${from}" data-to="${to}">${escaped(text)}</button>`;
 
-function requirement({ text, met, name, largest }) {
+// Mark and class of a decision.
+const DECISIONS = { met: ["✓", "met"], missed: ["✗", "missed"], undecided: ["?", "missed"], not_exercised: ["-", ""] };
+
+function requirement({ text, decision, name, largest }) {
+  const [mark, kind] = DECISIONS[decision];
   const peak = largest ? ` ${instant(text.largest || "largest", largest.at_s, largest.at_s)}` : "";
   return (
-    `<tr class="${met ? "met" : "missed"}"><td>${met ? "✓" : "✗"}</td><th scope="row">${escaped(name)}</th>` +
+    `<tr class="${kind}"><td>${mark}</td><th scope="row">${escaped(name)}</th>` +
     `<td>${escaped(text.value)}</td><td>at most ${escaped(text.limit)}</td>` +
     `<td>${text.margin ? `margin ${escaped(text.margin)}` : ""}${peak}</td></tr>`
   );

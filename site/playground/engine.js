@@ -6,6 +6,12 @@ import { unpackedFile } from "./packed.js";
 export class Stopped extends Error {}
 export class Trapped extends Error {}
 
+// The reason of a request that failed, in the words of the engine.
+function failure(bytes) {
+  const decoder = new TextDecoder();
+  return decoder.decode(bytes.subarray(0, 9)) === '{"error":' ? JSON.parse(decoder.decode(bytes)).error : null;
+}
+
 export class Engine {
   constructor() {
     this.waiting = new Map();
@@ -35,7 +41,9 @@ export class Engine {
       asked?.reject(new Trapped(trap));
       this.restart(new Trapped(trap));
     } else {
-      asked?.resolve(bytes);
+      const why = failure(bytes);
+      if (why === null) asked?.resolve(bytes);
+      else asked?.reject(new Error(why));
     }
   }
 

@@ -11,9 +11,17 @@ import { Sliders } from "./sliders.js";
 // A run is repeated while a slider moves up to the first time (s), and by itself up to the second; above the third the page asks.
 const [QUICK, AUTOMATIC, LONG] = [0.2, 5, 60];
 const PAUSE = 350;
+// Time of a run here over that of the command.
+const SLOWER = 2;
 const FIRST = "earth-observer";
 
 const place = (name) => document.querySelector(`#playground [data-place="${name}"]`);
+
+// A line in place of what cannot be drawn.
+function refusal(what, error) {
+  if (error instanceof Stopped || error instanceof Trapped) throw error;
+  return `<p class="refused">${escaped(what)}: ${escaped(error.message)}</p>`;
+}
 
 class Playground {
   constructor() {
@@ -26,7 +34,6 @@ class Playground {
     });
     this.sliders = new Sliders(place("sliders"), this.editor, () => this.changed(0));
     this.estimate = 0;
-    this.speed = 2;
     this.tab = "time";
     this.times = [null, null];
     this.generation = 0;
@@ -68,7 +75,7 @@ class Playground {
       this.say("the address of this page now has the scenario");
     };
     place("download").onchange = ({ target }) => {
-      this.download(target.value);
+      this.download(target.value).catch((error) => this.say(error.message, true));
       target.value = "";
     };
     for (const button of document.querySelectorAll("#playground [data-tab]")) {
@@ -129,7 +136,7 @@ class Playground {
         this.say(`${mistakes.length} ${mistakes.length === 1 ? "error" : "errors"} in the text: what is shown is of the last accepted one`);
         return;
       }
-      this.estimate = checked.estimate_s * this.speed;
+      this.estimate = checked.estimate_s * SLOWER;
       if (!this.sliders.isMoving) this.sliders.setUncertain(checked.uncertain);
       if (this.estimate <= (this.sliders.isMoving ? QUICK : AUTOMATIC)) await this.run(false);
       else this.say(`accepted; a run takes about ${Math.ceil(this.estimate)} s here`);
@@ -147,7 +154,6 @@ class Playground {
     try {
       const result = await this.engine.json({ ask: "run" });
       const took = (performance.now() - began) / 1000;
-      if (result.error) throw new Error(result.error);
       this.result = result;
       place("answer").innerHTML = answerHtml(result);
       this.say(`run of ${this.file} in ${took.toPrecision(2)} s`);
@@ -248,15 +254,16 @@ class Playground {
       if (tab === "time") {
         const drawn = [];
         for (const name of this.result.figures) {
-          const svg = await this.engine.text({ ask: "figure", name, from: this.times[0], to: this.times[1] });
+          const svg = this.engine.text({ ask: "figure", name, from: this.times[0], to: this.times[1] });
+          const html = await svg.then((own) => `<figure aria-label="${escaped(name)}">${own}</figure>`).catch((error) => refusal(name, error));
           if (!isCurrent()) return;
-          const why = svg.startsWith("{") ? JSON.parse(svg).error : null;
-          drawn.push(why ? `<p class="refused">${escaped(name)}: ${escaped(why)}</p>` : `<figure aria-label="${escaped(name)}">${svg}</figure>`);
+          drawn.push(html);
           figures.innerHTML = drawn.join("");
         }
         return;
       }
-      const html = await this.engine.text({ ask: { frequency: "margins", noise: "noise", craft: "spacecraft" }[tab] });
+      const ask = { frequency: "margins", noise: "noise", craft: "spacecraft" }[tab];
+      const html = await this.engine.text({ ask }).catch((error) => refusal(ask, error));
       if (!isCurrent()) return;
       const block = document.createElement("div");
       block.attachShadow({ mode: "open" }).innerHTML = `<style>${this.style}</style><div class="page">${html}</div>`;
@@ -278,15 +285,11 @@ class Playground {
       button.disabled = true;
       if (!globalThis.FLEXSC_MODEL) await unpackedScript("model.js");
       const bytes = await this.engine.bytes({ ask: "model" });
-      if (!isCurrent()) return;
-      if (bytes[0] === 0x7b) {
-        view.innerHTML = `<p class="refused">No model: ${escaped(JSON.parse(new TextDecoder().decode(bytes)).error)}</p>`;
-        return;
-      }
-      this.remove = await globalThis.FLEXSC_MODEL.show(view, bytes);
+      if (isCurrent()) this.remove = await globalThis.FLEXSC_MODEL.show(view, bytes);
     };
-    button.onclick = () => start().catch((error) => this.failed(error));
-    if (this.estimate < 1) await start();
+    const shown = () => start().catch((error) => (view.innerHTML = refusal("model", error))).catch((error) => this.failed(error));
+    button.onclick = shown;
+    if (this.estimate < 1) await shown();
   }
 
   async download(what) {

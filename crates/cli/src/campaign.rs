@@ -144,15 +144,15 @@ pub fn run(
         }
     } else {
         let is_sweep = !campaign.design().blocks.is_empty();
-        let answer = (!is_sweep).then(|| reported.answer(scenario, job.answer));
+        let answer = reported.answer(scenario, job.answer);
         if !job.json {
-            reported.say(scenario, Some(took), job.answer);
-        } else if let Some(answer) = &answer {
+            reported.say(&answer, Some(took), job.answer);
+        } else if !is_sweep {
             print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
         }
-        let lost = answer.filter(|own| job.answer.strict && own.verdict == RunVerdict::MetBut);
-        if let Some(lost) = lost.filter(|_| reported.failed.is_none()) {
-            return Err(CliError::Requirements(format!("{}: {}", scenario.name, lost.verdict_text)));
+        let is_refused = job.answer.strict && !is_sweep && answer.verdict == RunVerdict::MetBut;
+        if is_refused && reported.failed.is_none() {
+            return Err(CliError::Requirements(format!("{}: {}", scenario.name, answer.verdict_text)));
         }
     }
     match reported.failed {

@@ -20,9 +20,10 @@ use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::human::UnitsArgs;
+use crate::logged_answer::answer_of_log;
 use crate::results::print_lines;
 use crate::stop::stop_flag;
-use crate::{logged_answer, memory_log, plot, say, scenario, simulate};
+use crate::{memory_log, plot, say, scenario, simulate};
 
 #[derive(clap::Args)]
 pub struct CompareArgs {
@@ -199,7 +200,7 @@ impl ComparedSource {
                 Ok(ComparedRun { scenario: *scenario, answer, log })
             }
             Self::Log(path, log) => {
-                let (scenario, answer) = logged_answer::logged(&log, &path, units)?;
+                let (scenario, answer) = answer_of_log(&log, &path, units)?;
                 Ok(ComparedRun { scenario, answer, log: Some(*log) })
             }
         }

@@ -9,7 +9,7 @@ pub fn key_axis(scenario: Option<&Scenario>, key: &str, values: impl IntoIterato
     let unit = scenario.and_then(|scenario| scenario.unit_of(key)).unwrap_or_default();
     let values: Vec<f64> = values.into_iter().collect();
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let reader_unit = ReaderUnits::Engineering.of_key(key, largest, unit);
+    let reader_unit = ReaderUnits::Engineering.for_key(key, largest, unit);
     let (name, own) = name_and_unit(key, unit);
     let axis = FigureAxis::around(&name, own, values);
     if unit == "rad/s" { axis.in_unit(reader_unit) } else { axis }

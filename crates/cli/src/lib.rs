@@ -90,7 +90,8 @@ use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 pub use human::Units;
-pub use logged_answer::logged as answer_of_log;
+pub use logged_answer::answer_of_log;
+pub use progress::RunClock;
 pub use report::EditableStudy;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft

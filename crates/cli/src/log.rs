@@ -11,7 +11,8 @@ use serde_json::json;
 
 use crate::answer::AnswerArgs;
 use crate::error::{CliError, without_controls};
-use crate::{files, logged_answer, out, print, say};
+use crate::logged_answer::answer_of_log;
+use crate::{files, out, print, say};
 
 #[derive(clap::Args)]
 pub struct LogArgs {
@@ -70,7 +71,7 @@ pub fn run(args: &LogArgs) -> Result<(), CliError> {
         }
         Verb::Answer { log: path, json, answer: args } => {
             let (began, log) = (Instant::now(), Log::open(path)?);
-            let (scenario, answer) = logged_answer::logged(&log, path, args.units.units.into())?;
+            let (scenario, answer) = answer_of_log(&log, path, args.units.units.into())?;
             if *json {
                 let object = json!({"file": path.display().to_string(), "answer": answer});
                 print(format!("{object}\n").as_bytes())?;

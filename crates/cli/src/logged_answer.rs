@@ -12,7 +12,10 @@ use crate::error::CliError;
 use crate::{plot, say};
 
 /// Returns the scenario of a log and the answer of its run.
-pub fn logged(log: &Log, path: &Path, units: ReaderUnits) -> Result<(Scenario, Answer), CliError> {
+///
+/// # Errors
+/// A log without a scenario, or whose rows cannot be read, or an interruption.
+pub fn answer_of_log(log: &Log, path: &Path, units: ReaderUnits) -> Result<(Scenario, Answer), CliError> {
     let story = plot::RunEvents::read(log, path, None)?;
     let mut observer = RunObserver::new(&story.scenario);
     // A run that did not end has no verdict to repeat.
@@ -22,6 +25,7 @@ pub fn logged(log: &Log, path: &Path, units: ReaderUnits) -> Result<(Scenario, A
                 let answer = Answer::new(&story.scenario, &metrics, Some(&observer.finish()), units);
                 return Ok((story.scenario, answer));
             }
+            Err(CliError::Interrupted(text)) => return Err(CliError::Interrupted(text)),
             Err(why) => {
                 let why = why.to_string();
                 say!("note: {}; the answer is that of its rows", why.lines().next().unwrap_or_default());

@@ -73,7 +73,8 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
             let remaining: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
             let reported = part_files::summary(&into, &merge.manifest().runs())?;
             say!("{}: {}, {remaining} missing", path.display(), counted(reported.runs, "run"));
-            reported.say(merge.work().campaign.scenario(), None, AnswerArgs::default());
+            let args = AnswerArgs::default();
+            reported.say(&reported.answer(merge.work().campaign.scenario(), args), None, args);
             if !missing.is_empty() {
                 return Err(incomplete(
                     &missing,

@@ -75,11 +75,11 @@ impl Lines {
     }
 }
 
-/// Stage of a command, which its lines name.
+/// Stage in which a command is, for its lines of progress.
 static STAGE: Mutex<&str> = Mutex::new("");
 
-/// Names the stage that begins.
-pub fn stage(name: &'static str) {
+/// Begins a stage, which lines of progress name from now on.
+pub fn begin_stage(name: &'static str) {
     *STAGE.lock().unwrap_or_else(PoisonError::into_inner) = name;
 }
 
@@ -130,11 +130,10 @@ pub fn spinner() -> ProgressBar {
 /// Unit of a single run's progress.
 const UNIT: &str = "simulated seconds";
 
-/// Record that shows the progress of a single run once it takes longer than half a second.
+/// Progress of a single run, shown once it takes longer than half a second.
 pub struct Progress {
     began: WallInstant,
     length: Span,
-    samples: u32,
     bar: Option<ProgressBar>,
     lines: Lines,
 }
@@ -143,7 +142,19 @@ impl Progress {
     /// Returns the progress of a run of this length.
     pub fn new(length: Span) -> Self {
         let lines = Lines::new(length.seconds() as u64, 0, UNIT);
-        Self { began: WallInstant::now(), length, samples: 0, bar: None, lines }
+        Self { began: WallInstant::now(), length, bar: None, lines }
+    }
+
+    /// Shows the progress at a simulated time (s).
+    pub fn show(&mut self, now: f64) {
+        if self.bar.is_none() && self.began.elapsed() > Duration::from_millis(500) {
+            self.bar = Some(bar(self.length.seconds() as u64, UNIT));
+        }
+        match &self.bar {
+            Some(bar) if bar.is_hidden() => self.lines.show(now as u64),
+            Some(bar) => bar.set_position(now as u64),
+            None => {}
+        }
     }
 
     /// Clears the bar.
@@ -154,33 +165,36 @@ impl Progress {
     }
 }
 
-impl Record for Progress {
+/// Record that gives the simulated time (s) of a run to a function, at one sample in 4096.
+pub struct RunClock<F> {
+    receiver: F,
+    samples: u32,
+}
+
+impl<F: FnMut(f64)> RunClock<F> {
+    /// Creates the record with the function that takes the time.
+    pub fn new(receiver: F) -> Self {
+        Self { receiver, samples: 0 }
+    }
+
+    fn tick(&mut self, now: f64) {
+        self.samples = self.samples.wrapping_add(1);
+        // To show a time costs as much as a sample.
+        if self.samples.is_multiple_of(4096) {
+            (self.receiver)(now);
+        }
+    }
+}
+
+impl<F: FnMut(f64)> Record for RunClock<F> {
     fn record(&mut self, now: Instant, _: Sample<'_>) -> Result<(), RecordError> {
-        self.update(now.seconds());
+        self.tick(now.seconds());
         Ok(())
     }
 
     fn piece(&mut self, _: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
-        self.update(piece.from);
+        self.tick(piece.from);
         Ok(())
-    }
-}
-
-impl Progress {
-    /// Shows the progress at a simulated time (s).
-    fn update(&mut self, now: f64) {
-        self.samples = self.samples.wrapping_add(1);
-        // The clock is read rarely: it costs as much as a sample.
-        if self.samples.is_multiple_of(4096) {
-            if self.bar.is_none() && self.began.elapsed() > Duration::from_millis(500) {
-                self.bar = Some(bar(self.length.seconds() as u64, UNIT));
-            }
-            match &self.bar {
-                Some(bar) if bar.is_hidden() => self.lines.show(now as u64),
-                Some(bar) => bar.set_position(now as u64),
-                None => {}
-            }
-        }
     }
 }
 

@@ -22,14 +22,17 @@ pub fn lines(verdicts: &[RequirementVerdict], units: ReaderUnits) -> Vec<String>
         let RequirementVerdict { requirement, decision, worst: (run, worst), .. } = verdict;
         let written = requirement.written_limit.as_deref();
         let unit = units.as_written(written, requirement.limit, requirement.unit);
-        let worst =
-            if worst.is_nan() { "no value".to_owned() } else { unit.beside(*worst, requirement.limit) };
+        let worst = if worst.is_nan() {
+            "no value".to_owned()
+        } else {
+            unit.number_against(*worst, requirement.limit)
+        };
         rows.push(vec![
             decision.mark().to_owned(),
             requirement.name.clone(),
             format!("at most {}", unit.limit(requirement.limit, written)),
             format!("{worst}, run {run}"),
-            verdict.met_text(),
+            verdict.runs_met_text(),
         ]);
     }
     let mut lines = columns(&rows, |_| true);

@@ -201,7 +201,7 @@ fn row_scale(row: &Json, shown: &[Column<'_>], units: Units) -> (f64, String) {
     own.filter_map(|column| column.cell(row)).for_each(|cell| collect(cell, &mut numbers));
     let text = |name: &str| row.get(name).and_then(Json::as_str).unwrap_or_default();
     let largest = numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
-    let unit = ReaderUnits::from(units).of_key(text("key"), largest, text("unit"));
+    let unit = ReaderUnits::from(units).for_key(text("key"), largest, text("unit"));
     (unit.value(1.0), unit.name.into_owned())
 }
 

@@ -23,7 +23,7 @@ use crate::campaign::{self, CampaignOptions, TableFormat, part_files};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::out::Out;
-use crate::progress::Progress;
+use crate::progress::{Progress, RunClock};
 use crate::results::print_lines;
 use crate::stop::{self, stop_flag};
 use crate::{files, out, requirements, say, scenario};
@@ -322,8 +322,9 @@ fn single(
     let began = WallInstant::now();
     // A live run has no bar, since the user types commands on that line.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
+    let clock = progress.as_mut().map(|progress| RunClock::new(move |now| progress.show(now)));
     let mut observer = RunObserver::new(&run.scenario);
-    let record = (stop_flag(), (&mut observer, (&mut progress, &mut live)));
+    let record = (stop_flag(), (&mut observer, (clock, &mut live)));
     let result = match detail {
         None => Campaign::simulate(run, record).map(|metrics| (metrics, None)),
         Some(detail) => simulate_to_log(run, &path, (detail, args.force), record)

@@ -2,7 +2,7 @@
 
 use flexsc_formats::count::counted;
 use flexsc_formats::document::{ConfigError, nearest};
-use flexsc_formats::reader_units::{percent, percent_beside};
+use flexsc_formats::reader_units::{percent, percent_against};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -32,7 +32,7 @@ pub struct RequirementVerdict {
     pub runs_met: u64,
     /// Number of runs that end before they decide.
     pub runs_undecided: u64,
-    /// Number of the other runs, which `runs` does not count.
+    /// Number of runs in which nothing was to meet the requirement; `runs` does not count them.
     pub runs_not_exercised: u64,
     /// Confidence of a level below 1 of the ensemble.
     pub confidence: Option<Confidence>,
@@ -65,7 +65,7 @@ impl Decision {
         }
     }
 
-    /// Returns true if the requirement is missed or undecided.
+    /// True if the requirement is missed or undecided.
     pub fn fails(self) -> bool {
         matches!(self, Self::Missed | Self::Undecided)
     }
@@ -116,13 +116,13 @@ impl RequirementRuns {
         &self.values[requirement]
     }
 
-    /// Returns true if the run in a row meets a requirement, or nothing in it was to meet it.
+    /// True if the run in a row meets a requirement, or nothing in it was to meet it.
     pub fn is_met(&self, requirement: usize, row: usize) -> bool {
         self.values[requirement][row] <= self.requirements[requirement].limit
             || self.is_not_exercised(requirement, row)
     }
 
-    /// Returns true if nothing in the run in a row was to meet a requirement.
+    /// True if nothing in the run in a row was to meet a requirement.
     fn is_not_exercised(&self, requirement: usize, row: usize) -> bool {
         is_not_exercised(self.values[requirement][row], self.shares[requirement][row])
     }
@@ -155,7 +155,7 @@ impl RequirementRuns {
         }
     }
 
-    /// Returns true if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
+    /// True if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
     pub fn are_decided(&self, total: u64) -> bool {
         let decided = |(index, requirement): (usize, &AssessedRequirement)| {
             let level = match requirement.interpretation {
@@ -208,14 +208,11 @@ pub fn validate_metrics(scenario: &Scenario) -> Result<(), ConfigError> {
     // A collector without samples has the metrics of a run.
     let known = MetricsCollector::new(scenario).finish(scenario);
     let Some((name, metric)) = limited.find(|(_, metric)| known.get(metric).is_none()) else { return Ok(()) };
-    let index = scenario.written.requirement.iter().position(|own| own.name == name);
-    let key =
-        index.map_or_else(|| "reference.pointing.rms".to_owned(), |at| format!("requirement[{at}].quantity"));
     let names: Vec<&str> = known.0.iter().map(|(meaning, _)| meaning.name).collect();
     let hint =
         nearest(&metric, &names).map_or_else(String::new, |close| format!("; did you mean `{close}`?"));
     let why = format!("is a metric that runs of this scenario do not have, got `{metric}`{hint}");
-    Err(ConfigError::new(key, why))
+    Err(ConfigError::new(scenario.requirement_key(&name), why))
 }
 
 /// Returns the verdicts on one run, of which no confidence is asked for.
@@ -305,7 +302,7 @@ impl RequirementVerdict {
     }
 
     /// Returns how many runs meet the requirement, of those in which something was to meet it, and how many are undecided.
-    pub fn met_text(&self) -> String {
+    pub fn runs_met_text(&self) -> String {
         let idle = match self.runs_not_exercised {
             0 => String::new(),
             count => format!(", {count} not exercised"),
@@ -325,14 +322,14 @@ impl RequirementVerdict {
         if !value.is_finite() && share.is_finite() {
             return Some(format!(
                 "{name}: within its limit for {} of all values, at least {least}",
-                percent_beside(*share, requirement.level)
+                percent_against(*share, requirement.level)
             ));
         }
         let shown = confidence.as_ref()?;
         let mut text = format!(
             "{name}: {} at {least} of the runs; confidence {}",
             decision.word(),
-            percent_beside(shown.reached, shown.wanted.unwrap_or(1.0))
+            percent_against(shown.reached, shown.wanted.unwrap_or(1.0))
         );
         if let (Some(wanted), Some(needed)) = (shown.wanted, shown.runs_needed) {
             let wanted_part = percent(wanted);

@@ -227,7 +227,9 @@ impl FigureAxis {
             Scale::Logarithmic => self.positive.end,
         };
         match self.unit {
-            "s" if self.scale == Scale::Linear => ReaderUnit::of_time_axis(self.range.end - self.range.start),
+            "s" if self.scale == Scale::Linear => {
+                ReaderUnit::for_time_axis(self.range.end - self.range.start)
+            }
             unit => ReaderUnits::Engineering.fitting(largest, unit),
         }
     }

@@ -20,8 +20,6 @@ pub fn nanoseconds(text: &str) -> Option<u64> {
     } else {
         number(rest, 3, 1..=if leap { 366 } else { 365 })? - 1
     };
-    let past = year - 1;
-    let days = 365 * (year - 1970) + past / 4 - past / 100 + past / 400 - 477 + before;
     let mut clock = time.splitn(3, ':');
     let (hour, minute) = (number(clock.next()?, 2, 0..=23)?, number(clock.next()?, 2, 0..=59)?);
     let seconds = clock.next()?;
@@ -31,8 +29,14 @@ pub fn nanoseconds(text: &str) -> Option<u64> {
         return None;
     }
     let digits: String = fraction.chars().chain("000000000".chars()).take(9).collect();
-    let total = ((days * 24 + hour) * 60 + minute) * 60 + second;
+    let total = (((days_to(year) + before) * 24 + hour) * 60 + minute) * 60 + second;
     Some(u64::try_from(total).ok()? * 1_000_000_000 + digits.parse::<u64>().ok()?)
+}
+
+/// Returns the days from 1970 to the first day of a year.
+pub fn days_to(year: i64) -> i64 {
+    let past = year - 1;
+    365 * (year - 1970) + past / 4 - past / 100 + past / 400 - 477
 }
 
 #[cfg(test)]

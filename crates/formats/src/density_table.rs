@@ -11,9 +11,9 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::foreign_file;
+use crate::foreign_file::read_file;
 use crate::number::real;
-use crate::text_file::open_text_up_to;
+use crate::text_file::{locate, open_text_up_to};
 
 /// Largest number of rows.
 const MOST: usize = 10_000;
@@ -30,11 +30,7 @@ pub struct DensityTable {
 impl DensityTable {
     /// Makes the path of the file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Some(file) = &mut self.file
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
-        }
+        self.file.iter_mut().for_each(|file| locate(file, directory));
     }
 
     /// Reads the file, if the rows are in one.
@@ -43,10 +39,8 @@ impl DensityTable {
     /// The error in the file, with its line.
     pub fn read(&mut self) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
-        let path = Path::new(file);
-        let rows = open_text_up_to(path, LONGEST).and_then(read).map_err(|why| {
-            let why = foreign_file::refusal(path, &[], "CSV rows of height and density", why);
-            format!("cannot be used: {file}: {why}")
+        let rows = read_file(Path::new(file), &[], "CSV rows of height and density", |path| {
+            read(open_text_up_to(path, LONGEST)?)
         })?;
         self.rows = Arc::new(rows);
         Ok(())

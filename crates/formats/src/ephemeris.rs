@@ -18,9 +18,9 @@ use serde::ser::SerializeSeq;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::celestial_frame::CelestialFrame;
-use crate::foreign_file;
+use crate::foreign_file::read_file;
 use crate::number::real;
-use crate::text_file::open_text_up_to;
+use crate::text_file::{locate, open_text_up_to};
 
 /// Least number of rows, those of one polynomial.
 const LEAST: usize = 8;
@@ -31,8 +31,10 @@ const LONGEST: u64 = 256 << 20;
 /// Largest distance (m) and time (s) of a row.
 const FARTHEST: f64 = 1e15;
 
-/// Distance (m) of two positions at one date up to which they are one, and change of the velocity (m/s) from which it is a burn.
-const SAME: [f64; 2] = [1.0, 1e-3];
+/// Distance (m) of two positions at one date up to which they are one.
+const SAME: f64 = 1.0;
+/// Change of the velocity (m/s) at one date from which it is a burn.
+const BURN: f64 = 1e-3;
 
 /// Time (s) and position (m) of each row.
 type Rows = Vec<[f64; 4]>;
@@ -63,14 +65,14 @@ impl StateTable {
             && last[0] == row[0]
         {
             let far = distance(&last[1..], &row[1..]);
-            if far > SAME[0] {
+            if far > SAME {
                 return Err(format!(
                     "line {line}: must be at the position of line {before}, which has the same date, and is {far:.1} m away"
                 ));
             }
             // After a burn the velocity is the new one.
             if let (Some(new), Some(old)) = (velocity, self.velocities.last_mut()) {
-                self.burns.extend((distance(&new, &*old) > SAME[1]).then_some(line));
+                self.burns.extend((distance(&new, &*old) > BURN).then_some(line));
                 *old = new;
             }
             return Ok(());
@@ -105,11 +107,7 @@ pub struct EphemerisTable {
 impl EphemerisTable {
     /// Makes the path of the file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Some(file) = &mut self.file
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
-        }
+        self.file.iter_mut().for_each(|file| locate(file, directory));
     }
 
     /// Reads the file, if the positions are in one, or takes the rows of `other` if that has read the same file.
@@ -122,11 +120,9 @@ impl EphemerisTable {
             self.table = other.table.clone();
             return Ok(());
         }
-        let path = Path::new(file);
-        let table = read_file(path).map_err(|why| {
-            let reads = "CSV rows t, x, y, z and an OEM in keyword-value notation";
-            format!("cannot be used: {file}: {}", foreign_file::refusal(path, &["OEM"], reads, why))
-        })?;
+        let reads = "CSV rows t, x, y, z and an OEM in keyword-value notation";
+        let table =
+            read_file(Path::new(file), &["an OEM"], reads, |path| read(open_text_up_to(path, LONGEST)?))?;
         self.table = Arc::new(table);
         Ok(())
     }
@@ -212,11 +208,6 @@ fn check(rows: &[[f64; 4]], place: &dyn Fn(usize) -> String) -> Result<(), Strin
         return Err(format!("must have at most {MOST} rows, got {}", rows.len()));
     }
     Ok(())
-}
-
-/// Reads a file.
-fn read_file(path: &Path) -> Result<StateTable, String> {
-    read(open_text_up_to(path, LONGEST)?)
 }
 
 fn read(file: impl Read) -> Result<StateTable, String> {

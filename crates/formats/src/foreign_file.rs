@@ -1,11 +1,12 @@
-//! Formats by which a refusal names a file that its reader does not take.
+//! Files that a scenario names, and the formats by which a refusal names one that its reader does not take.
 
+use std::io::Read;
 use std::path::Path;
 
 use crate::text_file::open_text_up_to;
 
 /// Number of bytes from which a format is recognised.
-const START: usize = 4096;
+const START: u64 = 4096;
 
 /// Messages of the CCSDS: abbreviation, and the key of a scenario that takes one, if any.
 const MESSAGES: [(&str, Option<&str>); 9] = [
@@ -30,16 +31,24 @@ const BINARY: [(&[u8], &str); 6] = [
     (b"CDF\x01", "a NetCDF file"),
 ];
 
-/// Returns the reason `why` for which a file was refused, or the format of the file if it is none of those that its reader takes,
-/// which `reads` names. `own` are the abbreviations of messages that the reader takes in keyword-value notation.
-pub fn refusal(path: &Path, own: &[&str], reads: &str, why: String) -> String {
-    match format(path, own) {
-        Some((name, taken)) => {
+/// Reads a file by `read`, which takes the formats that `reads` describes; `own` are those of them that have names here, such as
+/// `an OEM`.
+///
+/// # Errors
+/// The path, with the error in the file, or with the format of a file that is none of those.
+pub fn read_file<T>(
+    path: &Path,
+    own: &[&str],
+    reads: &str,
+    read: impl FnOnce(&Path) -> Result<T, String>,
+) -> Result<T, String> {
+    read(path).map_err(|why| {
+        let why = foreign_format(&beginning(path), own).map_or(why, |(name, taken)| {
             let taken = taken.map(|key| format!("; it is given as {key}")).unwrap_or_default();
             format!("this is {name}, and flexsc reads {reads} here{taken}")
-        }
-        None => why,
-    }
+        });
+        format!("cannot be used: {}: {why}", path.display())
+    })
 }
 
 /// Returns what to do with a file of modes of another program, by its extension.
@@ -60,16 +69,23 @@ pub fn instead(path: &Path) -> Option<&'static str> {
     })
 }
 
-/// Returns the name of a file's format, and the key that takes it, if any, unless it is one of a reader's `own`.
-fn format(path: &Path, own: &[&str]) -> Option<(String, Option<&'static str>)> {
-    let mut start = vec![0; START];
-    let mut text = open_text_up_to(path, u64::MAX).ok()?;
-    let read = std::io::Read::read(&mut text, &mut start).ok()?;
-    start.truncate(read);
-    name(&start, own)
+/// Returns the first bytes of a file; none of a file that cannot be read.
+fn beginning(path: &Path) -> Vec<u8> {
+    let mut start = Vec::new();
+    if let Ok(text) = open_text_up_to(path, u64::MAX) {
+        // What was read before an error has the format as well.
+        drop(text.take(START).read_to_end(&mut start));
+    }
+    start
 }
 
-fn name(start: &[u8], own: &[&str]) -> Option<(String, Option<&'static str>)> {
+/// Returns the format of a file by its first bytes, and the key that takes it, if any, unless it is one of a reader's `own`.
+fn foreign_format(start: &[u8], own: &[&str]) -> Option<(String, Option<&'static str>)> {
+    format(start).filter(|(name, _)| !own.contains(&name.as_str()))
+}
+
+/// Returns the format of a file by its first bytes, and the key that takes it, if any.
+fn format(start: &[u8]) -> Option<(String, Option<&'static str>)> {
     let plain = |name: &str| Some((name.to_owned(), None));
     if let Some((_, name)) = BINARY.iter().find(|(beginning, _)| start.starts_with(beginning)) {
         return plain(name);
@@ -81,8 +97,7 @@ fn name(start: &[u8], own: &[&str]) -> Option<(String, Option<&'static str>)> {
     let text = text.trim_start();
     let message = |is: &dyn Fn(&str) -> bool, notation: &str| {
         let (name, key) = MESSAGES.iter().find(|(name, _)| is(name))?;
-        let reads = own.contains(name) && notation.is_empty();
-        (!reads).then(|| (format!("an {name}{notation}").replace("an T", "a T").replace("an C", "a C"), *key))
+        Some((format!("an {name}{notation}").replace("an T", "a T").replace("an C", "a C"), *key))
     };
     let lower = text.to_ascii_lowercase();
     if text.starts_with('<') {
@@ -99,17 +114,16 @@ fn name(start: &[u8], own: &[&str]) -> Option<(String, Option<&'static str>)> {
         return message(&|name| name == "OMM" && text.contains("\"MEAN_MOTION\""), " in JSON")
             .or_else(|| plain("a file in JSON"));
     }
-    let begins =
-        |line: &str, number: char| line.len() >= 60 && line.starts_with(number) && line[1..].starts_with(' ');
+    let begins = |line: &str, number: &str| line.len() >= 60 && line.starts_with(number);
     if text.starts_with("CCSDS_") {
         return message(&|name| text[6..].starts_with(name), "");
     }
     let mut lines = text.lines();
     let second = text.lines().nth(1).unwrap_or_default();
-    if lines.clone().take(2).any(|line| begins(line, '1'))
-        && lines.clone().take(3).any(|line| begins(line, '2'))
+    if lines.clone().take(2).any(|line| begins(line, "1 "))
+        && lines.clone().take(3).any(|line| begins(line, "2 "))
     {
-        return (!own.contains(&"TLE")).then(|| ("a two-line element set".to_owned(), Some("`orbit.tle`")));
+        return Some(("a two-line element set".to_owned(), Some("`orbit.tle`")));
     }
     let first = lines.next().unwrap_or_default();
     let is_sp3 = first.starts_with('#')
@@ -130,11 +144,11 @@ fn name(start: &[u8], own: &[&str]) -> Option<(String, Option<&'static str>)> {
 
 #[cfg(test)]
 mod tests {
-    use super::name;
+    use super::foreign_format;
 
     #[test]
     fn files_are_named_by_their_format() {
-        let named = |text: &str| name(text.as_bytes(), &["OEM"]).map(|(name, _)| name);
+        let named = |text: &str| foreign_format(text.as_bytes(), &["an OEM"]).map(|(name, _)| name);
         for (text, expected) in [
             ("<?xml version=\"1.0\"?>\n<oem id=\"CCSDS_OEM_VERS\"/>", "an OEM in XML"),
             ("<?xml version=\"1.0\"?>\n<ndm:omm>", "an OMM in XML"),

@@ -14,8 +14,8 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::foreign_file;
-use crate::text_file::open_text_up_to;
+use crate::foreign_file::read_file;
+use crate::text_file::{locate, open_text_up_to};
 
 /// Largest size of a file (bytes).
 const LONGEST: u64 = 4 << 20;
@@ -125,11 +125,7 @@ impl HarmonicRows {
 impl HarmonicTable {
     /// Makes the path of the file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Some(file) = &mut self.file
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
-        }
+        self.file.iter_mut().for_each(|file| locate(file, directory));
     }
 
     /// Reads the file, if the coefficients are in one, or takes those of `other` if that has read the same file.
@@ -142,10 +138,9 @@ impl HarmonicTable {
             self.contents = other.contents.clone();
             return Ok(());
         }
-        let path = Path::new(file);
-        let contents = open_text_up_to(path, LONGEST).and_then(coefficient_file::read).map_err(|why| {
-            let reads = "coefficients (.shc, .COF, or the columns of the IGRF)";
-            format!("cannot be used: {file}: {}", foreign_file::refusal(path, &[], reads, why))
+        let reads = "coefficients (.shc, .COF, or the columns of the IGRF)";
+        let contents = read_file(Path::new(file), &[], reads, |path| {
+            coefficient_file::read(open_text_up_to(path, LONGEST)?)
         })?;
         self.contents = Arc::new(contents);
         Ok(())

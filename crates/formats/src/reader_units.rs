@@ -9,7 +9,7 @@ use crate::document::{unit_of_text, units_ratio};
 /// Units of what is printed for people; logs, tables and JSON values are in SI units always.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum ReaderUnits {
-    /// ReaderUnits that fit the size of the numbers: deg, arcsec, rpm, mN m, g.
+    /// Units that fit the size of the numbers: deg, arcsec, rpm, mN m, g.
     #[default]
     Engineering,
     /// SI units: rad, rad/s, N m, kg.
@@ -95,7 +95,7 @@ impl ReaderUnits {
         self.fitting(largest, unit).list(values, between)
     }
 
-    /// Returns the speed of a rotor (rad/s) as text.
+    /// Returns the unit of the speeds of rotors (rad/s).
     pub fn rotor_speed(self) -> ReaderUnit {
         match self {
             Self::Engineering => ReaderUnit { name: "rpm".into(), size: PI / 30.0, is_si: false },
@@ -113,7 +113,7 @@ impl ReaderUnits {
 
     /// Returns the unit of values of a scenario's key or of a metric, the largest of which is given: Hz of angular frequencies, rpm of speeds of
     /// rotors, else one that fits.
-    pub fn of_key(self, key: &str, largest: f64, unit: &str) -> ReaderUnit {
+    pub fn for_key(self, key: &str, largest: f64, unit: &str) -> ReaderUnit {
         let last = key.rsplit('.').next().unwrap_or_default();
         let name = last.split('[').next().unwrap_or_default();
         match unit {
@@ -146,7 +146,7 @@ pub fn known_unit(unit: &str) -> Option<&'static str> {
 
 impl ReaderUnit {
     /// Returns the unit of an axis over a length of time (s): s up to two hours, h beyond.
-    pub fn of_time_axis(length: f64) -> Self {
+    pub fn for_time_axis(length: f64) -> Self {
         let (name, size, _) = TIMES.into_iter().find(|(.., most)| length <= *most).unwrap_or(TIMES[2]);
         Self { name: name.into(), size, is_si: false }
     }
@@ -212,7 +212,7 @@ impl ReaderUnit {
     }
 
     /// Returns an SI value as a number that is on the same side of a limit as the value, with as many digits as that takes.
-    pub fn beside(&self, si: f64, limit: f64) -> String {
+    pub fn number_against(&self, si: f64, limit: f64) -> String {
         let (value, limit) = (self.value(si), self.value(limit));
         if self.is_si || !value.is_finite() || value == limit {
             return self.number(si);
@@ -345,9 +345,9 @@ pub fn percent(share: f64) -> String {
 }
 
 /// Returns a share as a percentage in three significant digits or more, on the same side of a limit as the share.
-pub fn percent_beside(share: f64, limit: f64) -> String {
+pub fn percent_against(share: f64, limit: f64) -> String {
     let unit = ReaderUnit { name: "%".into(), size: 0.01, is_si: false };
-    unit.with_name(unit.beside(share, limit))
+    unit.with_name(unit.number_against(share, limit))
 }
 
 #[cfg(test)]
@@ -455,24 +455,24 @@ mod tests {
             ("spacecraft.rate[0]", DEGREE, "rad/s", "1 deg/s"),
             ("sensor.gyro.frequency", 2.0, "N m", "2 N m"),
         ] {
-            assert_eq!(units.of_key(key, value, unit).quantity(value), text, "{key}");
+            assert_eq!(units.for_key(key, value, unit).quantity(value), text, "{key}");
         }
-        assert_eq!(ReaderUnits::Si.of_key("law.attitude.bandwidth", 1.0, "rad/s").quantity(1.0), "1 rad/s");
+        assert_eq!(ReaderUnits::Si.for_key("law.attitude.bandwidth", 1.0, "rad/s").quantity(1.0), "1 rad/s");
     }
 
     #[test]
     fn a_rounded_value_stays_on_its_side_of_the_limit() {
         let unit = ReaderUnits::Engineering.as_written(Some("0.03 N m s"), 0.03, "N m s");
-        assert_eq!(unit.beside(0.030_004_9, 0.03), "0.030005");
-        assert_eq!(unit.beside(0.029_999_999, 0.03), "0.029999999");
-        assert_eq!(unit.beside(0.03, 0.03), "0.0300");
+        assert_eq!(unit.number_against(0.030_004_9, 0.03), "0.030005");
+        assert_eq!(unit.number_against(0.029_999_999, 0.03), "0.029999999");
+        assert_eq!(unit.number_against(0.03, 0.03), "0.0300");
         // A sequence that covers the interval evenly.
         let mut state = 0.5;
         for _ in 0..10_000 {
             state = (state * 997.0_f64 + 0.618_034).fract();
             let limit = libm::pow(10.0, 8.0 * state - 4.0);
             let value = limit * (1.0 + (state - 0.5) * 1e-3);
-            let text = ReaderUnit::plain("").beside(value, limit);
+            let text = ReaderUnit::plain("").number_against(value, limit);
             let shown: f64 = text.replace(THIN_SPACE, "").parse().expect("a number");
             assert!((shown - limit) * (value - limit) > 0.0, "{value} {limit} {text}");
         }
@@ -486,6 +486,6 @@ mod tests {
         assert_eq!(percent(1.0), "100 %");
         assert_eq!(percent(0.0), "0 %");
         assert_eq!(percent(0.001), "0.1 %");
-        assert_eq!(percent_beside(0.899_96, 0.9), "89.996 %");
+        assert_eq!(percent_against(0.899_96, 0.9), "89.996 %");
     }
 }

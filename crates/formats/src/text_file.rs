@@ -1,4 +1,4 @@
-//! Opening of the files that a scenario names: regular files of limited size, texts without the mark of their encoding.
+//! Paths and opening of the files that a scenario names: regular files of limited size, texts without the mark of their encoding.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read, Take};
@@ -10,6 +10,13 @@ use crate::read_files;
 const LONGEST: u64 = 256 << 20;
 /// Mark with which some programs begin a text in UTF-8.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Makes the path of a file absolute, relative to `directory`.
+pub fn locate(file: &mut String, directory: &Path) {
+    if let Ok(path) = std::path::absolute(directory.join(&*file)) {
+        *file = path.to_string_lossy().into_owned();
+    }
+}
 
 /// Opens a file.
 #[cfg(feature = "matrices")]

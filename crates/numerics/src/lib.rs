@@ -3,6 +3,7 @@
 //! - [`time`]: instants and spans in integer femtoseconds; [`random`]: named, seeded streams;
 //! - [`quantity`]: numbers that are valid by construction; [`attitude`]: vectors, quaternions, rotations;
 //! - [`lanes`]: the same arithmetic on many runs in SIMD lanes, equal to the bit;
+//! - [`time_arcs`]: functions of time as polynomials on arcs;
 //! - the other modules: special functions, quadrature, integration, roots.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.

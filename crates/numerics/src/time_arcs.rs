@@ -5,15 +5,18 @@
 //! calls.
 
 use std::f64::consts::PI;
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+/// Degree of the polynomials.
+pub const DEGREE: usize = 16;
 
 /// Number of nodes, and of coefficients.
-const NODES: usize = 17;
+const NODES: usize = DEGREE + 1;
 
 /// Number of arcs that are kept: a step of the integration may lie in two.
 const KEPT: usize = 4;
 
-/// Length (s) below which an arc is not halved.
+/// Shortest half (s) of an arc that is halved.
 const SHORTEST: f64 = 2.0;
 
 /// Time since the start as the sum of two parts (s), so that instants of an arc late in a run are not rounded.
@@ -40,13 +43,14 @@ impl SplitTime {
 }
 
 /// Arcs of one function that were asked for last.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct TimeArcs<const COLUMNS: usize>(Mutex<Ring<COLUMNS>>);
 
-/// Arcs that are kept, and the place of the next.
-#[derive(Debug, Default)]
+/// Arcs that are kept.
+#[derive(Clone, Debug, Default)]
 struct Ring<const COLUMNS: usize> {
     arcs: Vec<TimeArc<COLUMNS>>,
+    /// Place of the next arc.
     next: usize,
 }
 
@@ -96,18 +100,10 @@ static TRANSFORM: LazyLock<Transform> = LazyLock::new(|| {
     }
 });
 
-impl<const COLUMNS: usize> Default for TimeArcs<COLUMNS> {
-    /// Returns no arcs.
-    fn default() -> Self {
-        Self(Mutex::new(Ring { arcs: Vec::new(), next: 0 }))
-    }
-}
-
 impl<const COLUMNS: usize> Clone for TimeArcs<COLUMNS> {
     /// Copies the arcs: a copy of a motion goes on from where it is.
     fn clone(&self) -> Self {
-        let Ring { arcs, next } = &*self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        Self(Mutex::new(Ring { arcs: arcs.clone(), next: *next }))
+        Self(Mutex::new(self.ring().clone()))
     }
 }
 
@@ -119,8 +115,13 @@ impl<const COLUMNS: usize> PartialEq for TimeArcs<COLUMNS> {
 }
 
 impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
-    /// Reads the arc at a time since the start (s). One that is not kept is built from its values `row`; it is `span`, as a
-    /// function of the time, halved until it is `resolved` by the sizes of the columns' last two Chebyshev coefficients.
+    fn ring(&self) -> MutexGuard<'_, Ring<COLUMNS>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Returns the result of `read` on the arc about a time since the start (s). An arc that is not kept is built from the values
+    /// `row` of the function: on the interval `span`, halved until `resolved` accepts the arc with the sizes of its last two
+    /// Chebyshev coefficients.
     #[inline]
     pub fn read<T>(
         &self,
@@ -130,7 +131,7 @@ impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
         resolved: impl Fn(&TimeArc<COLUMNS>, &[f64; COLUMNS]) -> bool,
         read: impl FnOnce(&TimeArc<COLUMNS>) -> T,
     ) -> T {
-        let mut ring = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut ring = self.ring();
         if let Some(arc) = ring.arcs.iter().find(|arc| arc.span[0] <= t && t < arc.span[1]) {
             return read(arc);
         }
@@ -155,7 +156,8 @@ impl<const COLUMNS: usize> TimeArcs<COLUMNS> {
 }
 
 impl<const COLUMNS: usize> TimeArc<COLUMNS> {
-    /// Creates the arc from its values; returns the sizes of the last two Chebyshev coefficients too.
+    /// Creates the arc on an interval (s) from the values `row` of the function; returns with it, for each column, the sum of the
+    /// sizes of the last two Chebyshev coefficients.
     pub fn new(span: [f64; 2], row: impl Fn(SplitTime) -> [f64; COLUMNS]) -> (Self, [f64; COLUMNS]) {
         let [middle, half] = [0.5 * (span[0] + span[1]), 0.5 * (span[1] - span[0])];
         let Transform { nodes, chebyshev, powers: table } = &*TRANSFORM;

@@ -1,4 +1,4 @@
-//! Answer of a run or a campaign: its text, and its fields as JSON; and two of them side by side.
+//! Answer of a run or a campaign, or two side by side: text, and fields as JSON.
 
 use flexsc_core::answer::{
     Answer, CampaignAnswer, CampaignComparison, KeyDifference, RunComparison, ScreenOptions,
@@ -13,7 +13,7 @@ use super::Scenario;
 use super::aside::aside;
 use super::log::Log;
 
-/// Answer of a run or a campaign.
+/// Answer of a run or a campaign, or two answers side by side.
 #[pyclass(frozen, module = "flexsc._native")]
 pub struct RunAnswer(Contents);
 
@@ -22,7 +22,7 @@ enum Contents {
     Made(Box<Answer>, Option<f64>),
     /// Answer of a campaign.
     Campaign(Box<CampaignAnswer>),
-    /// Fields and texts of a copy.
+    /// Fields and texts of a copy, or of two answers side by side.
     Copied { json: String, screen: String, all: String },
 }
 
@@ -32,16 +32,17 @@ fn options(all: bool) -> ScreenOptions {
 
 impl RunAnswer {
     /// Creates the answer of a run that took some real time (s).
-    pub fn made(answer: Answer, took: Option<f64>) -> Self {
+    pub fn for_run(answer: Answer, took: Option<f64>) -> Self {
         Self(Contents::Made(Box::new(answer), took))
     }
 
     /// Creates the answer of a campaign.
-    pub fn of_campaign(answer: CampaignAnswer) -> Self {
+    pub fn for_campaign(answer: CampaignAnswer) -> Self {
         Self(Contents::Campaign(Box::new(answer)))
     }
 
-    fn compared(fields: &impl Serialize, screen: impl Fn(bool) -> String) -> Self {
+    /// Creates the answer of a comparison from its fields and its text, of which `true` asks for all.
+    fn for_comparison(fields: &impl Serialize, screen: impl Fn(bool) -> String) -> Self {
         Self(Contents::Copied { json: json!(fields).to_string(), screen: screen(false), all: screen(true) })
     }
 
@@ -79,7 +80,7 @@ impl RunAnswer {
         }
     }
 
-    /// True for a copy, which has its fields as JSON alone.
+    /// True for a copy, which has fields as JSON, and texts, alone.
     #[getter]
     fn copied(&self) -> bool {
         matches!(self.0, Contents::Copied { .. })
@@ -92,7 +93,7 @@ pub fn log_answer(py: Python<'_>, log: &Log) -> PyResult<(Scenario, RunAnswer)> 
     let log = log.0.clone();
     let answer = aside(py, move |_| flexsc_cli::answer_of_log(&log, log.path(), ReaderUnits::default()))?;
     let (inner, answer) = answer.map_err(|error| PyValueError::new_err(error.to_string()))?;
-    Ok((Scenario { origin: inner.name.clone(), inner }, RunAnswer::made(answer, None)))
+    Ok((Scenario { origin: inner.name.clone(), inner }, RunAnswer::for_run(answer, None)))
 }
 
 /// Two answers side by side, with the keys in which their scenarios differ.
@@ -106,11 +107,11 @@ pub fn compare(
     match (&answers.0.0, &answers.1.0) {
         (Contents::Made(a, _), Contents::Made(b, _)) => {
             let both = RunComparison { names, keys, answers: [(**a).clone(), (**b).clone()] };
-            Ok(RunAnswer::compared(&both, |all| both.screen(options(all))))
+            Ok(RunAnswer::for_comparison(&both, |all| both.screen(options(all))))
         }
         (Contents::Campaign(a), Contents::Campaign(b)) => {
             let both = CampaignComparison { names, keys, answers: [(**a).clone(), (**b).clone()] };
-            Ok(RunAnswer::compared(&both, |all| both.screen(options(all))))
+            Ok(RunAnswer::for_comparison(&both, |all| both.screen(options(all))))
         }
         _ => Err(PyValueError::new_err("takes two runs or two campaigns, not one of each")),
     }

@@ -345,7 +345,7 @@ pub fn campaign_answer(
         Ok(CampaignAnswer::new(work.campaign.scenario(), &runs, None, None, ReaderUnits::default()))
     })?
     .map_err(failed)?;
-    Ok(RunAnswer::of_campaign(answer))
+    Ok(RunAnswer::for_campaign(answer))
 }
 
 fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {

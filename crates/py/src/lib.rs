@@ -294,7 +294,7 @@ fn simulate<'py>(
     Ok((
         columns::metrics_to_dict(py, &metrics)?,
         topics,
-        RunAnswer::made(answer, Some(began.elapsed().as_secs_f64())),
+        RunAnswer::for_run(answer, Some(began.elapsed().as_secs_f64())),
     ))
 }
 

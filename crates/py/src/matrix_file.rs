@@ -7,8 +7,6 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::error::no_file;
-
 /// Largest number of rows and columns.
 const MOST: usize = 10_000_000;
 
@@ -16,10 +14,9 @@ const MOST: usize = 10_000_000;
 type Elements<'py> =
     ([usize; 2], bool, Bound<'py, PyArray1<usize>>, Bound<'py, PyArray1<usize>>, Bound<'py, PyArray1<f64>>);
 
-/// The elements of a `MatrixMarket` file.
+/// Returns the elements of a `MatrixMarket` file.
 #[pyfunction]
 pub fn matrix_market(py: Python<'_>, path: PathBuf) -> PyResult<Elements<'_>> {
-    std::fs::File::open(&path).map_err(no_file(&path))?;
     let MatrixElements { shape, sparse, rows, columns, values } =
         py.detach(|| read_matrix_market(&path, MOST)).map_err(PyValueError::new_err)?;
     Ok((shape, sparse, rows.into_pyarray(py), columns.into_pyarray(py), values.into_pyarray(py)))

@@ -26,6 +26,18 @@ pub struct AssessedRequirement {
     pub confidence: Option<f64>,
 }
 
+/// Limit of a requirement, and the origin of the values that are compared with it.
+pub(super) struct RequirementLimit {
+    /// Origin of the values.
+    pub source: RequirementSource,
+    /// SI unit of the values and of the limit.
+    pub unit: &'static str,
+    /// Limit in the unit.
+    pub limit: f64,
+    /// Limit as written with a unit; `None` of a plain number.
+    pub written: Option<String>,
+}
+
 /// Origin of the values of a requirement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RequirementSource {
@@ -37,7 +49,7 @@ pub enum RequirementSource {
     Formula(Box<RequirementFormula>),
 }
 
-/// Expression over time, and the value of a requirement on it: the limit less the robustness times a scale.
+/// Expression over time of a requirement, whose value is the limit less the robustness times a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementFormula {
     /// Expression in words.
@@ -49,7 +61,7 @@ pub struct RequirementFormula {
 }
 
 impl RequirementFormula {
-    /// Returns the quantity, if the expression has one upper limit.
+    /// Returns the quantity of the expression, if it has one upper limit and no other.
     pub fn limited_quantity(&self) -> Option<ModeQuantity> {
         match self.expression.measured()[..] {
             [Expression::Compared { quantity, comparison: Comparison::Below | Comparison::AtMost, .. }] => {
@@ -59,7 +71,8 @@ impl RequirementFormula {
         }
     }
 
-    /// Returns the time (s) in which the expression counts, as far as it is fixed, and the index of its mode, if it has one.
+    /// Returns the start and end (s) of the time in which the expression counts, as far as it is fixed, and the index of its mode,
+    /// if it has one.
     pub fn span(&self) -> ([f64; 2], Option<usize>) {
         let (window, inner) = match &self.expression {
             Expression::Timed(timed) => match &**timed {

@@ -2,47 +2,35 @@
 
 use flexsc_control::operation::{
     Comparison, ConditionFault, Expression, ModeCondition, ModeQuantity, RequirementNames, TimeWindow, Timed,
-    Vocabulary, parse_trigger,
+    Vocabulary, parse_instant, parse_trigger,
 };
+use flexsc_control::robustness::limit_scale;
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::{ConfigError, number_in};
 use flexsc_numerics::quantity::Time;
 use flexsc_spacecraft::body::BodyModel;
 
-use super::assessed_requirement::{RequirementFormula, RequirementSource};
-use super::requirement::Requirement;
+use super::assessed_requirement::{RequirementFormula, RequirementLimit, RequirementSource};
+use super::requirement::{Requirement, given};
 use super::spec::ScenarioSpec;
 use crate::metric_descriptions;
 
-/// Origin of the values of a requirement over time, with unit, limit and the limit as written.
-pub struct FormulaLimit {
-    pub source: RequirementSource,
-    pub unit: &'static str,
-    pub limit: f64,
-    pub written: Option<String>,
-}
-
-/// Returns the source and the limit of a requirement with `holds`.
+/// Returns the limit of a requirement with `holds`, and the origin of its values.
 ///
 /// # Errors
 /// A key that does not go with it, or the part of a text that cannot be read.
-pub fn formula(
+pub(super) fn formula(
     written: &ScenarioSpec,
     model: &BodyModel,
     requirement: &Requirement,
     text: &str,
-) -> Result<FormulaLimit, ConfigError> {
+) -> Result<RequirementLimit, ConfigError> {
     let known = vocabulary(written);
     let at = |key: &str, why: &str| Err(ConfigError::new(key, why));
     let holds = at_key("holds", ModeCondition::new(text).parse(&known))?;
-    if let Some(limit) = metric(&holds, model, text)? {
-        let scope = [("mode", requirement.mode.is_some()), ("during", requirement.during.is_some())];
-        let time = [("after", requirement.after.is_some()), ("within", requirement.within.is_some())];
-        let mut given = scope.into_iter().chain(time).chain([("for", requirement.held.is_some())]);
-        return match given.find(|(_, is_given)| *is_given) {
-            Some((key, _)) => {
-                at(key, "is for quantities that change during a run, and `holds` limits a metric")
-            }
+    if let Some(limit) = metric_limit(&holds, model, text)? {
+        return match given(&requirement.scope_keys()).or(given(&requirement.time_keys())) {
+            Some(key) => at(key, "is for quantities that change during a run, and `holds` limits a metric"),
             None => Ok(limit),
         };
     }
@@ -56,7 +44,7 @@ pub fn formula(
              requirement of its own",
         );
     }
-    let is_timed = has_timed(&holds);
+    let is_timed = holds.has_timed(|_| true);
     let scope = scope(written, model, requirement)?;
     let key = if requirement.mode.is_some() { "mode" } else { "during" };
     if is_timed && scope.is_some() {
@@ -84,14 +72,13 @@ pub fn formula(
     } else if !is_timed && times == [None; 2] {
         whole = whole.always(TimeWindow::REST);
     }
-    if is_timed && (requirement.after.is_some() || times != [None; 2]) && has_outermost(&holds) {
+    if given(&requirement.time_keys()).is_some() && holds.has_timed(Timed::is_outermost) {
         return at("holds", "has `until` or `when`, which cannot be within `after`, `within` or `for`");
     }
     // With one upper limit, the value is that of the quantity.
     let (unit, limit, scale, written_limit) = match measured[..] {
         [Expression::Compared { quantity, comparison: Comparison::Below | Comparison::AtMost, limit }] => {
-            let scale = if *limit == 0.0 { 1.0 } else { limit.abs() };
-            (quantity.unit(), *limit, scale, limit_text(text, quantity.unit(), *limit))
+            (quantity.unit(), *limit, limit_scale(*limit), limit_text(text, quantity.unit(), *limit))
         }
         _ if limits.contains(&0.0) => ("", 0.0, 1.0, None),
         _ => ("", 1.0, 1.0, None),
@@ -101,7 +88,7 @@ pub fn formula(
         expression: whole,
         scale,
     }));
-    Ok(FormulaLimit { source, unit, limit, written: written_limit })
+    Ok(RequirementLimit { source, unit, limit, written: written_limit })
 }
 
 /// Returns the condition at which a requirement counts, by its mode and the condition `during`; `None` if it always counts.
@@ -127,8 +114,7 @@ pub fn scope(
         all.push(Expression::Flag(ModeQuantity::Mode(index)));
     }
     if let Some(text) = &requirement.during {
-        // As an event, a condition without operators over time.
-        let read = at_key("during", parse_trigger(text, &known))?;
+        let read = at_key("during", parse_instant(text, &known))?;
         validate_leaves(written, model, "during", &read)?;
         all.push(read);
     }
@@ -154,8 +140,12 @@ fn at_key(key: &str, read: Result<Expression, ConditionFault>) -> Result<Express
     })
 }
 
-/// Returns the limit of a metric, if the expression is one.
-fn metric(holds: &Expression, model: &BodyModel, text: &str) -> Result<Option<FormulaLimit>, ConfigError> {
+/// Returns the limit of a metric, if the expression has a metric.
+fn metric_limit(
+    holds: &Expression,
+    model: &BodyModel,
+    text: &str,
+) -> Result<Option<RequirementLimit>, ConfigError> {
     let Some((index, element)) = holds.leaves().into_iter().find_map(|(quantity, _)| match quantity {
         ModeQuantity::Metric(index, element) => Some((index, element)),
         _ => None,
@@ -169,14 +159,9 @@ fn metric(holds: &Expression, model: &BodyModel, text: &str) -> Result<Option<Fo
         );
         return Err(ConfigError::new("holds", why));
     };
-    if metric_descriptions::is_word(name) || name.starts_with("requirement") {
-        return Err(ConfigError::new(
-            "holds",
-            format!("must be a number to have a limit, and `{name}` is none"),
-        ));
-    }
+    metric_descriptions::validate_limited(name).map_err(|why| ConfigError::new("holds", why))?;
     let unit = metric_descriptions::meaning(name, Some(model)).map_or("", |meaning| meaning.unit);
-    Ok(Some(FormulaLimit {
+    Ok(Some(RequirementLimit {
         source: RequirementSource::Metric(name.to_owned(), element),
         unit,
         limit: *limit,
@@ -204,26 +189,7 @@ fn limit(leaf: &Expression) -> Option<f64> {
     if let Expression::Compared { limit, .. } = leaf { Some(*limit) } else { None }
 }
 
-fn has_timed(expression: &Expression) -> bool {
-    match expression {
-        Expression::Timed(_) => true,
-        Expression::Not(inner) => has_timed(inner),
-        Expression::All(inner) | Expression::Any(inner) => inner.iter().any(has_timed),
-        Expression::Compared { .. } | Expression::Flag(_) => false,
-    }
-}
-
-/// Returns true if an expression has an operator that cannot be within a window.
-fn has_outermost(expression: &Expression) -> bool {
-    match expression {
-        Expression::Timed(timed) => matches!(**timed, Timed::Until(..) | Timed::When(..)),
-        Expression::Not(inner) => has_outermost(inner),
-        Expression::All(inner) | Expression::Any(inner) => inner.iter().any(has_outermost),
-        Expression::Compared { .. } | Expression::Flag(_) => false,
-    }
-}
-
-/// Returns the only number of an expression with its unit, as it was written with a unit.
+/// Returns the first number of a text after `<`, if it is the limit and was written with a unit.
 fn limit_text(text: &str, unit: &str, limit: f64) -> Option<String> {
     let number = text.split_once('<')?.1.trim_start_matches('=').trim();
     let end = number.find([')', ':', ';']).unwrap_or(number.len());

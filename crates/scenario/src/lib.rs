@@ -266,6 +266,16 @@ impl Scenario {
             || self.study.requirements.iter().any(limits_goal)
     }
 
+    /// Returns the key of the quantity that a requirement with this name limits, such as `requirement[0].holds`.
+    pub fn requirement_key(&self, name: &str) -> String {
+        match self.requirement.iter().enumerate().find(|(_, own)| own.name == name) {
+            Some((index, own)) => {
+                format!("requirement[{index}].{}", if own.holds.is_some() { "holds" } else { "quantity" })
+            }
+            None => "reference.pointing.rms".to_owned(),
+        }
+    }
+
     /// Returns the keys without references to files: matrices of a structure are replaced by their modes, paths of mode
     /// files by the modes.
     #[must_use]

@@ -257,6 +257,17 @@ pub fn is_word(name: &str) -> bool {
     WORDS.contains(&name)
 }
 
+/// Checks that a requirement may limit a metric.
+///
+/// # Errors
+/// A metric that is a word, and those of the requirements themselves.
+pub fn validate_limited(name: &str) -> Result<(), String> {
+    if is_word(name) || name.starts_with("requirement") {
+        return Err(format!("must be a number to have a limit, and `{name}` is none"));
+    }
+    Ok(())
+}
+
 /// Metrics of the goal of a run.
 pub const OF_GOAL: &[MetricDescription] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
 

@@ -80,6 +80,38 @@ pub struct Requirement {
     pub confidence: Option<Fraction>,
 }
 
+impl Requirement {
+    /// Returns the keys of the pointing index of a sampled error, each with whether it is given.
+    pub(super) fn index_keys(&self) -> [(&'static str, bool); 9] {
+        [
+            ("point", self.point.is_some()),
+            ("axis", self.axis.is_some()),
+            ("index", self.index.is_some()),
+            ("window", self.window.is_some()),
+            ("convention", self.convention.is_some()),
+            ("shift", self.shift.is_some()),
+            ("period", self.period.is_some()),
+            ("from", self.from.is_some()),
+            ("to", self.to.is_some()),
+        ]
+    }
+
+    /// Returns the keys that limit a requirement to a mode or a condition, each with whether it is given.
+    pub(super) fn scope_keys(&self) -> [(&'static str, bool); 2] {
+        [("mode", self.mode.is_some()), ("during", self.during.is_some())]
+    }
+
+    /// Returns the keys of the event and the times of `holds`, each with whether it is given.
+    pub(super) fn time_keys(&self) -> [(&'static str, bool); 3] {
+        [("after", self.after.is_some()), ("within", self.within.is_some()), ("for", self.held.is_some())]
+    }
+}
+
+/// Returns the first of some keys that is given.
+pub(super) fn given(keys: &[(&'static str, bool)]) -> Option<&'static str> {
+    keys.iter().find(|(_, is_given)| *is_given).map(|(key, _)| *key)
+}
+
 /// Component of an error about an axis of the body.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

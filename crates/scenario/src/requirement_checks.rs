@@ -1,15 +1,16 @@
 //! Checks of the tables `[[requirement]]`, which become the requirements that are assessed.
 
+use flexsc_control::operation::ModeQuantity;
 use flexsc_formats::document::{ConfigError, nearest};
 use flexsc_numerics::quantity::{Positive, Share, Time};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::BodyModel;
 
 use super::assessed_requirement::{
-    AssessedRequirement, IndexWindow, RequirementSource, SampledError, SampledQuantity,
+    AssessedRequirement, IndexWindow, RequirementLimit, RequirementSource, SampledError, SampledQuantity,
 };
-use super::formula_checks::{FormulaLimit, formula, scope, scope_words};
-use super::requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement};
+use super::formula_checks::{formula, scope, scope_words};
+use super::requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requirement, given};
 use super::spec::ScenarioSpec;
 use crate::metric_descriptions;
 
@@ -82,14 +83,13 @@ impl Context<'_> {
             let verb = if others.len() == 1 { "is" } else { "are" };
             return at(first, format!("is missing, and so {verb} `{}`", others.join("`, `")));
         }
-        let FormulaLimit { source, unit, limit, written } = match &requirement.holds {
+        let RequirementLimit { source, unit, limit, written } = match &requirement.holds {
             Some(text) => {
-                if let Some((key, _)) = keys_of_a_quantity(requirement).into_iter().find(|(_, given)| *given)
-                {
-                    return at(
-                        key,
-                        "must be left out beside `holds`, which has a quantity and its limit".to_owned(),
-                    );
+                let keys =
+                    [("quantity", requirement.quantity.is_some()), ("limit", requirement.limit.is_some())];
+                if let Some(key) = given(&keys).or(given(&requirement.index_keys())) {
+                    let why = "must be left out beside `holds`, which has a quantity and its limit";
+                    return at(key, why.to_owned());
                 }
                 formula(self.written, self.model, requirement, text)?
             }
@@ -138,7 +138,7 @@ impl Context<'_> {
     }
 
     /// Returns the origin, the unit and the limit of a requirement on a quantity.
-    fn limited(&self, requirement: &Requirement) -> Result<FormulaLimit, ConfigError> {
+    fn limited(&self, requirement: &Requirement) -> Result<RequirementLimit, ConfigError> {
         let missing =
             |key: &str, other: &str| ConfigError::new(key, format!("is missing: a requirement has {other}"));
         let Some(quantity) = &requirement.quantity else {
@@ -147,12 +147,7 @@ impl Context<'_> {
         let Some(limit) = &requirement.limit else {
             return Err(missing("limit", "a `limit` on its `quantity`"));
         };
-        let of_formula = [
-            ("after", requirement.after.is_some()),
-            ("within", requirement.within.is_some()),
-            ("for", requirement.held.is_some()),
-        ];
-        if let Some((key, _)) = of_formula.into_iter().find(|(_, given)| *given) {
+        if let Some(key) = given(&requirement.time_keys()) {
             let why = format!(
                 "is for `holds`: write `holds = \"{quantity} < LIMIT\"` in place of `quantity` and `limit`"
             );
@@ -164,7 +159,7 @@ impl Context<'_> {
             Limit::Text(text) => Some(text.clone()),
             Limit::Number(_) => None,
         };
-        Ok(FormulaLimit { source, unit, limit: value, written })
+        Ok(RequirementLimit { source, unit, limit: value, written })
     }
 
     /// Returns the origin of the values of a quantity and their unit.
@@ -261,6 +256,12 @@ impl Context<'_> {
         }
         let index = index_window(requirement, period.seconds())?;
         let scope = scope(self.written, self.model, requirement)?;
+        let reads_line = |(quantity, _): &(ModeQuantity, _)| matches!(quantity, ModeQuantity::LineOfSight(_));
+        if scope.as_ref().is_some_and(|scope| scope.leaves().iter().any(reads_line)) {
+            let why = "has a `line_of_sight`, which limits the time of a `holds` and not samples: write `holds` in place of \
+                       `quantity` and `limit`";
+            return at("during", why.to_owned());
+        }
         let scope = scope.map(|scope| (scope, scope_words(requirement)));
         Ok(SampledError { quantity, axis: requirement.axis, index, period, from, to, samples, scope })
     }
@@ -364,32 +365,10 @@ fn metric_source(
         let why = format!("must be `{}` or a metric, got `{name}`; {hint}", SAMPLED.join("`, `"));
         return at("quantity", why);
     };
-    if metric_descriptions::is_word(list) || list.starts_with("requirement") {
-        return at("quantity", format!("must be a number to have a limit, and `{list}` is none"));
-    }
-    let scope = [("mode", requirement.mode.is_some()), ("during", requirement.during.is_some())];
-    let [_, _, given @ ..] = keys_of_a_quantity(requirement);
-    let mut given = given.into_iter().chain(scope);
-    if let Some((key, _)) = given.find(|(_, is_given)| *is_given) {
+    metric_descriptions::validate_limited(list).map_err(|why| ConfigError::new("quantity", why))?;
+    if let Some(key) = given(&requirement.index_keys()).or(given(&requirement.scope_keys())) {
         let why = format!("is for `{}`, and the quantity is the metric `{list}`", SAMPLED.join("`, `"));
         return at(key, why);
     }
     Ok((RequirementSource::Metric(list.to_owned(), element), meaning.unit))
-}
-
-/// Returns the keys that go with a quantity, and whether they are given.
-fn keys_of_a_quantity(requirement: &Requirement) -> [(&'static str, bool); 11] {
-    [
-        ("quantity", requirement.quantity.is_some()),
-        ("limit", requirement.limit.is_some()),
-        ("point", requirement.point.is_some()),
-        ("axis", requirement.axis.is_some()),
-        ("index", requirement.index.is_some()),
-        ("window", requirement.window.is_some()),
-        ("convention", requirement.convention.is_some()),
-        ("shift", requirement.shift.is_some()),
-        ("period", requirement.period.is_some()),
-        ("from", requirement.from.is_some()),
-        ("to", requirement.to.is_some()),
-    ]
 }

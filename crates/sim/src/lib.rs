@@ -203,13 +203,14 @@ impl Simulation {
         }
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
-            self.end_required_segment();
+            self.end_requirement_segment();
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
             self.loads.apply_due_changes(now, self.plant.truth().rigid_rate);
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
-        self.observe_requirements(decides || self.sensors.has_sampled(now));
+        let has_sampled = decides || self.sensors.has_sampled(now);
+        self.update_requirements(|requirements, run| requirements.observe(run, has_sampled));
         // 9. Cycle of three axes, and the rows of the record.
         let is_cycle = self.clock.cycle_is_due();
         if is_cycle {
@@ -242,7 +243,7 @@ impl Simulation {
     fn control_step(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         self.clock.count_decision()?;
-        self.end_required_segment();
+        self.end_requirement_segment();
         self.estimation.predict(now, &self.plant, &self.sensors);
         self.update_mode(record)?;
         let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid_rate);
@@ -275,29 +276,25 @@ impl Simulation {
         self.estimation.begin_segment(now, &self.plant, &self.loads);
         self.plant.begin_segment(self.loads.wrench(now));
         self.laws.objective.add_torque(now, axes, &self.loads);
-        if !self.requirements.is_empty() {
-            let mut requirements = std::mem::take(&mut self.requirements);
-            requirements.begin_segment(&self.read_view());
-            self.requirements = requirements;
-        }
+        self.update_requirements(|requirements, run| requirements.begin_segment(run));
         self.find_crossing(record)
     }
 
     /// Hands the motion up to the current instant to the requirements over time, before anything of it changes.
     #[inline]
-    fn end_required_segment(&mut self) {
+    fn end_requirement_segment(&mut self) {
         if !self.requirements.is_empty() {
             let Self { clock, plant, guidance, loads, requirements, .. } = self;
             requirements.end_segment(clock.now(), plant, guidance, loads);
         }
     }
 
-    /// Hands what has changed at the current instant to the requirements over time.
+    /// Updates the requirements over time, if there are any, from the parts of the run at the current instant.
     #[inline]
-    fn observe_requirements(&mut self, has_sampled: bool) {
+    fn update_requirements(&mut self, update: impl FnOnce(&mut RequirementMonitors, &RunView<'_>)) {
         if !self.requirements.is_empty() {
             let mut requirements = std::mem::take(&mut self.requirements);
-            requirements.observe(&self.read_view(), has_sampled);
+            update(&mut requirements, &self.read_view());
             self.requirements = requirements;
         }
     }

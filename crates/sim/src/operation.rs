@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use flexsc_control::actuator::ActuatorEvent;
 use flexsc_control::flight_quantity::FlightQuantity;
-use flexsc_control::operation::{
-    Expression, ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence,
-};
+use flexsc_control::operation::{ModeChange, ModeFormula, ModeQuantity, ModeReadings, ModeSequence};
 use flexsc_flight::mode_readings::{distance, largest_size, norm};
 use flexsc_flight::mode_supervisor::MOST_CHANGES;
 use flexsc_numerics::attitude::Vector;
@@ -16,7 +14,7 @@ use flexsc_record::{Command, ModeEvent, ModeTargetStart, Record, Report, Sample}
 
 use super::blinding::BlindingState;
 use super::mode_sky::ModeSky;
-use super::run_view::{RunView, motion_error};
+use super::run_view::{RunView, motion_error, true_rate};
 use super::{Simulation, SimulationError};
 use flexsc_scenario::Scenario;
 
@@ -28,20 +26,6 @@ pub struct Operation {
     in_use: Vec<Vec<bool>>,
     /// Sky of the conditions.
     sky: Arc<ModeSky>,
-}
-
-/// Quantities of a run at an instant, as the conditions read them.
-struct KnownQuantities<'a> {
-    run: RunView<'a>,
-    sequence: Option<&'a ModeSequence>,
-    sky: &'a ModeSky,
-}
-
-impl<'a> KnownQuantities<'a> {
-    /// Creates the quantities of a run.
-    fn new(run: RunView<'a>) -> Self {
-        Self { run, sequence: run.modes, sky: run.sky }
-    }
 }
 
 impl Operation {
@@ -114,9 +98,8 @@ impl Simulation {
             return Ok(());
         }
         let Some(mut sequence) = self.operation.sequence.take() else { return Ok(()) };
-        let (before, sky) = (sequence.active(), &self.operation.sky);
-        let readings =
-            sequence.read(now, &KnownQuantities { run: self.read_view(), sequence: Some(&sequence), sky });
+        let before = sequence.active();
+        let readings = sequence.read(now, &RunView { modes: Some(&sequence), ..self.read_view() });
         let change = sequence.test(now, &readings);
         self.trace_mode(now, sequence.active(), readings);
         self.operation.sequence = Some(sequence);
@@ -151,66 +134,55 @@ impl Simulation {
     }
 }
 
-impl ModeReadings for KnownQuantities<'_> {
+impl ModeReadings for RunView<'_> {
     fn value(&self, quantity: ModeQuantity) -> f64 {
-        let run = &self.run;
         match quantity.formula() {
-            ModeFormula::Norm(vector) => return norm(&run.known(vector)),
-            ModeFormula::Distance(one, other) => return distance(&run.known(one), &run.known(other)),
+            ModeFormula::Norm(vector) => return norm(&self.known(vector)),
+            ModeFormula::Distance(one, other) => return distance(&self.known(one), &self.known(other)),
             ModeFormula::LargestSize(list) => {
-                let values = run.known(list);
+                let values = self.known(list);
                 return if values.is_empty() { f64::NAN } else { largest_size(&values) };
             }
             ModeFormula::Single => {}
         }
         match quantity {
-            ModeQuantity::Silent(sensor) => run.sensors.silence(run.now, sensor).seconds(),
+            ModeQuantity::Silent(sensor) => self.sensors.silence(self.now, sensor).seconds(),
             ModeQuantity::Entries(mode) => {
-                self.sequence.map_or(f64::NAN, |sequence| sequence.entries(mode) as f64)
+                self.modes.map_or(f64::NAN, |sequence| sequence.entries(mode) as f64)
             }
             ModeQuantity::Mode(mode) => {
-                f64::from(u8::from(self.sequence.is_some_and(|sequence| sequence.active() == mode)))
+                f64::from(u8::from(self.modes.is_some_and(|sequence| sequence.active() == mode)))
             }
             ModeQuantity::Blinded(sensor) => {
                 let is_blind = |state: BlindingState| state.sensor == sensor && state.is_blinded;
-                f64::from(u8::from(run.sensors.blinding_states().any(is_blind)))
+                f64::from(u8::from(self.sensors.blinding_states().any(is_blind)))
             }
-            ModeQuantity::TrueRate => norm(&run.plant.truth().rigid_rate),
+            ModeQuantity::TrueRate => norm(&true_rate(self.plant)),
             ModeQuantity::PointingError | ModeQuantity::TrueRateError => {
                 let is_rate = quantity == ModeQuantity::TrueRateError;
-                norm(&motion_error(run.plant, run.guidance, run.now, is_rate))
+                norm(&motion_error(self.plant, self.guidance, self.now, is_rate))
             }
-            // Not known at one instant.
+            // Only requirements over time read them.
             ModeQuantity::LineOfSight(_) | ModeQuantity::Metric(..) => f64::NAN,
             ModeQuantity::LockLost => {
-                f64::from(u8::from(run.estimation.estimator.lock_lost().contains(&true)))
+                f64::from(u8::from(self.estimation.estimator.lock_lost().contains(&true)))
             }
             ModeQuantity::Sunlight
             | ModeQuantity::Elevation(_)
             | ModeQuantity::TrueSunlight
-            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, run.now.seconds()),
+            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, self.now.seconds()),
             clock => self.clock(clock).seconds(),
         }
     }
 
     fn clock(&self, quantity: ModeQuantity) -> Span {
         let is_of_mode = matches!(quantity, ModeQuantity::Time | ModeQuantity::TrueTime);
-        let entered = self.sequence.filter(|_| is_of_mode).map_or(Instant::START, ModeSequence::entered);
-        self.run.now.since(entered)
+        let entered = self.modes.filter(|_| is_of_mode).map_or(Instant::START, ModeSequence::entered);
+        self.now.since(entered)
     }
 }
 
 impl RunView<'_> {
-    /// Returns the value of a quantity of a requirement; 1 or 0 of a flag, NaN while it is not known.
-    pub(super) fn quantity(&self, quantity: ModeQuantity) -> f64 {
-        KnownQuantities::new(*self).value(quantity)
-    }
-
-    /// Returns true if a condition of a requirement is met.
-    pub(super) fn meets(&self, condition: &Expression) -> bool {
-        condition.holds(&KnownQuantities::new(*self))
-    }
-
     /// Returns a vector or list that the control system knows; nothing for those that no condition reads.
     pub(super) fn known(&self, quantity: FlightQuantity) -> Vec<f64> {
         let estimates = self.estimation.estimates.iter();

@@ -24,23 +24,30 @@ pub struct RunView<'a> {
     pub guidance: &'a Guidance,
     pub laws: &'a ControlLaws,
     pub loads: &'a Loads,
-    /// Sequence of the modes of operation, if there are any, and the sky of their conditions.
+    /// Sequence of the modes of operation; `None` without modes.
     pub modes: Option<&'a ModeSequence>,
+    /// Sunlight and elevations that conditions read.
     pub sky: &'a ModeSky,
 }
 
-/// Returns the error of the attitude (rad) or of the rate (rad/s) about the body's axes.
+/// Returns the true rate (rad/s) about the body's axes; of a body with one angle, with its elastic part.
+pub fn true_rate(plant: &Plant) -> [f64; 3] {
+    let truth = plant.truth();
+    if plant.quantities().one_axis().is_some() { truth.rate } else { truth.rigid_rate }
+}
+
+/// Returns the error of the attitude (rad), or of the rate (rad/s) if `is_rate`, about the body's axes.
 pub fn motion_error(plant: &Plant, guidance: &Guidance, now: Instant, is_rate: bool) -> [f64; 3] {
     let truth = plant.truth();
     if plant.quantities().one_axis().is_some() {
         let (angle, rate) = guidance.manoeuvre_state(now);
         let of_angle = || truth.orientation.error_from(&Orientation::Angle(angle));
-        return if is_rate { [truth.rate[0] - rate, 0.0, 0.0] } else { of_angle() };
+        return if is_rate { [true_rate(plant)[0] - rate, 0.0, 0.0] } else { of_angle() };
     }
     let error = truth.orientation.error_from(&guidance.origin(now));
     if !is_rate {
         return error;
     }
     let reference = guidance.reference_rate(now, &Vector::from(error));
-    (Vector::from(truth.rigid_rate) - reference).into()
+    (Vector::from(true_rate(plant)) - reference).into()
 }

@@ -28,7 +28,7 @@ impl Simulation {
         if let Some(event) = self.operation.first_event(now) {
             self.recorder.record_mode(now, &event, record)?;
         }
-        self.observe_requirements(true);
+        self.update_requirements(|requirements, run| requirements.observe(run, true));
         let (run, recorder) = self.view();
         Ok(recorder.record_start(&run, record)?)
     }
@@ -38,7 +38,7 @@ impl Simulation {
         let now = self.clock.now();
         if now == self.clock.end() && self.recorder.close() {
             self.plant.record_pieces(now, &self.loads.applied, record)?;
-            self.end_required_segment();
+            self.end_requirement_segment();
             self.requirements.finish(now, record)?;
             self.recorder.journal_end(now, record)?;
         }

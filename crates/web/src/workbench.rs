@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use flexsc_cli::{EditableStudy, figures};
+use flexsc_cli::{EditableStudy, RunClock, figures};
 use flexsc_core::answer::{Answer, RunObserver, ScreenOptions};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::formats::reader_units::ReaderUnits;
@@ -13,7 +13,8 @@ use flexsc_view::with_layout;
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
-use crate::page_progress::{PageProgress, ProgressReceiver};
+/// Function that takes the part of a run that is done, from 0 to 1.
+pub type ProgressReceiver = fn(f64);
 
 /// Request of a page. What it asks for is of the scenario that was read last.
 #[derive(Deserialize)]
@@ -127,6 +128,12 @@ impl Workbench {
         Ok(CampaignRun::new(campaign.map_err(|error| error.to_string())?.scenario().clone(), 0))
     }
 
+    /// Returns the record that gives the progress of a run to the receiver.
+    fn progress(&self, run: &CampaignRun) -> RunClock<impl FnMut(f64) + use<>> {
+        let (receiver, duration) = (self.receiver, run.scenario.duration.seconds());
+        RunClock::new(move |now| receiver(now / duration))
+    }
+
     fn run(&mut self) -> Result<Json, Failure> {
         let run = self.campaign_run()?;
         let scenario = &run.scenario;
@@ -136,7 +143,7 @@ impl Workbench {
         };
         let (mut events, mut full) = (log(Detail::Events)?, log(Detail::Full)?);
         let mut observer = RunObserver::new(scenario);
-        let progress = PageProgress::new(self.receiver, scenario.duration.seconds());
+        let progress = self.progress(&run);
         let records = ((&mut events, &mut full), (&mut observer, progress));
         let metrics = Campaign::simulate(&run, records).map_err(|error| error.to_string())?;
         let finished =
@@ -159,7 +166,7 @@ impl Workbench {
         let provenance = with_layout(Campaign::provenance(&run), &run.scenario, Detail::Scene);
         let mut log = LogBytes::new(&provenance, Detail::Scene).map_err(|error| error.to_string())?;
         let scene = Scene::for_detail(&run.scenario, Detail::Scene);
-        let progress = PageProgress::new(self.receiver, run.scenario.duration.seconds());
+        let progress = self.progress(&run);
         let metrics =
             Campaign::simulate(&run, ((&mut log, scene), progress)).map_err(|error| error.to_string())?;
         let bytes = log.finish(&metrics, RunEnd::Complete).map_err(|error| error.to_string())?;

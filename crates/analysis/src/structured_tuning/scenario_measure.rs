@@ -21,7 +21,7 @@ impl ScenarioMeasure {
     /// Returns the measure of the requirement with a name.
     ///
     /// # Errors
-    /// No requirement with the name, and one that limits a metric.
+    /// No requirement with the name, and one on a metric or over time.
     pub fn for_requirement(scenario: &Scenario, name: &str) -> Result<Self, ConfigError> {
         let all = &scenario.study.requirements;
         let Some(index) = all.iter().position(|own| own.name == name) else {
@@ -35,8 +35,9 @@ impl ScenarioMeasure {
         match all[index].source {
             RequirementSource::Error(_) => Ok(Self::Index(index)),
             RequirementSource::Metric(..) | RequirementSource::Formula(_) => {
-                let why = "limits no pointing index: a tuning of the linear loop needs one; `--minimise requirement` tunes on runs";
-                Err(ConfigError::new(format!("requirement[{index}]"), why))
+                let why = "limits no pointing index, which a tuning of the linear loop needs: `quantity` must be `pointing_error`, \
+                           `rate_error` or `line_of_sight`";
+                Err(ConfigError::new(scenario.requirement_key(name), why))
             }
         }
     }
@@ -68,8 +69,9 @@ impl ScenarioMeasure {
                 Ok(times.into_iter().map(|settling| settling.time_s).collect())
             }
             Self::Index(index) => {
-                let RequirementSource::Error(error) = &scenario.study.requirements[*index].source else {
-                    return Err(format!("{name}: requirement[{index}] limits no pointing index"));
+                let own = &scenario.study.requirements[*index];
+                let RequirementSource::Error(error) = &own.source else {
+                    return Err(format!("{name}: the requirement `{}` limits no pointing index", own.name));
                 };
                 let noisy = match NoisyLoop::from_parts(parts) {
                     Ok(noisy) => noisy,
@@ -79,7 +81,7 @@ impl ScenarioMeasure {
                     Err(fault) => return Err(format!("{name}: {fault}")),
                 };
                 let rms = linear_noise(&noisy, error).ok_or_else(|| {
-                    format!("{name}: requirement[{index}]: the linear loop has no such index")
+                    format!("{name}: the linear loop has no index of the requirement `{}`", own.name)
                 })?;
                 Ok(vec![rms])
             }

@@ -68,8 +68,8 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 impl CampaignReport {
     /// Prints the points of a sweep, or the verdict, the requirements and the statistics of another campaign, which took
     /// some real time (s).
-    pub fn say(&self, scenario: &Scenario, took: Option<f64>, args: AnswerArgs) {
-        let (name, runs) = (&scenario.name, counted(self.runs, "run"));
+    pub fn say(&self, answer: &CampaignAnswer, took: Option<f64>, args: AnswerArgs) {
+        let (name, runs) = (&answer.scenario, counted(self.runs, "run"));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         if let (Some(points), true) = (&self.points, self.runs > 0) {
             let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
@@ -79,7 +79,7 @@ impl CampaignReport {
             }
             return;
         }
-        say!("{}", self.answer(scenario, args).screen(took, args.screen()));
+        say!("{}", answer.screen(took, args.screen()));
         if self.runs == 0 {
             return;
         }
@@ -148,7 +148,7 @@ fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
             .iter()
             .filter(|number| number.is_finite())
             .fold(0.0, |most: f64, own| most.max(own.abs()));
-        let unit = units.of_key(&s.name, largest, s.unit);
+        let unit = units.for_key(&s.name, largest, s.unit);
         let mut row = vec![s.name.clone(), unit.name.to_string(), s.runs.to_string()];
         row.extend(
             numbers.iter().map(|value| if value.is_nan() { "-".to_owned() } else { unit.number(*value) }),

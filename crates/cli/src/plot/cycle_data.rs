@@ -65,7 +65,7 @@ impl CycleData {
             },
         };
         let mut cycles = Self::default();
-        story.repeat(log, path, unread, &mut cycles)?;
+        story.repeat(log, path, &format!("rows of {unread}"), &mut cycles)?;
         Ok(cycles)
     }
 

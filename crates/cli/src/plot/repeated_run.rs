@@ -43,8 +43,7 @@ impl Record for RepeatedEvents {
 }
 
 impl RunEvents {
-    /// Repeats the run of the log at `path` with a record, because the log lacks the rows of a topic or an answer, and returns
-    /// its metrics.
+    /// Repeats the run of the log at `path` with a record, because the log has none of what is `missing`, and returns its metrics.
     ///
     /// # Errors
     /// A run that is too long, that needs parts or commands that the log does not have, or that differs from the log.
@@ -55,8 +54,6 @@ impl RunEvents {
         missing: &str,
         recorder: &mut impl Record,
     ) -> Result<Metrics, CliError> {
-        let missing =
-            if missing.starts_with('/') { format!("rows of {missing}") } else { missing.to_owned() };
         if let Some(own) = self.absent_parts.as_deref() {
             let why = format!(
                 "has no {missing}, and only the program of its parts ({own}) can repeat its run\n\n{FULL}"

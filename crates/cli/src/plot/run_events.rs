@@ -150,7 +150,7 @@ impl RunEvents {
             return Ok(self.smooth(MotionData::read(log)?));
         }
         let mut recorder = MotionRecorder::new(early, late);
-        self.repeat(log, path, "/attitude", &mut recorder)?;
+        self.repeat(log, path, "rows of /attitude", &mut recorder)?;
         Ok(self.smooth(recorder.motion))
     }
 

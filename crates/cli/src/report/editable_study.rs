@@ -26,7 +26,7 @@ impl EditableStudy {
     /// Reads the text of a scenario, which messages and commands call `file`.
     ///
     /// # Errors
-    /// Its mistakes, as `flexsc check --json` prints them.
+    /// A scenario with mistakes: the object with them that `flexsc check --json` prints.
     pub fn read(file: &str, text: String) -> Result<Self, Json> {
         let path = PathBuf::from(file);
         let read = || -> Result<Self, CliError> {
@@ -45,7 +45,7 @@ impl EditableStudy {
         &self.study.scenario
     }
 
-    /// Returns what `flexsc check --json` prints of the scenario, and the ranges of its uncertain keys.
+    /// Returns the object that `flexsc check --json` prints of the scenario, with the ranges of its uncertain keys.
     pub fn checked(&self) -> Json {
         let mut object = check::accepted_object(&self.study.path, &self.study.scenario);
         object["uncertain"] = json!(self.uncertain());
@@ -90,7 +90,7 @@ impl EditableStudy {
         Ok(html::numbered(&block.html))
     }
 
-    /// Returns the name of the scenario's file.
+    /// Returns the path by which messages and commands call the scenario.
     pub fn path(&self) -> &Path {
         &self.study.path
     }

@@ -39,13 +39,15 @@ pub fn blocks(study: &Study, searches: bool) -> Result<LoopBlocks, CliError> {
 /// Block of one analysis of the loops.
 pub struct LoopBlock {
     pub html: String,
+    /// Sentence of the conclusions.
     sentence: Option<String>,
+    /// True if no mode of operation has a linear loop.
     is_refused: bool,
 }
 
 /// Computes the block of the margins; `searches` for the least over the uncertain keys too.
 pub fn margins(study: &Study, searches: bool) -> Result<LoopBlock, CliError> {
-    progress::stage("the margins");
+    progress::begin_stage("the margins");
     let words = ["margins", "--mask", margins_block::MASK];
     let (found, refused) = each_mode(study, &words, |verb, scenario| match verb {
         Verb::Margins(args) => margins::results(&args.scenario.in_mode(scenario)?, &args),
@@ -57,7 +59,7 @@ pub fn margins(study: &Study, searches: bool) -> Result<LoopBlock, CliError> {
 
 /// Computes the block of the noise.
 pub fn noise(study: &Study) -> Result<LoopBlock, CliError> {
-    progress::stage("the noise");
+    progress::begin_stage("the noise");
     let (found, refused) = each_mode(study, &["spectrum"], |verb, scenario| match verb {
         Verb::Spectrum(args) => spectrum::results(&args.scenario.in_mode(scenario)?, &args),
         _ => Err(CliError::Arguments(String::new())),

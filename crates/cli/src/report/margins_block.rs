@@ -157,7 +157,7 @@ fn worst_paragraph(study: &Study, own: &Analysed<LoopMargins>) -> Result<String,
     let (Verb::Margins(args), scenario) = study.analysis(&words, &own.at_rest)? else {
         return Ok(String::new());
     };
-    progress::stage("the least margin over the uncertain keys");
+    progress::begin_stage("the least margin over the uncertain keys");
     let search = MarginSearch { kind: MarginKind::Modulus, opened: LoopBreak::Command, most_loops: SEARCHED };
     let found = search.run(&args.scenario.in_mode(scenario)?, stop::stop_requested);
     if stop::stop_requested() {

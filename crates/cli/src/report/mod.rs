@@ -93,7 +93,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
 
 /// Computes the page of a study with a campaign of some runs; 0 leaves it out.
 fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
-    progress::stage("the run");
+    progress::begin_stage("the run");
     let run = study.run()?;
     // A page that is watched is to be there soon.
     let loops = loop_blocks::blocks(study, script.is_empty())?;
@@ -102,7 +102,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     } else {
         Some(bound::claims(&study.scenario, Units::default())?)
     };
-    progress::stage("the campaign");
+    progress::begin_stage("the campaign");
     let campaign: Option<StudyCampaign> =
         (runs > 0).then(|| study.campaign(runs, &run.answer)).transpose()?;
     let mut unmet = Vec::new();
@@ -116,7 +116,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
     if refuted > 0 {
         unmet.push(format!("{refuted} of the claims not proved"));
     }
-    progress::stage("the figures");
+    progress::begin_stage("the figures");
     let refused = loops.refused.clone();
     let review = Review { study, run: &run, campaign: campaign.as_ref(), loops, bounds, script };
     Ok(FinishedPage { html: page::html(&review), refused, unmet })

@@ -11,18 +11,19 @@ use super::study::Study;
 
 /// Number of attitudes that are shown.
 const MOST: usize = 400;
+/// Script that draws and plays the model.
 const SCRIPT: &str = include_str!("model.js");
 
 /// Returns the figure of a run; `None` of a body that is not built from its parts, and of a log without attitudes.
 pub fn block(study: &Study, log: &Log) -> Option<String> {
     let faces = model_faces(&study.scenario)?;
     let table = log.tables(&[Pointing::TOPIC.name]).ok()?.pop()??;
-    let all = Columns::timed_rows::<Pointing>(&table)?;
+    let all = Columns::timed_rows::<Pointing>(&table).filter(|all| !all.is_empty())?;
     let rows = shown(&all);
     let face = |own: &ModelFace| {
         json!({
-            "corners": own.corners.map(rounded),
-            "normal": rounded(own.normal),
+            "corners": own.corners.map(|corner| corner.map(rounded)),
+            "normal": own.normal.map(rounded),
             "colour": own.colour,
         })
     };
@@ -30,7 +31,7 @@ pub fn block(study: &Study, log: &Log) -> Option<String> {
     let reach =
         reach.map(|corner| corner.iter().map(|own| own * own).sum::<f64>()).fold(0.0, f64::max).sqrt();
     let data = json!({
-        "reach": rounded([reach, 0.0, 0.0])[0],
+        "reach": rounded(reach),
         "faces": faces.iter().map(face).collect::<Vec<_>>(),
         "times": rows.iter().map(|(at, _)| time(*at)).collect::<Vec<_>>(),
         "attitudes": rows.iter().map(|(_, row)| quaternion(row).map(|own| (1e4 * own).round() / 1e4)).collect::<Vec<_>>(),
@@ -50,9 +51,9 @@ fn quaternion(row: &Pointing) -> [f64; 4] {
     [row.q_w, row.q_x, row.q_y, row.q_z]
 }
 
-/// Returns lengths (m) to a thousandth of a millimetre.
-fn rounded(of: [f64; 3]) -> [f64; 3] {
-    of.map(|own| (1e6 * own).round() / 1e6)
+/// Returns a length (m) to a thousandth of a millimetre, or a component of a direction as exactly.
+fn rounded(value: f64) -> f64 {
+    (1e6 * value).round() / 1e6
 }
 
 /// Returns the rows that are shown, in even steps of the share of the run's time plus that of all its turns.

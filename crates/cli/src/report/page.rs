@@ -20,8 +20,9 @@ pub const STYLE: &str = include_str!("page.css");
 const SHOWN: [&str; 9] =
     ["pointing", "line-of-sight", "wheel", "angle", "envelope", "gain", "gimbals", "hinges", "deflection"];
 const MOST_SHOWN: usize = 3;
-/// Largest size of the page up to which further figures are added (bytes).
+/// Number of digits of a SHA-256 in the title block.
 const SHA_DIGITS: usize = 12;
+/// Largest size of the page up to which further figures are added (bytes).
 const MOST_BYTES: usize = 1_400_000;
 
 /// Block of a page: identifier, title and content.

@@ -142,7 +142,7 @@ impl<'a> OutputWaterfall<'a> {
         let mut notes = Vec::new();
         if let (Some(within), Some(window)) = (&within, self.window()) {
             let name =
-                format!("within windows of {}, rms", ReaderUnit::of_time_axis(window).quantity(window));
+                format!("within windows of {}, rms", ReaderUnit::for_time_axis(window).quantity(window));
             layers.push(Layer::new(&name, colour::BLUE, LayerShape::Line(1.6), line(within)));
             values.extend(within);
             notes.extend(self.largest(within, colour::BLUE));

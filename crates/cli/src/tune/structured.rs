@@ -219,7 +219,7 @@ impl StructuredResults {
         let each = self.found.loops.plant(index).into_iter();
         let values: Vec<String> = each
             .map(|(key, value)| {
-                let unit = ReaderUnits::from(self.units).of_key(key, value.abs(), self.unit_of(key));
+                let unit = ReaderUnits::from(self.units).for_key(key, value.abs(), self.unit_of(key));
                 format!("{key} = {}", unit.quantity(value))
             })
             .collect();

@@ -26,7 +26,7 @@ pub struct Vocabulary<'a> {
     pub modes: Vec<&'a str>,
     /// Numbers by name, in the units of the quantities that they are compared with.
     pub numbers: Option<&'a BTreeMap<String, Finite>>,
-    /// Further names of a requirement, which may have operators over time; `None` of a condition of a mode.
+    /// Names for a requirement, which may have operators over time; `None` for a condition of a mode.
     pub requirement: Option<RequirementNames<'a>>,
 }
 
@@ -103,6 +103,13 @@ pub enum Timed {
     While(Expression, Expression),
 }
 
+impl Timed {
+    /// True for an operator that cannot be within a window of time.
+    pub fn is_outermost(&self) -> bool {
+        matches!(self, Self::Until(..) | Self::When(..))
+    }
+}
+
 /// Access to the quantities at one instant.
 pub trait ModeReadings {
     /// Returns the value of a quantity in its unit, 1 or 0 of a flag; NaN while it is not known.
@@ -148,7 +155,7 @@ impl Expression {
         self.comparisons().into_iter().map(number).collect()
     }
 
-    /// Returns the comparisons and flags, each with its quantity and, of a comparison, its number.
+    /// Returns the quantities of the comparisons and flags, of a comparison with its sign and number.
     pub fn comparisons(&self) -> Vec<(ModeQuantity, Option<(Comparison, f64)>)> {
         match self {
             Self::Compared { quantity, comparison, limit } => vec![(*quantity, Some((*comparison, *limit)))],
@@ -168,9 +175,17 @@ impl Expression {
     pub fn reads_truth(&self) -> bool {
         self.leaves().iter().any(|(quantity, _)| quantity.is_truth())
     }
-}
 
-impl Expression {
+    /// True if the expression joins operators over time of which one is wanted; the parts of an operator do not count.
+    pub fn has_timed(&self, is_wanted: fn(&Timed) -> bool) -> bool {
+        match self {
+            Self::Timed(timed) => is_wanted(timed),
+            Self::Not(inner) => inner.has_timed(is_wanted),
+            Self::All(inner) | Self::Any(inner) => inner.iter().any(|inner| inner.has_timed(is_wanted)),
+            Self::Compared { .. } | Self::Flag(_) => false,
+        }
+    }
+
     /// Returns the expression, throughout a window.
     #[must_use]
     pub fn always(self, window: TimeWindow) -> Self {

@@ -29,7 +29,15 @@ const FOREIGN_SIGNS: [(&str, &str); 5] =
 
 /// Reads a condition, or a requirement if the vocabulary is that of one.
 pub(super) fn parse(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
-    whole(text, known, Parser::formula)
+    parse_whole(text, known, Parser::formula)
+}
+
+/// Reads a condition of a requirement without operators over time.
+///
+/// # Errors
+/// The first part that is no such condition, and the reason.
+pub fn parse_instant(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
+    parse_whole(text, known, Parser::instant)
 }
 
 /// Reads an event after which a requirement holds: `mode enters NAME`, or a condition that becomes true.
@@ -37,10 +45,11 @@ pub(super) fn parse(text: &str, known: &Vocabulary<'_>) -> Result<Expression, Co
 /// # Errors
 /// The first part that is no event, and the reason.
 pub fn parse_trigger(text: &str, known: &Vocabulary<'_>) -> Result<Expression, ConditionFault> {
-    whole(text, known, Parser::trigger)
+    parse_whole(text, known, Parser::trigger)
 }
 
-fn whole<'a>(
+/// Reads a text to its end.
+fn parse_whole<'a>(
     text: &'a str,
     known: &'a Vocabulary<'a>,
     read: impl FnOnce(&mut Parser<'a>) -> Result<Expression, ConditionFault>,
@@ -74,15 +83,15 @@ struct Parser<'a> {
     place: Place,
 }
 
-/// Place of a part in a requirement, which decides on the operators over time that it may have.
+/// Place of a part in a requirement, by the operators over time that the part may have.
 #[derive(Copy, Clone, PartialEq, Eq)]
 enum Place {
     /// Any.
     Outermost,
     /// `always` and `eventually`.
     Window,
-    /// None.
-    Event,
+    /// None: an event, or a condition at one instant.
+    Instant,
 }
 
 impl<'a> Parser<'a> {
@@ -228,6 +237,7 @@ impl<'a> Parser<'a> {
         Ok(Expression::Compared { quantity, comparison, limit: number })
     }
 
+    /// Returns the SI unit of a quantity.
     fn unit(&self, quantity: ModeQuantity) -> &'a str {
         match (quantity, &self.known.requirement) {
             (ModeQuantity::Metric(index, _), Some(names)) => names.metrics[index].1,
@@ -241,22 +251,23 @@ impl<'a> Parser<'a> {
         let written = &self.text[part.clone()];
         let is_of_requirement = self.known.requirement.is_some();
         let word = written.strip_prefix("estimate.").filter(|_| is_of_requirement).unwrap_or(written);
-        let is_named = word.len() < written.len();
         if word.is_empty() {
             let end = self.text.len();
             return Err(fault(end.saturating_sub(1)..end, "needs a quantity at its end"));
         }
         self.at = part.end;
-        match ModeQuantity::from_word(word).filter(|of| of.is_for(is_of_requirement)) {
-            Some(ModeWord::Plain(quantity)) if is_of_requirement && quantity.is_estimate() != is_named => {
-                let truth =
-                    if word == "attitude_error" { "pointing_error" } else { &format!("truth.{word}") };
-                let why = format!("must be `estimate.{word}` or the truth, `{truth}`, got `{written}`");
-                Err(fault(
-                    part,
-                    if quantity.is_estimate() { why } else { format!("must be `{word}`, got `{written}`") },
-                ))
-            }
+        let found = ModeQuantity::from_word(word).filter(|of| of.is_for(is_of_requirement));
+        let is_estimate = matches!(found, Some(ModeWord::Plain(quantity)) if quantity.is_estimate());
+        if is_of_requirement && found.is_some() && is_estimate != (word.len() < written.len()) {
+            let truth = if word == "attitude_error" { "pointing_error" } else { &format!("truth.{word}") };
+            let accepted = if is_estimate {
+                format!("`estimate.{word}` or the truth, `{truth}`")
+            } else {
+                format!("`{word}`")
+            };
+            return Err(fault(part, format!("must be {accepted}, got `{written}`")));
+        }
+        match found {
             Some(ModeWord::Plain(quantity)) => Ok(quantity),
             Some(ModeWord::OfSensor(quantity)) => {
                 let (part, name) = self.argument(word, "sensor")?;
@@ -276,7 +287,7 @@ impl<'a> Parser<'a> {
                 index_of(part, name, points, "points of the lines of sight").map(quantity)
             }
             None => {
-                if let Some(metric) = self.metric(word) {
+                if let Some(metric) = self.read_metric(written) {
                     return Ok(metric);
                 }
                 let why = if word.starts_with("truth.") && !is_of_requirement {
@@ -284,8 +295,9 @@ impl<'a> Parser<'a> {
                      have exact instants; test others on what the law knows"
                         .to_owned()
                 } else {
-                    let words: Vec<&str> = ModeQuantity::words(is_of_requirement).collect();
-                    let hint = nearest(word, &words);
+                    let words: Vec<String> = ModeQuantity::words(is_of_requirement).collect();
+                    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+                    let hint = nearest(written, &words);
                     let hint = hint.map_or(String::new(), |near| format!("; did you mean `{near}`?"));
                     let or = if is_of_requirement { " or a metric" } else { "" };
                     format!(
@@ -298,13 +310,14 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Returns the index of the mode with a name at a place of the text.
     fn mode_index(&self, part: Range<usize>, name: &str) -> Result<usize, ConditionFault> {
         index_of(part, name, &self.known.modes, "modes")
     }
 
-    /// Reads the rest of a metric, which may be an element of a list, such as `fuel_axes_kg[2]`.
-    fn metric(&mut self, word: &str) -> Option<ModeQuantity> {
-        let index = self.known.requirement.as_ref()?.metrics.iter().position(|(name, _)| *name == word)?;
+    /// Returns the metric with a name, and reads the index after it: of an element of a list, such as `fuel_axes_kg[2]`.
+    fn read_metric(&mut self, name: &str) -> Option<ModeQuantity> {
+        let index = self.known.requirement.as_ref()?.metrics.iter().position(|(known, _)| *known == name)?;
         let element = self.rest().strip_prefix('[').and_then(|rest| rest.split_once(']'));
         let element = element.and_then(|(number, _)| Some((number.len() + 2, number.parse().ok()?)));
         self.at += element.map_or(0, |(length, _)| length);
@@ -328,7 +341,7 @@ impl<'a> Parser<'a> {
         Ok((from..(from + name.len()).max(from + 1), name))
     }
 
-    /// Returns the bytes of a number with its unit: up to `and`, `or`, a closing bracket or the end.
+    /// Returns the bytes of a number with its unit: up to a word that ends it, a closing bracket, a colon or the end.
     fn number_part(&self) -> Range<usize> {
         let (mut depth, mut end) = (0_usize, self.text.len());
         let mut after_space = true;
@@ -369,10 +382,10 @@ pub(super) fn sensor_index(name: &str, kinds: &[&str]) -> Option<usize> {
     of_kind.nth(place).map(|(index, _)| index)
 }
 
-/// Returns the index of a name at a place of the text.
-fn index_of(part: Range<usize>, name: &str, known: &[&str], of: &str) -> Result<usize, ConditionFault> {
+/// Returns the index of a name at a place of the text; an error lists the known ones under their role.
+fn index_of(part: Range<usize>, name: &str, known: &[&str], role: &str) -> Result<usize, ConditionFault> {
     let index = known.iter().position(|known| *known == name);
-    index.ok_or_else(|| fault(part, format!("must name one of the {of}, {}, got `{name}`", listed(known))))
+    index.ok_or_else(|| fault(part, format!("must name one of the {role}, {}, got `{name}`", listed(known))))
 }
 
 /// Returns names in quotes, separated by commas.

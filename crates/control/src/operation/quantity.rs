@@ -51,11 +51,11 @@ pub enum ModeQuantity {
     TrueRateError,
     /// Error of a line of sight (rad), at any instant.
     LineOfSight(usize),
-    /// True in a mode.
+    /// Flag that a mode is active.
     Mode(usize),
-    /// True while a bright body blinds a sensor.
+    /// Flag that a bright body blinds a sensor.
     Blinded(usize),
-    /// Metric, or an element of it.
+    /// Metric by its index among the names of the metrics, or an element of it.
     Metric(usize, Option<usize>),
 }
 
@@ -98,7 +98,7 @@ pub(super) enum ModeWord {
 }
 
 impl ModeWord {
-    /// Returns true if a condition of a mode may have the word, or a requirement if `is_requirement`.
+    /// True if a condition of a mode may have the word, or a requirement if `is_requirement`.
     pub(super) fn is_for(self, is_requirement: bool) -> bool {
         let quantity = match self {
             Plain(quantity) => quantity,
@@ -145,9 +145,13 @@ impl ModeQuantity {
         QUANTITIES.iter().find(|(known, ..)| *known == word).map(|(_, quantity, ..)| *quantity)
     }
 
-    /// Iterates over the words of the quantities of modes, and of requirements if `all`, without arguments.
-    pub fn words(all: bool) -> impl Iterator<Item = &'static str> {
-        QUANTITIES.iter().filter(move |(_, word, ..)| word.is_for(all)).map(|(word, ..)| *word)
+    /// Iterates over the words of the quantities of modes, or of requirements if `is_requirement`, without arguments.
+    pub fn words(is_requirement: bool) -> impl Iterator<Item = String> {
+        let known = QUANTITIES.iter().filter(move |(_, word, ..)| word.is_for(is_requirement));
+        known.map(move |(word, of, ..)| match of {
+            Plain(quantity) if is_requirement && quantity.is_estimate() => format!("estimate.{word}"),
+            _ => (*word).to_owned(),
+        })
     }
 
     /// Iterates over the vectors and lists that the formulas read.
@@ -190,7 +194,7 @@ impl ModeQuantity {
         matches!(self, Self::LockLost | Self::Mode(_) | Self::Blinded(_))
     }
 
-    /// Returns true for a quantity that nothing on board knows, and that only requirements compare.
+    /// Returns true for a quantity that is not available on board, and that only requirements compare.
     pub fn is_of_requirements(self) -> bool {
         self.is_of_motion() || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Metric(..))
     }

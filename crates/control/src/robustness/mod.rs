@@ -1,11 +1,11 @@
 //! Robustness of requirements over time: by how much an expression holds or fails, on signals that are known piece by piece.
 //!
-//! The robustness of a comparison is the distance of the quantity from its limit divided by the limit (by 1 if the limit is 0),
-//! of a flag 1 or -1, and of both negative where they do not hold. `not` changes the sign; `and` and `always` take the
-//! least, `or` and `eventually` the largest. Both are those of the signals at all times, not at samples.
+//! The robustness of a comparison is the distance of the quantity from its limit divided by the size of the limit (by 1 if the
+//! limit is 0), negative where the comparison does not hold; that of a flag is 1 or -1. `not` changes the sign; `and` and
+//! `always` take the least, `or` and `eventually` the largest. Both are those of the signals at all times, not at samples.
 
 mod point;
-mod stream;
+mod signal;
 
 use flexsc_numerics::signal::{SignalPiece, Witnessed};
 
@@ -31,9 +31,10 @@ struct Leaf {
 /// Part of all signals between two times.
 #[derive(Copy, Clone)]
 enum Chunk<'a> {
-    /// Pieces of each leaf.
+    /// Pieces of each comparison and flag.
     Known(&'a [Vec<SignalPiece>]),
-    /// Time after the end of the run (s), where nothing is known; the requirement is to have this sign there.
+    /// End of the run (s), and the robustness that all comparisons and flags have after it: infinite, with the sign that the
+    /// requirement is to get there.
     After(f64, f64),
 }
 
@@ -49,8 +50,7 @@ pub struct RobustnessRange {
 impl RequirementMonitor {
     /// Creates the monitor of an expression for a run of this length (s).
     pub fn new(expression: &Expression, end: f64) -> Self {
-        let mut leaves = Vec::new();
-        add_leaves(expression, &mut leaves);
+        let leaves = expression.comparisons().into_iter().map(Leaf::new).collect();
         Self { point: PointRobustness::new(expression, [0.0, end], &mut 0), leaves }
     }
 
@@ -96,19 +96,24 @@ impl RequirementMonitor {
     }
 }
 
-/// Appends the comparisons and flags of an expression, in its order.
-fn add_leaves(expression: &Expression, leaves: &mut Vec<Leaf>) {
-    leaves.extend(expression.comparisons().into_iter().map(|(quantity, compared)| match compared {
-        None => Leaf { quantity, gain: 2.0, offset: -1.0 },
-        Some((comparison, limit)) => {
-            let scale = if limit == 0.0 { 1.0 } else { limit.abs() };
-            let sign = match comparison {
-                Comparison::Below | Comparison::AtMost => -1.0,
-                Comparison::Above | Comparison::AtLeast => 1.0,
-            };
-            Leaf { quantity, gain: sign / scale, offset: -sign * limit / scale }
-        }
-    }));
+impl Leaf {
+    /// Creates the flag of a quantity, or its comparison with a number.
+    fn new((quantity, compared): (ModeQuantity, Option<(Comparison, f64)>)) -> Self {
+        let Some((comparison, limit)) = compared else {
+            return Self { quantity, gain: 2.0, offset: -1.0 };
+        };
+        let scale = limit_scale(limit);
+        let sign = match comparison {
+            Comparison::Below | Comparison::AtMost => -1.0,
+            Comparison::Above | Comparison::AtLeast => 1.0,
+        };
+        Self { quantity, gain: sign / scale, offset: -sign * limit / scale }
+    }
+}
+
+/// Returns the size by which the distance of a quantity from its limit is divided: that of the limit, or 1 if it is 0.
+pub fn limit_scale(limit: f64) -> f64 {
+    if limit == 0.0 { 1.0 } else { limit.abs() }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use flexsc_numerics::signal::{SignalPiece, Witnessed};
 
 use super::Chunk;
-use super::stream::{Stream, aligned};
+use super::signal::{RobustnessSignal, aligned};
 use crate::operation::{Expression, TimeWindow, Timed};
 
 /// Robustness of an expression at an instant.
@@ -14,7 +14,7 @@ pub(super) enum PointRobustness {
     /// Least value of a signal between two times (s), both included.
     Least {
         /// Signal.
-        inner: Stream,
+        inner: RobustnessSignal,
         /// Start and end (s).
         span: [f64; 2],
         /// Least value of what is known.
@@ -35,8 +35,8 @@ pub(super) enum PointRobustness {
 /// Largest value of the least of one signal at a time and another one up to then.
 #[derive(Clone, Debug)]
 pub(super) struct UntilRobustness {
-    held: (Stream, VecDeque<SignalPiece>),
-    reached: (Stream, VecDeque<SignalPiece>),
+    held: (RobustnessSignal, VecDeque<SignalPiece>),
+    reached: (RobustnessSignal, VecDeque<SignalPiece>),
     /// Start and end of the window (s).
     span: [f64; 2],
     /// Least known value of the first signal, and the largest value of `until`, negative.
@@ -48,7 +48,7 @@ pub(super) struct UntilRobustness {
 /// Least value of an expression at the instants at which an event occurs.
 #[derive(Clone, Debug)]
 pub(super) struct EventRobustness {
-    event: Stream,
+    event: RobustnessSignal,
     is_on: bool,
     then: Expression,
     /// Number of the first comparison of `then`.
@@ -76,7 +76,7 @@ impl PointRobustness {
             [from, window.to.map_or(end, |to| at + to).max(from)]
         };
         let least = |inner: &Expression, span, source: &mut usize| Self::Least {
-            inner: Stream::new(inner, span, is_negated, source),
+            inner: RobustnessSignal::new(inner, span, is_negated, source),
             span,
             least: NONE,
             is_known: false,
@@ -95,10 +95,10 @@ impl PointRobustness {
                 Timed::While(..) => least(expression, [at, at], source),
                 Timed::Until(held, window, reached) => {
                     let span = span(window);
-                    let mut stream = |inner, from| {
-                        (Stream::new(inner, [from, span[1]], is_negated, source), VecDeque::new())
+                    let mut signal = |inner, from| {
+                        (RobustnessSignal::new(inner, [from, span[1]], is_negated, source), VecDeque::new())
                     };
-                    let (held, reached) = (stream(held, at), stream(reached, at));
+                    let (held, reached) = (signal(held, at), signal(reached, at));
                     Self::Until(Box::new(UntilRobustness {
                         held,
                         reached,
@@ -109,8 +109,12 @@ impl PointRobustness {
                     }))
                 }
                 Timed::When(event, then) => {
-                    let event =
-                        Stream::Sign(Box::new(Stream::new(event, [at, f64::INFINITY], false, source)));
+                    let event = RobustnessSignal::Sign(Box::new(RobustnessSignal::new(
+                        event,
+                        [at, f64::INFINITY],
+                        false,
+                        source,
+                    )));
                     let first = *source;
                     *source += then.leaves().len();
                     Self::When(Box::new(EventRobustness {
@@ -194,9 +198,9 @@ impl UntilRobustness {
         if self.is_known {
             return;
         }
-        for (stream, waiting) in [&mut self.held, &mut self.reached] {
+        for (signal, waiting) in [&mut self.held, &mut self.reached] {
             let mut new = Vec::new();
-            stream.push(chunk, &mut new);
+            signal.push(chunk, &mut new);
             waiting.extend(new);
         }
         while let Some(pair) = aligned([&mut self.held.1, &mut self.reached.1].into_iter()) {

@@ -5,7 +5,7 @@ use flexsc_dynamics::MotionPiece;
 
 use super::largest_sample::LargestSample;
 
-/// Metric with this largest distance.
+/// Name of the metric of the largest distance of the angle from its goal.
 pub(super) const PEAK: &str = "angle_error_peak_rad";
 
 /// Watch of the distance from a goal after the manoeuvre.
@@ -16,7 +16,7 @@ pub(super) struct AngleWatch {
 }
 
 impl AngleWatch {
-    /// Creates a watch of the distance from a goal since its start.
+    /// Creates a watch of the distance from a goal, from the time of the goal on.
     pub fn new(goal: Setpoint) -> Self {
         Self { goal, largest: LargestSample { value: 0.0, at: f64::NAN, mode: 0 } }
     }

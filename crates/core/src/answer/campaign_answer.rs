@@ -156,7 +156,8 @@ pub struct CampaignRequirementText {
     pub margin: String,
     /// Runs that meet it: `199 of 200`.
     pub met: String,
-    /// Interval of their share: `97.2 to 99.9 %`.
+    /// Interval of their share: `97.2 to 99.9 %`; absent if no run was to meet it.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub share_interval: String,
     /// Level of the ensemble or share of all values, in words; absent without one.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -173,8 +174,11 @@ impl MetShare {
         }
     }
 
-    /// Returns the interval as text, with digits that keep it from 0 and 100 %.
+    /// Returns the interval as text, with digits that keep it from 0 and 100 %; empty without a run.
     fn interval_text(&self) -> String {
+        if self.share.is_nan() {
+            return String::new();
+        }
         // Rounding may leave an end that is 0 or 1 just off it.
         let whole = |end: f64| if (end - end.round()).abs() < ROUNDING { end.round() } else { end };
         let [low, high] = self.share_interval.map(|end| percent(whole(end)));
@@ -302,7 +306,8 @@ fn requirement(
         });
     let met_share = MetShare::new(*runs_met, verdict.runs);
     let row = runs.requirements.numbers().iter().position(|number| number == run);
-    let driven_by = driving_keys(&runs.keys, values, limit, row.zip(Some(*run)), |key| scenario.unit_of(key));
+    let met: Vec<bool> = (0..values.len()).map(|row| runs.requirements.is_met(index, row)).collect();
+    let driven_by = driving_keys(&runs.keys, values, &met, row.zip(Some(*run)), |key| scenario.unit_of(key));
     CampaignRequirement {
         id: requirement_id(index),
         name: requirement.name.clone(),
@@ -341,8 +346,8 @@ fn texts(
     margin: Option<MarginSpread>,
 ) -> CampaignRequirementText {
     let [nominal, median, p95] =
-        middle.map(|value| value.map_or_else(String::new, |value| unit.beside(value, limit)));
-    let worst = worst.map_or_else(|| "no value".to_owned(), |value| unit.beside(value, limit));
+        middle.map(|value| value.map_or_else(String::new, |value| unit.number_against(value, limit)));
+    let worst = worst.map_or_else(|| "no value".to_owned(), |value| unit.number_against(value, limit));
     CampaignRequirementText {
         unit: unit.name.to_string(),
         limit: unit.limit(limit, written),
@@ -359,7 +364,12 @@ fn texts(
 
 impl CampaignRequirementText {
     fn with_share(self, share: &MetShare, verdict: &RequirementVerdict) -> Self {
-        Self { met: verdict.met_text(), share_interval: share.interval_text(), note: verdict.note(), ..self }
+        Self {
+            met: verdict.runs_met_text(),
+            share_interval: share.interval_text(),
+            note: verdict.note(),
+            ..self
+        }
     }
 }
 

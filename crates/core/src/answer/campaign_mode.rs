@@ -1,5 +1,6 @@
 //! Mode of operation over the runs of a campaign: time, time at a limit, and the runs that lose its target.
 
+use flexsc_control::operation::OperatingMode;
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 
@@ -52,10 +53,13 @@ pub(super) fn campaign_modes(
     runs: &CampaignRuns,
     warnings: &[CampaignWarning],
 ) -> Vec<CampaignMode> {
+    if scenario.mode.is_empty() {
+        return Vec::new();
+    }
     let mut times = vec![Vec::new(); scenario.mode.len()];
     let mut limits = times.clone();
-    for row in 0..if times.is_empty() { 0 } else { runs.requirements.numbers().len() } {
-        let metrics = runs.noted(row);
+    for row in 0..runs.requirements.numbers().len() {
+        let metrics = runs.answer_metrics(row);
         let list = |name: &str| metrics.get(name).map_or_else(Vec::new, MetricValue::numbers);
         let [visits, own_times] = ["mode_visits", "mode_times_s"].map(list);
         let own_limits = LIMIT_TIMES.map(|(name, _)| list(name));
@@ -64,18 +68,17 @@ pub(super) fn campaign_modes(
             limits[index].push(own_limits.iter().filter_map(|of| of.get(index).copied()).fold(0.0, f64::max));
         }
     }
-    let mode =
-        |((mode, times), limits): ((&flexsc_control::operation::OperatingMode, Vec<f64>), Vec<f64>)| {
-            let lost = |own: &&CampaignWarning| {
-                own.kind == WarningKind::TargetLost && own.mode.as_ref() == Some(&mode.name)
-            };
-            CampaignMode {
-                mode: mode.name.clone(),
-                runs: times.len() as u64,
-                time_s: RunSpread::from_values(times),
-                at_limit_s: RunSpread::from_values(limits).filter(|own| own.largest > 0.0),
-                runs_lost: warnings.iter().find(lost).map_or(0, |own| own.runs),
-            }
+    let mode = |((mode, times), limits): ((&OperatingMode, Vec<f64>), Vec<f64>)| {
+        let lost = |own: &&CampaignWarning| {
+            own.kind == WarningKind::TargetLost && own.mode.as_ref() == Some(&mode.name)
         };
+        CampaignMode {
+            mode: mode.name.clone(),
+            runs: times.len() as u64,
+            time_s: RunSpread::from_values(times),
+            at_limit_s: RunSpread::from_values(limits).filter(|own| own.largest > 0.0),
+            runs_lost: warnings.iter().find(lost).map_or(0, |own| own.runs),
+        }
+    };
     scenario.mode.iter().zip(times).zip(limits).map(mode).collect()
 }

@@ -10,9 +10,9 @@ use super::screen::{ScreenOptions, indented, warning_lines, wrapped};
 
 /// Largest number of requirements, and of keys that drive one, on a first screen.
 const MOST: [usize; 2] = [6, 1];
-/// Largest number of lines on a first screen without its head, blank lines and its last one, and least number of those of
-/// warnings.
+/// Largest number of lines on a first screen without its head, blank lines and its last one.
 const MOST_LINES: usize = 10;
+/// Least number of lines of warnings on a first screen.
 const LEAST_WARNING: usize = 2;
 /// Columns between the limit and the worst value, which are left out where no requirement has them.
 const NOMINAL: usize = 3;

@@ -44,7 +44,7 @@ pub(super) fn campaign_warnings(
 ) -> Vec<CampaignWarning> {
     let mut all: BTreeMap<(WarningKind, Option<String>), WarnedRuns> = BTreeMap::new();
     for (row, run) in runs.requirements.numbers().iter().enumerate() {
-        let metrics = runs.noted(row);
+        let metrics = runs.answer_metrics(row);
         let own = RunData { scenario, metrics: &metrics, observed: None, units };
         for warning in warning::warnings(&own, &[]) {
             match all.get_mut(&(warning.kind, warning.mode.clone())) {

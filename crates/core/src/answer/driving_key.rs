@@ -30,12 +30,12 @@ pub struct DrivingKey {
     pub text: String,
 }
 
-/// Returns the keys that drive a requirement, the one with the largest correlation first; `worst` is the row of the worst
-/// run with its number.
+/// Returns the keys that drive a requirement, the one with the largest correlation first, from its value in each run and
+/// whether the run meets it; `worst` is the row of the worst run with its number.
 pub(super) fn driving_keys(
     keys: &[UncertainValues],
     values: &[f64],
-    limit: f64,
+    met: &[bool],
     worst: Option<(usize, u64)>,
     unit: impl Fn(&str) -> Option<&'static str>,
 ) -> Vec<DrivingKey> {
@@ -47,7 +47,7 @@ pub(super) fn driving_keys(
     let mut found: Vec<DrivingKey> = keys
         .iter()
         .filter(|own| own.values.len() == values.len())
-        .map(|own| driving_key(own, values, limit, worst, unit(&own.key)))
+        .map(|own| driving_key(own, (values, met), worst, unit(&own.key)))
         .filter(|own| own.size() >= least)
         .collect();
     found.sort_by(|a, b| b.size().total_cmp(&a.size()));
@@ -62,8 +62,7 @@ impl DrivingKey {
 
 fn driving_key(
     own: &UncertainValues,
-    values: &[f64],
-    limit: f64,
+    (values, met): (&[f64], &[bool]),
     worst: Option<(usize, u64)>,
     unit: Option<&'static str>,
 ) -> DrivingKey {
@@ -73,10 +72,8 @@ fn driving_key(
     let sizes: Vec<f64> = deviations.iter().map(|own| own.abs()).collect();
     let rank_correlation = rank_correlation(&own.values, values);
     let deviation_correlation = self::rank_correlation(&sizes, values);
-    let is_met = |value: &f64| *value <= limit;
-    let sizes_where = |wanted: bool| {
-        sizes.iter().zip(values).filter(move |(_, value)| is_met(value) == wanted).map(|(size, _)| *size)
-    };
+    let sizes_where =
+        |wanted: bool| sizes.iter().zip(met).filter(move |(_, met)| **met == wanted).map(|(size, _)| *size);
     let nearest_missed = sizes_where(false).fold(f64::NAN, f64::min);
     let met_within = sizes_where(true).filter(|size| *size < nearest_missed).reduce(f64::max);
     let farthest_met = sizes_where(true).fold(f64::NAN, f64::max);
@@ -179,7 +176,8 @@ mod tests {
             key("idle", values.iter().map(|value| 100.0 + (7.0 * value).rem_euclid(5.0)).collect()),
             key("mass", values.iter().map(|value| 100.0 + value).collect()),
         ];
-        let found = driving_keys(&keys, &errors, 20.0, Some((0, 40)), |_| None);
+        let met: Vec<bool> = errors.iter().map(|error| *error <= 20.0).collect();
+        let found = driving_keys(&keys, &errors, &met, Some((0, 40)), |_| None);
         assert_eq!(found.len(), 1);
         let first = &found[0];
         assert!(first.rank_correlation.abs() < 1e-12 && (first.deviation_correlation - 1.0).abs() < 1e-12);

@@ -70,12 +70,12 @@ fn collect(path: String, value: Value, leaves: &mut BTreeMap<String, Value>) {
 fn texts(key: &str, values: &[Option<Value>; 2], unit: Option<&str>, units: ReaderUnits) -> [String; 2] {
     let numbers = values.each_ref().map(|value| value.as_ref().and_then(number));
     let largest = numbers.iter().flatten().fold(0.0, |most: f64, number| most.max(number.abs()));
-    let fitting = units.of_key(key, largest, unit.unwrap_or(""));
+    let fitting = units.for_key(key, largest, unit.unwrap_or(""));
     [0, 1].map(|place| match (&values[place], numbers[place]) {
         (None, _) => String::new(),
         (Some(_), Some(number)) => {
             let text = match numbers[1 - place] {
-                Some(other) => fitting.beside(number, other),
+                Some(other) => fitting.number_against(number, other),
                 None => fitting.number(number),
             };
             format!("{text} {}", fitting.name).trim_end().to_owned()

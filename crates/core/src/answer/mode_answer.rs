@@ -32,7 +32,7 @@ pub struct ModeAnswer {
     /// Longest time with actuators at limits of one kind (s).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_limit_s: Option<f64>,
-    /// The limit of this time: `torque` or `speed` of wheels, `rods`, `jets` or `gimbals`; absent if none is reached.
+    /// Limit at which this longest time is spent: `torque` or `speed` of wheels, `rods`, `jets` or `gimbals`; absent if none is reached.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at_limit_of: Option<&'static str>,
 }

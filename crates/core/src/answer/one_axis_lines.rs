@@ -11,7 +11,7 @@ const LATE: f64 = 5.0;
 /// Largest number of observed coordinates on a first screen.
 const MOST_OUTPUTS: usize = 2;
 
-/// Returns true for a text of a quantity that is 0 in all its digits.
+/// True if a text of a quantity is 0 in all its digits.
 fn is_nothing(text: &str) -> bool {
     text.starts_with("0 ")
 }

@@ -10,7 +10,7 @@ use crate::requirement_verdict::{Decision, RequirementVerdict};
 
 /// Margin above which only its bound is shown.
 const AMPLE: f64 = 0.99;
-/// Relative difference by which rounding may part a value from the same value.
+/// Largest relative difference of two values that are equal but for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Requirement of a run, and whether it is met.
@@ -71,7 +71,7 @@ pub struct RequirementText {
     /// absent without one.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub largest: String,
-    /// Word before it.
+    /// Word before `largest` on a screen.
     #[serde(skip)]
     pub(super) largest_word: &'static str,
 }
@@ -108,7 +108,7 @@ impl RequirementAnswer {
             unit: unit.name.to_string(),
             limit: unit.limit(limit, written),
             value: match decision {
-                _ if value.is_finite() => with_unit(unit.beside(value, limit)),
+                _ if value.is_finite() => with_unit(unit.number_against(value, limit)),
                 Decision::Undecided => "undecided, the run ends too early".to_owned(),
                 Decision::NotExercised => "not exercised".to_owned(),
                 Decision::Met | Decision::Missed => "no value".to_owned(),

@@ -143,7 +143,7 @@ impl RunData<'_> {
         };
         // A largest value, and its limit if there is one.
         let of_limit = |unit: &ReaderUnit, peak: f64, limit: Option<f64>| match limit {
-            Some(limit) => format!("{} of {}", unit.beside(peak, limit), unit.quantity(limit)),
+            Some(limit) => format!("{} of {}", unit.number_against(peak, limit), unit.quantity(limit)),
             None => unit.quantity(peak),
         };
         let unit = self.units.rotor_speed();

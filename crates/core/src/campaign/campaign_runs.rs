@@ -13,7 +13,7 @@ const GOAL: &str = goal::NAMES[0];
 const COLUMNS: [&str; 5] = [RUN, ERROR, GOAL, "requirement_values", "requirement_shares"];
 
 /// Metrics, apart from requirements and the goal, from which the answer of a campaign is made: warnings and modes of operation.
-const NOTED: [&str; 24] = [
+const ANSWER_METRICS: [&str; 22] = [
     "mode_times_s",
     "mode_visits",
     "angle_error_peak_rad",
@@ -36,8 +36,6 @@ const NOTED: [&str; 24] = [
     "nees_mean",
     "nis_mean",
     "lock_lost_at_s",
-    "lock_lost",
-    "goal_band_rad",
 ];
 
 /// Values of runs, as they are collected.
@@ -51,8 +49,8 @@ pub struct CampaignRuns {
     /// Number of runs, and of those that failed.
     pub(crate) runs: u64,
     pub(crate) failed: u64,
-    /// Metrics that are noted, each with a cell for every run.
-    noted: Vec<(&'static MetricDescription, ColumnCells)>,
+    /// Metrics from which warnings and modes of operation follow, each with a cell for every run.
+    answer_metrics: Vec<(&'static MetricDescription, ColumnCells)>,
     /// Number of varied keys before the uncertain ones.
     designed: usize,
 }
@@ -81,12 +79,12 @@ impl CampaignRuns {
         };
         let keys: Vec<UncertainValues> = scenario.uncertain.keys().map(uncertain).collect();
         let fields = campaign.fields(&Selection::ALL);
-        let noted = |name: &str| {
+        let metric = |name: &str| {
             let field = fields.iter().find(|field| field.name == name)?;
             Some((meaning(name, Some(scenario))?, ColumnCells::empty(field.kind)))
         };
         Self {
-            noted: NOTED.into_iter().filter_map(noted).collect(),
+            answer_metrics: ANSWER_METRICS.into_iter().filter_map(metric).collect(),
             requirements: RequirementRuns::new(scenario),
             designed: campaign.keys().count() - keys.len(),
             keys,
@@ -96,9 +94,9 @@ impl CampaignRuns {
         }
     }
 
-    /// Returns the names of the columns of which the values are, besides those of the keys.
+    /// Returns the names of the columns of a table from which the answer of a campaign is made, besides its varied keys.
     pub fn columns() -> impl Iterator<Item = &'static str> {
-        COLUMNS.into_iter().chain(NOTED)
+        COLUMNS.into_iter().chain(ANSWER_METRICS)
     }
 
     /// Adds a run of this number by the values of all keys that vary and by its metrics; one that failed has none.
@@ -107,7 +105,7 @@ impl CampaignRuns {
         for (own, value) in self.keys.iter_mut().zip(drawn.iter().skip(self.designed)) {
             own.values.push(number(value));
         }
-        for (meaning, cells) in &mut self.noted {
+        for (meaning, cells) in &mut self.answer_metrics {
             cells.push_metric(metrics.and_then(|metrics| metrics.get(meaning.name)));
         }
         self.add_goal(metrics.and_then(|metrics| metrics.word(GOAL)).and_then(goal::score));
@@ -120,7 +118,7 @@ impl CampaignRuns {
         self.runs
     }
 
-    /// Returns true if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
+    /// True if the runs that remain of a campaign of `total` cannot change whether it meets each requirement.
     pub fn are_decided(&self, total: u64) -> bool {
         !self.requirements.is_empty() && self.requirements.are_decided(total)
     }
@@ -130,12 +128,12 @@ impl CampaignRuns {
         self.requirements.clone().finish()
     }
 
-    /// Returns the metrics of the run in a row that are noted.
-    pub(crate) fn noted(&self, row: usize) -> Metrics {
+    /// Returns the metrics of the run in a row from which warnings and modes of operation follow.
+    pub(crate) fn answer_metrics(&self, row: usize) -> Metrics {
         let metric = |(meaning, cells): &(&'static MetricDescription, ColumnCells)| {
-            Some((*meaning, cells.metric(row)?))
+            Some((*meaning, cells.metric_value(row)?))
         };
-        Metrics(self.noted.iter().filter_map(metric).collect())
+        Metrics(self.answer_metrics.iter().filter_map(metric).collect())
     }
 
     fn add_goal(&mut self, score: Option<f64>) {
@@ -156,9 +154,10 @@ impl RowMaker {
         let keys: Vec<String> = all.keys.iter().map(|own| own.key.clone()).collect();
         let mut names: Vec<&str> = COLUMNS.to_vec();
         names.extend(keys.iter().map(String::as_str));
-        names.extend(all.noted.iter().map(|(meaning, _)| meaning.name));
+        names.extend(all.answer_metrics.iter().map(|(meaning, _)| meaning.name));
         let mut found = columns(&names)?;
-        for ((_, own), cells) in all.noted.iter_mut().zip(found.drain(COLUMNS.len() + keys.len()..)) {
+        let metrics = found.drain(COLUMNS.len() + keys.len()..);
+        for ((_, own), cells) in all.answer_metrics.iter_mut().zip(metrics) {
             // A table may have only some of the metrics.
             *own = cells.unwrap_or_else(|| ColumnCells::Numbers(Vec::new()));
         }

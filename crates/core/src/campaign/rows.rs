@@ -237,7 +237,7 @@ impl ColumnCells {
     }
 
     /// Returns the value of a metric in a row; `None` for null. Words are a list.
-    pub(super) fn metric(&self, row: usize) -> Option<MetricValue> {
+    pub(super) fn metric_value(&self, row: usize) -> Option<MetricValue> {
         Some(match self {
             Self::Integers(cells) => MetricValue::Count((*cells.get(row)?)?.cast_unsigned()),
             Self::Numbers(cells) => MetricValue::Number(*cells.get(row)?),

@@ -280,7 +280,7 @@ fn decided(own: &RequirementRobustness) -> Option<f64> {
     if own.least >= 0.0 { Some(own.least) } else { Some(own.largest).filter(|largest| *largest < 0.0) }
 }
 
-/// Returns true if, by its value and share, nothing in a run was to meet a requirement.
+/// True if, by its value and share, nothing in a run was to meet a requirement.
 pub fn is_not_exercised(value: f64, share: f64) -> bool {
     value.is_nan() && share == 1.0
 }

@@ -60,7 +60,7 @@ impl ThreeAxisMotion {
         let tide = 2.0 * tide.map_or(0.0, |tide| tide.norm());
         let mut assumed = start.clone();
         for _ in 0..MAX_ENLARGEMENTS {
-            let (bounds, reached_values) = self.implied(&assumed, &start, h, (surroundings, tide));
+            let (bounds, reached_values) = self.implied(&assumed, &start, h, surroundings, tide);
             let mut holds = true;
             let mut enlarge = |assumed: &mut f64, reached_values: f64| {
                 if reached_values > *assumed {
@@ -86,14 +86,15 @@ impl ThreeAxisMotion {
         Bounds { second: f64::INFINITY, third: f64::INFINITY, friction }
     }
 
-    /// Returns the bounds that follow from the assumed values, and the largest values then implied within `h` (s), with the size
-    /// of the tide (1/s²).
+    /// Returns the bounds that follow from the assumed values and twice the norm `tide` of the tidal tensor (1/s²), and the
+    /// largest values then implied within `h` (s).
     fn implied(
         &self,
         assumed: &Assumed,
         start: &Assumed,
         h: f64,
-        (surroundings, tide): (TimedSurroundings, f64),
+        surroundings: TimedSurroundings,
+        tide: f64,
     ) -> (Bounds, Assumed) {
         let model = &self.model;
         let rotors = self.current_bearings(&self.slips);

@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{Matrix3, Quaternion};
 
-/// Surroundings of a body at an instant, whatever its attitude: 0 where there is none, or where nothing acts by it.
+/// Surroundings of a body at an instant, for any attitude: quantities are 0 where they are absent or have no torque.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct SkyAt {
     /// Torque that acts whatever the attitude, in the body's axes (N m).
@@ -32,15 +32,16 @@ pub trait Surroundings {
     /// Returns the surroundings at a time `t` since the start (s), from which torques follow for any attitude.
     fn sky_at(&self, t: f64) -> SkyAt;
 
-    /// Returns the torque in the body's axes (N m), for the attitude of the hub and the present inertia of the body (kg m²).
+    /// Returns the torque under a sky in the body's axes (N m), for the attitude of the hub and the present inertia of the body
+    /// (kg m²).
     fn torque(&self, sky: &SkyAt, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
 
-    /// Returns the part of the torque (N m) that depends on where appendages that turn are, in addition to `torque`.
+    /// Returns the part of the torque under a sky (N m) that depends on where appendages that turn are, in addition to `torque`.
     fn panel_torque(&self, _sky: &SkyAt, _attitude: &Quaternion<f64>, _panels: &PanelPlaces<'_>) -> Vector {
         Vector::zeros()
     }
 
-    /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
+    /// Returns the tidal tensor under a sky (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
     /// to the force on the mode; `None` without such a force.
     fn tidal_tensor(&self, sky: &SkyAt, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
 

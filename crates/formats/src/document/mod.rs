@@ -220,9 +220,7 @@ impl Document {
         if faults.is_empty() {
             return Ok(Cow::Owned(converted));
         }
-        let ScenarioError::Invalid(mut all) = self.at_keys(&faults) else {
-            return Err(self.at_keys(&faults));
-        };
+        let mut all = self.diagnostics(&faults);
         if let Err(wrong) = reader::read::<T>(&converted.table) {
             let is_known = |wrong: &Mismatch| faults.iter().any(|fault| fault.key == wrong.path());
             let others = mistakes::all::<T>(&converted.table, wrong).into_iter();
@@ -308,6 +306,11 @@ impl Document {
     /// Returns the error of faults, in the order of the text and with the places of their values; those without a place
     /// stand at the end, in the order of the keys.
     pub fn at_keys(&self, faults: &[ConfigError]) -> ScenarioError {
+        ScenarioError::Invalid(self.diagnostics(faults))
+    }
+
+    /// Returns the diagnostics of faults in the order of [`Self::at_keys`].
+    fn diagnostics(&self, faults: &[ConfigError]) -> Vec<Diagnostic> {
         let text = self.text.as_deref().unwrap_or_default();
         let table = DeTable::parse(text).ok();
         let place = |fault: &ConfigError| {
@@ -324,7 +327,7 @@ impl Document {
                 None => diagnostic,
             }
         };
-        ScenarioError::Invalid(placed.into_iter().map(diagnostic).collect())
+        placed.into_iter().map(diagnostic).collect()
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {

@@ -16,6 +16,7 @@ use super::npz;
 use super::unavailable::npz;
 use super::{csv, matrix_market};
 use crate::document::ConfigError;
+use crate::text_file::locate;
 
 /// Dense matrix, or the path of its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,10 +33,8 @@ const EXPECTED: &str = "rows of numbers, or the path of a .csv, .mtx or .npz fil
 impl Matrix {
     /// Makes the path of a file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Self::File(file) = self
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
+        if let Self::File(file) = self {
+            locate(file, directory);
         }
     }
 

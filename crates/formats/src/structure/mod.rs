@@ -26,7 +26,6 @@ use nalgebra::{DMatrix, DVector};
 use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
 use eigen_reduced::EigenError;
-
 pub use matrix::Matrix;
 pub use matrix_market::{MatrixElements, read_elements as read_matrix_market};
 pub use shape::Shape;

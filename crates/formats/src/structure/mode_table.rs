@@ -17,6 +17,7 @@ use super::Shape;
 use super::{LARGEST, csv};
 use crate::foreign_file;
 use crate::number::real;
+use crate::text_file::locate;
 
 /// Endings of the column names of a point's shape, after the point's name and a dot: three translations, three
 /// rotations.
@@ -90,11 +91,7 @@ impl<M> From<Vec<M>> for ModeTable<M> {
 impl<M: ModeRow> ModeTable<M> {
     /// Makes the path of the file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Some(file) = &mut self.file
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
-        }
+        self.file.iter_mut().for_each(|file| locate(file, directory));
     }
 
     /// Reads the file, if the modes are in one, or copies the modes from `others` if that has read the same file.

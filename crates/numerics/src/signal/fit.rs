@@ -11,11 +11,12 @@ const COSINES: [f64; 5] =
 /// Length (s) of a part that is not halved.
 const SHORTEST: f64 = 1e-7;
 
-/// Values of several functions at increasing times (s), those of each time together; `None` where there are none.
+/// Evaluation of several functions at increasing times (s), with the values of each time together; `None` where there are none.
 pub type FitValues<'a> = dyn FnMut(&[f64]) -> Option<Vec<Vec<f64>>> + 'a;
 
-/// Fits several functions of time (s) on an interval, each to within its tolerance. Passes the start and length of each part (s) and the polynomials of all
-/// functions there to `take`; returns false if there were no values.
+/// Fits several functions of time (s) on an interval, each to within its tolerance or, if that is larger, the rounding of its
+/// values and times. Passes the start and length of each part (s) and the polynomials of all functions there to `take`;
+/// returns false if there were no values.
 ///
 /// The functions may not change faster than the parts of a ninth of the interval show.
 pub fn fit(
@@ -34,16 +35,26 @@ pub fn fit(
         let samples: [f64; DEGREE + 1] = std::array::from_fn(|point| values[point][function]);
         let coefficients = chebyshev(&samples);
         let [.., before, last] = coefficients;
-        let is_fit = before.abs() + last.abs() <= *tolerance;
-        if !is_fit && length > SHORTEST {
+        let tolerance = tolerance.max(rounding(&samples, [from, to]));
+        // Halving does not help where a value is not a number.
+        if before.abs() + last.abs() > tolerance && length > SHORTEST {
             let middle = 0.5 * (from + to);
             return fit([from, middle], tolerances, evaluate, take)
                 && fit([middle, to], tolerances, evaluate, take);
         }
-        all.push(monomials(&coefficients, *tolerance));
+        all.push(monomials(&coefficients, tolerance));
     }
     take(from, length, &all);
     true
+}
+
+/// Returns a bound of the error of values between two times (s) by rounding, of themselves and of the times.
+fn rounding(values: &[f64], [from, to]: [f64; 2]) -> f64 {
+    let (low, high) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(*value), high.max(*value)));
+    let late = from.abs().max(to.abs());
+    8.0 * f64::EPSILON * (low.abs().max(high.abs()) + (high - low) / (to - from) * late)
 }
 
 /// Returns the cosine of `k` pi/8.

@@ -95,33 +95,35 @@ impl SignalPiece {
         Witnessed { value, at, source: self.source }
     }
 
-    /// Returns `gain` times the piece plus `offset`.
+    /// Returns `factor` times the piece plus `shift`.
     #[must_use]
-    pub fn scaled(mut self, by: f64, plus: f64) -> Self {
+    pub fn scaled(mut self, factor: f64, shift: f64) -> Self {
         match &mut self.shape {
-            PieceValues::Constant { value, .. } => *value = plus + by * *value,
-            PieceValues::Curve { gain, offset, .. } => (*gain, *offset) = (by * *gain, plus + by * *offset),
+            PieceValues::Constant { value, .. } => *value = shift + factor * *value,
+            PieceValues::Curve { gain, offset, .. } => {
+                (*gain, *offset) = (factor * *gain, shift + factor * *offset);
+            }
         }
         self
     }
 
-    /// Returns the part between two times, as seen `ahead` seconds before.
+    /// Returns the part between two times (s), moved to times that are `lead` seconds earlier.
     #[must_use]
-    pub fn seen(&self, from: f64, to: f64, ahead: f64) -> Self {
-        let mut part = Self { from: from - ahead, to: to - ahead, ..self.clone() };
-        if let PieceValues::Curve { ahead: already, .. } = &mut part.shape {
-            *already += ahead;
+    pub fn part_earlier(&self, from: f64, to: f64, lead: f64) -> Self {
+        let mut part = self.part(from - lead, to - lead);
+        if let PieceValues::Curve { ahead, .. } = &mut part.shape {
+            *ahead += lead;
         }
         part
     }
 
-    /// Returns the part between two times.
+    /// Returns the part between two times (s).
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         Self { from, to, ..self.clone() }
     }
 
-    /// Lets the observed signal have a constant from the start of the piece on.
+    /// Makes the start of the piece the time at which the observed signal has the value of a constant.
     pub fn restart(&mut self) {
         if let PieceValues::Constant { at, .. } = &mut self.shape {
             *at = self.from;
@@ -153,8 +155,8 @@ impl SignalPiece {
         Some(part.scaled(*gain).minus_line(-offset, 0.0))
     }
 
-    /// Returns the least value between two times, both included, if it is below `most`. Of values that differ by rounding
-    /// alone, the first counts, and the turn of a window before its edge, which reaches it.
+    /// Returns the least value between two times (s), both included, if it is below `most`. Of values that differ by rounding
+    /// alone, the first counts; a value that the observed signal has after `to`, within a window, counts before one at the edge.
     pub fn lowest(&self, from: f64, to: f64, most: f64) -> Option<Witnessed> {
         let tie = if most.is_finite() { TIE * most.abs() } else { 0.0 };
         let PieceValues::Curve { ahead, .. } = &self.shape else {
@@ -180,29 +182,30 @@ impl SignalPiece {
 
     /// Appends the absolute values of the piece.
     pub fn push_magnitude(&self, into: &mut Vec<Self>) {
-        let mut changes = Vec::new();
-        if let Some(whole) = self.polynomial(self.from, self.to) {
-            whole.roots(0.0, &mut changes);
-        }
         let magnitude = |part: Self| {
             let is_negative = part.at(0.5 * (part.from + part.to)).value < 0.0;
             if is_negative { part.scaled(-1.0, 0.0) } else { part }
         };
-        self.push_parts(&changes, magnitude, into);
+        self.push_parts(&self.zeros(), magnitude, into);
     }
 
     /// Appends the signs of the piece: infinities, the positive one where the value is 0 or more.
     pub fn push_signs(&self, into: &mut Vec<Self>) {
-        let mut changes = Vec::new();
-        if let Some(whole) = self.polynomial(self.from, self.to) {
-            whole.roots(0.0, &mut changes);
-        }
         let sign = |part: Self| {
             let is_positive = part.at(0.5 * (part.from + part.to.min(f64::MAX))).value >= 0.0;
             let value = if is_positive { f64::INFINITY } else { f64::NEG_INFINITY };
             Self::constant(part.from, part.to, value, part.source)
         };
-        self.push_parts(&changes, sign, into);
+        self.push_parts(&self.zeros(), sign, into);
+    }
+
+    /// Returns the points of the elapsed fraction at which the piece changes its sign; none of a constant.
+    fn zeros(&self) -> Vec<f64> {
+        let mut zeros = Vec::new();
+        if let Some(whole) = self.polynomial(self.from, self.to) {
+            whole.roots(0.0, &mut zeros);
+        }
+        zeros
     }
 
     /// Appends the parts of the piece between points of its elapsed fraction.
@@ -242,18 +245,8 @@ impl SignalPiece {
             }
         }
     }
-}
 
-/// Appends a piece, to the last one if it continues it.
-fn push_joined(into: &mut Vec<SignalPiece>, piece: SignalPiece) {
-    match into.last_mut() {
-        Some(last) if last.to == piece.from && last.continues_as(&piece) => last.to = piece.to,
-        _ => into.push(piece),
-    }
-}
-
-impl SignalPiece {
-    /// Returns true if the next piece has the same values.
+    /// True if the next piece has the values of this one.
     fn continues_as(&self, next: &Self) -> bool {
         match (&self.shape, &next.shape) {
             (PieceValues::Constant { value, .. }, PieceValues::Constant { value: other, .. }) => {
@@ -264,5 +257,13 @@ impl SignalPiece {
             }
             _ => false,
         }
+    }
+}
+
+/// Appends a piece, to the last one if it continues it.
+fn push_joined(into: &mut Vec<SignalPiece>, piece: SignalPiece) {
+    match into.last_mut() {
+        Some(last) if last.to == piece.from && last.continues_as(&piece) => last.to = piece.to,
+        _ => into.push(piece),
     }
 }

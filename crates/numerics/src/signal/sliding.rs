@@ -31,7 +31,7 @@ impl SlidingMinimum {
     /// Takes the next piece of the signal, and appends the minimum as far as it is known.
     pub fn push(&mut self, piece: &SignalPiece, into: &mut Vec<SignalPiece>) {
         if self.width == 0.0 {
-            into.push(piece.seen(piece.from, piece.to, self.after));
+            into.push(piece.part_earlier(piece.from, piece.to, self.after));
             return;
         }
         let mut monotone = Vec::new();
@@ -71,7 +71,7 @@ impl SlidingMinimum {
             let turn = self.turns.front();
             let to = turn.map_or(until, |(at, _)| at.min(until)).min(left.to);
             let mut edges = Vec::new();
-            let right = right.seen(from + self.width, to + self.width, self.width);
+            let right = right.part_earlier(from + self.width, to + self.width, self.width);
             left.push_lesser(&right, from, to, &mut edges);
             for edge in edges {
                 let mut parts = Vec::new();
@@ -82,7 +82,7 @@ impl SlidingMinimum {
                     }
                     None => parts.push(edge),
                 }
-                into.extend(parts.iter().map(|part| part.seen(part.from, part.to, self.after)));
+                into.extend(parts.iter().map(|part| part.part_earlier(part.from, part.to, self.after)));
             }
             self.known = to;
         }
@@ -108,6 +108,6 @@ impl SlidingMinimum {
             let start = piece.at(piece.from);
             least = Some(if start.value < later.value { start } else { later });
         }
-        into.extend(reversed.iter().rev().map(|part| part.seen(part.from, part.to, self.after)));
+        into.extend(reversed.iter().rev().map(|part| part.part_earlier(part.from, part.to, self.after)));
     }
 }

@@ -8,8 +8,8 @@ from typing import Any
 from flexsc import _native as engine
 
 
-class Text:
-    """Fields of the engine, and their text."""
+class PrintedFields:
+    """Fields of the engine, and the text that the command prints of them."""
 
     def __init__(self, native: engine.RunAnswer) -> None:
         self._native = native
@@ -53,8 +53,8 @@ class Text:
         return f"<pre>{escape(self.text())}</pre>"
 
 
-class _Fields(Text):
-    """Fields and text of an answer."""
+class _AnswerFields(PrintedFields):
+    """Fields that the answers of runs and of campaigns have."""
 
     verdict: str
     verdict_text: str
@@ -73,7 +73,7 @@ class _Fields(Text):
         return f"<flexsc.{type(self).__name__}: {self.verdict_text}>"
 
 
-class Answer(_Fields):
+class Answer(_AnswerFields):
     """The answer of a run: its verdict, requirements, warnings, modes of operation and events.
 
     As text it is the first screen of `flexsc simulate`, in the units of the limits.
@@ -148,7 +148,7 @@ class Answer(_Fields):
         raise KeyError(f"no requirement `{name}`; the requirements are {names}")
 
 
-class CampaignAnswer(_Fields):
+class CampaignAnswer(_AnswerFields):
     """The answer of a campaign: how many runs meet what is asked, by how much, and what drives it.
 
     As text it is the first screen of `flexsc simulate --runs`, in the units of the limits.

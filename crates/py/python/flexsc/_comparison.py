@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._answer import Text
+from flexsc._answer import PrintedFields
 from flexsc._campaign import read_campaign
 from flexsc._log import Log
 from flexsc._missing import reading
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Side: TypeAlias = "Scenario | Result | Log | Table | str | os.PathLike[str]"
 
 
-class Comparison(Text):
+class Comparison(PrintedFields):
     """Two answers side by side, as `flexsc compare` prints them.
 
     >>> import flexsc

@@ -17,7 +17,7 @@ pub struct RequirementSamples {
     scopes: Vec<ScopeState>,
 }
 
-/// Condition at which samples of a requirement count.
+/// Condition under which samples of a requirement count, and whether they do.
 #[derive(Clone, Debug)]
 struct ScopeState {
     requirement: usize,
@@ -77,7 +77,7 @@ impl RequirementSamples {
     pub fn record_scopes(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         let mut changed = Vec::new();
         for scope in &mut self.scopes {
-            let counts = run.meets(&scope.condition);
+            let counts = scope.condition.holds(run);
             if counts != scope.counts {
                 scope.counts = counts;
                 changed.push(RequirementScope { requirement: scope.requirement, counts });

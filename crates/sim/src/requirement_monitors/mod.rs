@@ -1,15 +1,15 @@
 //! Requirements over time: the signals that they read, piece by piece, and their robustness at the end of the run.
 //!
-//! What the control system knows is constant from one sample or decision to the next, and times grow. The true motion is that
-//! of the body over each segment: about one axis the series of its closed form, about three axes polynomials through the
-//! motion of a copy of the plant. Instants at which only the record gets rows change none of them.
+//! Measured and estimated quantities are constant from one sample or decision to the next, and times grow. The true motion is
+//! that of the body over each segment: about one axis the series of its closed form, about three axes polynomials through the
+//! motion of a copy of the plant. Instants at which only the record gets rows change neither.
 
 mod motion;
 
 use std::sync::Arc;
 
-use flexsc_control::operation::ModeQuantity;
-use flexsc_control::robustness::RequirementMonitor;
+use flexsc_control::operation::{ModeQuantity, ModeReadings};
+use flexsc_control::robustness::{RequirementMonitor, limit_scale};
 use flexsc_numerics::polynomial::{Polynomial, TERMS};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::signal::{Curve, PieceValues, SignalPiece, fit};
@@ -55,7 +55,7 @@ struct Observed {
     quantity: ModeQuantity,
     /// Accuracy of its polynomials, in its unit.
     tolerance: f64,
-    /// Times (s) from which on it has had a value; the first is at most the start of the segment.
+    /// Values, each with the time (s) from which on it holds; the first time is at most the start of the segment.
     values: Vec<(f64, f64)>,
 }
 
@@ -82,10 +82,9 @@ impl RequirementMonitors {
         all
     }
 
-    /// Returns the place of a quantity that is compared with a limit.
+    /// Returns the index of a quantity that is compared with a limit, which is added if it is not among them.
     fn place(&mut self, quantity: ModeQuantity, limit: f64) -> usize {
-        let limit = if limit == 0.0 { 1.0 } else { limit.abs() };
-        let tolerance = (TOLERANCE * limit).max(ROUNDING);
+        let tolerance = (TOLERANCE * limit_scale(limit)).max(ROUNDING);
         if let Some(place) = self.quantities.iter().position(|known| known.quantity == quantity) {
             let known = &mut self.quantities[place];
             known.tolerance = known.tolerance.min(tolerance);
@@ -101,8 +100,8 @@ impl RequirementMonitors {
         self.monitors.is_empty()
     }
 
-    /// Takes the quantities that change at instants, at one of them; what the control system knows only if it has sampled or
-    /// decided.
+    /// Takes the values of the quantities that change at instants, at one of them: of those that are measured or estimated only
+    /// if there was a sample or a decision.
     pub fn observe(&mut self, run: &RunView<'_>, has_sampled: bool) {
         for observed in &mut self.quantities {
             let quantity = observed.quantity;
@@ -110,7 +109,7 @@ impl RequirementMonitors {
             if quantity.is_of_motion() || quantity.is_of_sky() || !is_event && !has_sampled {
                 continue;
             }
-            let (now, value) = (run.now.seconds(), run.quantity(quantity));
+            let (now, value) = (run.now.seconds(), run.value(quantity));
             match observed.values.last_mut() {
                 Some(last) if last.0 == now => last.1 = value,
                 Some(last) if last.1.to_bits() == value.to_bits() && !quantity.grows_with_time() => {}
@@ -125,7 +124,7 @@ impl RequirementMonitors {
         self.copy = None;
         // The mode of operation changes between segments alone.
         let range = |observed: &Observed| match observed.quantity {
-            quantity @ ModeQuantity::Mode(_) => [run.quantity(quantity); 2],
+            quantity @ ModeQuantity::Mode(_) => [run.value(quantity); 2],
             quantity if quantity.is_of_motion() => [0.0, f64::INFINITY],
             _ => [f64::NEG_INFINITY, f64::INFINITY],
         };
@@ -166,7 +165,7 @@ impl RequirementMonitors {
                 let grows = quantity.grows_with_time();
                 let ends = values[1..].iter().map(|(at, _)| *at).chain([to]);
                 for ((begin, value), end) in values.iter().zip(ends) {
-                    into.extend(known([*begin, end], *value, grows));
+                    into.extend(held_value([*begin, end], *value, grows));
                 }
                 let last = values.len() - 1;
                 values.drain(..last);
@@ -228,8 +227,8 @@ fn curve(begin: f64, length: f64, polynomial: Polynomial) -> Option<SignalPiece>
     (length > 0.0).then_some(SignalPiece { from: begin, to: begin + length, shape, source: 0 })
 }
 
-/// Returns the piece of a known value, which may grow with the time.
-fn known([from, to]: [f64; 2], value: f64, grows: bool) -> Option<SignalPiece> {
+/// Returns the piece of a value that is constant or, if it `grows`, a time; none without length.
+fn held_value([from, to]: [f64; 2], value: f64, grows: bool) -> Option<SignalPiece> {
     if grows {
         let mut terms = [0.0; TERMS];
         (terms[0], terms[1]) = (value, to - from);
@@ -238,7 +237,7 @@ fn known([from, to]: [f64; 2], value: f64, grows: bool) -> Option<SignalPiece> {
     (to > from).then(|| SignalPiece::constant(from, to, value, 0))
 }
 
-/// Lets pieces follow each other without gaps by rounding, from the start of a segment to its end.
+/// Closes gaps by rounding between pieces, from the start of a segment to its end.
 fn join(pieces: &mut [SignalPiece], [from, to]: [f64; 2]) {
     let mut begin = from;
     for piece in pieces.iter_mut() {

@@ -1,4 +1,4 @@
-//! True motion as requirements over time read it: left out where it changes no result, else piece by piece.
+//! True motion as requirements over time read it: piece by piece, or as one value where the motion changes no result.
 
 use flexsc_control::operation::ModeQuantity;
 use flexsc_numerics::attitude::Vector;
@@ -10,7 +10,7 @@ use super::super::guidance::Guidance;
 use super::super::loads::Loads;
 use super::super::motion_limits::{MotionLimits, RESERVE};
 use super::super::plant::{AppliedTorque, Plant};
-use super::super::run_view::motion_error;
+use super::super::run_view::{motion_error, true_rate};
 use super::{Observed, RequirementMonitors, curve, join, parts};
 
 /// Radians of the fastest motion in a part that is fitted.
@@ -199,7 +199,7 @@ impl RequirementMonitors {
     /// Returns the vector whose norm is a quantity of the true motion about three axes.
     fn error(&self, quantity: ModeQuantity, plant: &Plant, guidance: &Guidance, at: Instant) -> [f64; 3] {
         match quantity {
-            ModeQuantity::TrueRate => plant.truth().rigid_rate,
+            ModeQuantity::TrueRate => true_rate(plant),
             ModeQuantity::TrueRateError => motion_error(plant, guidance, at, true),
             ModeQuantity::LineOfSight(line) => {
                 self.lines.error(line, plant, guidance, at).unwrap_or_default().into()

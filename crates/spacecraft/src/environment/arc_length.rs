@@ -6,17 +6,18 @@
 //! the rate n of the mean anomaly, |Im E| is at most the least root y of y - e sinh y = n b, and |r.r| at least the square of
 //! R = a (1 - e cosh y). The planet's axis, node and perigee turn by imaginary angles of their rates times b.
 
+use flexsc_numerics::time_arcs::DEGREE;
+
 use super::Kepler;
 use super::magnetic_field::PlanetField;
 
 /// Error that is accepted.
 const ERROR: f64 = 1e-15;
 
-/// Degree N of the polynomials.
-const DEGREE: i32 = 16;
+/// Length of the shortest arc (s), whose error is bounded on any orbit that takes more than some seconds.
+const SHORTEST: f64 = 1.0 / 1024.0;
 
-/// Shortest and longest arc (s).
-const SHORTEST: f64 = 8.0;
+/// Length of the longest arc (s).
 pub(super) const LONGEST: f64 = 8192.0;
 
 impl Kepler {
@@ -28,9 +29,9 @@ impl Kepler {
             let [position, magnetic] = self.arc_errors(field, length);
             position <= ERROR * self.semi_major_axis.get() && magnetic <= ERROR * largest
         };
-        let mut length = SHORTEST;
-        while length < LONGEST && holds(2.0 * length) {
-            length *= 2.0;
+        let mut length = LONGEST;
+        while length > SHORTEST && !holds(length) {
+            length *= 0.5;
         }
         length
     }
@@ -42,7 +43,7 @@ impl Kepler {
         for _ in 0..40 {
             sum *= 1.15;
             let Some(sizes) = self.complex_sizes(field, 0.25 * length * (sum - 1.0 / sum)) else { break };
-            let factor = 4.0 / (libm::pow(sum, f64::from(DEGREE)) * (sum - 1.0));
+            let factor = 4.0 / (libm::pow(sum, DEGREE as f64) * (sum - 1.0));
             for (least, size) in least.iter_mut().zip(sizes) {
                 *least = least.min(factor * size);
             }

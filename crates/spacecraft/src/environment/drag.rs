@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use flexsc_dynamics::three_axis::{PanelPlaces, SkyAt};
 use flexsc_formats::density_table::DensityTable;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
@@ -187,11 +188,28 @@ pub(super) struct DragLoad {
 /// Density of the atmosphere.
 #[derive(Clone, Debug, PartialEq)]
 enum Air {
-    /// Density (kg/m³) at a distance from the planet's centre (m), if it falls by 1/e in a height (m).
-    Exponential(f64, Option<[f64; 2]>),
+    Exponential(ExponentialAir),
     /// Exponent of the bulge.
     HarrisPriester(f64),
     Table(DensityRows<1>),
+}
+
+/// Density that is exponential in the distance from the planet's centre, or uniform.
+#[derive(Clone, Debug, PartialEq)]
+struct ExponentialAir {
+    /// Density (kg/m³) at the reference.
+    density: f64,
+    /// Distance of the reference from the planet's centre (m).
+    reference: f64,
+    /// Height (m) in which the density falls to 1/e, infinite if it is uniform.
+    scale_height: f64,
+}
+
+impl ExponentialAir {
+    /// Returns the density (kg/m³) at a distance from the planet's centre (m).
+    fn at(&self, distance: f64) -> f64 {
+        self.density * libm::exp((self.reference - distance) / self.scale_height)
+    }
 }
 
 impl Air {
@@ -203,26 +221,24 @@ impl Air {
             (DensityModel::Table, Some(table)) => Self::Table(density::tabulated(table)),
             _ => {
                 let reference = match (spec.altitude, orbit) {
-                    (Some(altitude), _) => Some(orbit.planet_radius() + altitude.get()),
-                    (None, OrbitPath::Kepler(orbit)) => Some(orbit.semi_major_axis.get()),
-                    (None, OrbitPath::Sampled(_)) => None,
+                    (None, OrbitPath::Kepler(orbit)) => orbit.semi_major_axis.get(),
+                    // An orbit by rows has an altitude.
+                    (altitude, _) => orbit.planet_radius() + altitude.map_or(0.0, Positive::get),
                 };
-                let falls = reference.zip(spec.scale_height.map(Positive::get));
-                Self::Exponential(spec.density.map_or(0.0, Positive::get), falls.map(<[f64; 2]>::from))
+                Self::Exponential(ExponentialAir {
+                    density: spec.density.map_or(0.0, Positive::get),
+                    reference,
+                    scale_height: spec.scale_height.map_or(f64::INFINITY, Positive::get),
+                })
             }
         }
-    }
-
-    /// Returns the density (kg/m³) of the exponential model at a distance from the planet's centre (m).
-    fn exponential(density: f64, falls: Option<[f64; 2]>, distance: f64) -> f64 {
-        density * falls.map_or(1.0, |[reference, height]| libm::exp((reference - distance) / height))
     }
 
     /// Returns an upper bound of the density on an orbit (kg/m³).
     fn bound(&self, orbit: &OrbitPath) -> f64 {
         let [low, high] = heights(orbit);
         match self {
-            Self::Exponential(density, falls) => Self::exponential(*density, *falls, orbit.nearest()),
+            Self::Exponential(air) => air.at(orbit.nearest()),
             Self::HarrisPriester(_) => density::harris_priester_range(low)[1],
             Self::Table(rows) => rows.largest([low, high]),
         }
@@ -246,10 +262,10 @@ impl DragLoad {
         }
     }
 
-    /// Returns the density (kg/m³).
+    /// Returns the density of the air (kg/m³).
     pub fn density(&self, row: &SkyRow) -> f64 {
         let density = match &self.air {
-            Air::Exponential(density, falls) => Air::exponential(*density, *falls, row.position().norm()),
+            Air::Exponential(air) => air.at(row.position().norm()),
             Air::HarrisPriester(exponent) => {
                 density::harris_priester(row.height(), row.bulge_cosine(), *exponent)
             }
@@ -263,21 +279,16 @@ impl DragLoad {
         row.velocity() - Vector::z().cross(&row.position()) * self.rotation
     }
 
-    /// Returns the torque about the centre of mass `centre` (m) on a body whose axes are the rows of `turn` in inertial axes, in
-    /// its axes (N m), in air of a density (kg/m³) and a relative velocity (m/s).
-    pub fn torque(
-        &self,
-        turn: &Matrix3<f64>,
-        (flow, density): (&Vector, f64),
-        (centre, axes): (&Vector, &[Matrix3<f64>]),
-    ) -> Vector {
-        let flow = transformed(turn, flow);
+    /// Returns the torque (N m) of drag about the centre of mass on a body whose axes are the rows of `turn` in inertial axes, in
+    /// its axes.
+    pub fn torque(&self, turn: &Matrix3<f64>, sky: &SkyAt, places: &PanelPlaces<'_>) -> Vector {
+        let flow = transformed(turn, &sky.flow);
         let mut sum = Vector::zeros();
         for plate in &self.plates {
-            let [normal, arm] = plate.place(centre, axes);
+            let [normal, arm] = plate.place(places);
             sum += arm * (normal.dot(&flow).max(0.0) * plate.area);
         }
-        sum.cross(&flow) * (-0.5 * self.coefficient * density)
+        sum.cross(&flow) * (-0.5 * self.coefficient * sky.density)
     }
 
     /// Returns an upper bound of the torque (N m) about the centre of mass `centre` (m).
@@ -312,14 +323,14 @@ mod tests {
         .unwrap();
         assert_eq!(drag.fault(Some(&kind), false), None);
         // At the start the body is on the inertial x axis and moves along y.
-        let row = SkyRow::new((Some(&orbit), None, None), false, 0.0.into());
+        let row = SkyRow::new(Some(&orbit), None, None, false, 0.0.into());
         let centre = Vector::new(0.1, 0.0, 0.0);
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
         let torque_on = |drag: &Drag, by: Vector| {
             let load = DragLoad::new(drag, &orbit, &PlateMounts::default());
-            let found =
-                load.torque(&body_axes(&turned(&by)), (&load.flow(&row), load.density(&row)), (&centre, &[]));
+            let sky = SkyAt { flow: load.flow(&row), density: load.density(&row), ..SkyAt::default() };
+            let found = load.torque(&body_axes(&turned(&by)), &sky, &PanelPlaces { centre, axes: &[] });
             assert!(found.norm() <= load.bound(&orbit, &centre) * (1.0 + 1e-12));
             found
         };
@@ -333,8 +344,9 @@ mod tests {
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
         let slower = torque_on(&carried, Vector::zeros()).x / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");
-        let fallen = Air::exponential(1.0, Some([6.8e6, 6e4]), 6.86e6);
-        assert!((fallen - libm::exp(-1.0)).abs() < 1e-15);
+        let air = ExponentialAir { density: 1.0, reference: 6.8e6, scale_height: 6e4 };
+        assert!((air.at(6.86e6) - libm::exp(-1.0)).abs() < 1e-15);
+        assert_eq!(ExponentialAir { scale_height: f64::INFINITY, ..air }.at(7e6), 1.0);
         assert_eq!(drag.fault(None, false).unwrap().key, "");
     }
 }

@@ -9,8 +9,8 @@ use std::path::Path;
 use flexsc_formats::calendar_date;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::element_message::{self, ElementMessage};
-use flexsc_formats::foreign_file;
-use flexsc_formats::text_file::read_text_up_to;
+use flexsc_formats::foreign_file::read_file;
+use flexsc_formats::text_file::{locate, read_text_up_to};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
@@ -20,6 +20,8 @@ use super::two_lines::{self, MeanElements};
 
 /// Largest size of a file (bytes).
 const LONGEST: u64 = 1 << 20;
+/// Formats of its files.
+const FORMATS: [&str; 4] = ["a two-line element set", "an OMM", "an OMM in XML", "an OMM in JSON"];
 const EXPECTED: &str = "both lines of a two-line element set, or the path of its file or of an OMM";
 
 /// Set of mean elements.
@@ -43,11 +45,7 @@ enum GivenElements {
 impl ElementSet {
     /// Makes the path of a file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
-        if let Some(file) = &mut self.file
-            && let Ok(path) = std::path::absolute(directory.join(&*file))
-        {
-            *file = path.to_string_lossy().into_owned();
-        }
+        self.file.iter_mut().for_each(|file| locate(file, directory));
     }
 
     /// Reads the file, if the set is in one.
@@ -56,21 +54,17 @@ impl ElementSet {
     /// The error in the file.
     pub fn read(&mut self) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
-        let path = Path::new(file);
-        let parse = |text: String| -> Result<GivenElements, String> {
-            if element_message::is_message(&text) {
-                return ElementMessage::parse(&text).map(GivenElements::Message);
-            }
-            Ok(GivenElements::Lines(both_lines(text.lines())?.1, None))
-        };
-        let found = read_text_up_to(path, LONGEST).and_then(parse).and_then(|elements| {
+        let reads = "a two-line element set and an OMM of SGP4";
+        self.elements = read_file(Path::new(file), &FORMATS, reads, |path| {
+            let text = read_text_up_to(path, LONGEST)?;
+            let elements = if element_message::is_message(&text) {
+                GivenElements::Message(ElementMessage::parse(&text)?)
+            } else {
+                GivenElements::Lines(both_lines(text.lines())?.1, None)
+            };
             let set = Self { file: None, elements };
             set.elements().map_err(|fault| fault.why)?;
             Ok(set.elements)
-        });
-        self.elements = found.map_err(|why| {
-            let reads = "a two-line element set and an OMM of SGP4";
-            format!("cannot be used: {file}: {}", foreign_file::refusal(path, &["OMM", "TLE"], reads, why))
         })?;
         Ok(())
     }
@@ -132,13 +126,12 @@ fn both_lines<'a>(lines: impl Iterator<Item = &'a str>) -> Result<(usize, [Strin
         .enumerate()
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
         .collect();
-    let is = |line: &str, number: char| line.starts_with(number) && line[1..].starts_with(' ');
     match lines[..] {
         [(first, one), (_, two)] | [_, (first, one), (_, two)] => {
             Ok((first, [one.to_owned(), two.to_owned()]))
         }
         _ => {
-            let sets = lines.iter().filter(|(_, line)| is(line, '1')).count();
+            let sets = lines.iter().filter(|(_, line)| line.starts_with("1 ")).count();
             Err(match sets {
                 0 | 1 => {
                     format!("must be two lines of an element set, or three with a name, got {}", lines.len())
@@ -258,9 +251,17 @@ mod tests {
             set.inline();
             assert_eq!(set.elements().expect("elements"), expected);
         }
-        std::fs::write(&path, "CCSDS_OEM_VERS = 2.0\n").expect("a file");
-        let why = given(path.to_str()).expect("a path").read().expect_err("an OEM");
-        assert!(why.contains("this is an OEM") && why.contains("orbit.ephemeris"), "{why}");
+        let refused = |text: &str, words: [&str; 2]| {
+            std::fs::write(&path, text).expect("a file");
+            let why = given(path.to_str()).expect("a path").read().expect_err("damaged");
+            assert!(words.iter().all(|word| why.contains(word)), "{why}");
+        };
+        refused("CCSDS_OEM_VERS = 2.0\n", ["this is an OEM", "orbit.ephemeris"]);
+        refused(&message.to_string().replace("BSTAR", "BTERM"), ["cannot be used", "must have `BSTAR`"]);
+        refused(
+            "<ndm><omm><EPOCH>2026-11-16</EPOCH></omm></ndm>",
+            ["cannot be used", "must have `MEAN_MOTION`"],
+        );
         std::fs::remove_file(&path).expect("a file");
     }
 

@@ -45,14 +45,15 @@ impl GravityGradient {
         Some((Orbit::new(rate, self.local).to_inertial(t, &Vector::z()), rate.get() * rate.get()))
     }
 
-    /// Returns the torque in the body's axes (N m), from the nadir direction and n² (1/s²).
-    pub(super) fn torque((nadir, tide): (Vector, f64), inertia: &Matrix3<f64>) -> Vector {
-        nadir.cross(&transformed(inertia, &nadir)) * (3.0 * tide)
+    /// Returns the torque (N m) on a body of an inertia (kg m²), from the nadir direction and n² (1/s²), in the body's axes.
+    pub(super) fn torque(nadir: &Vector, tide: f64, inertia: &Matrix3<f64>) -> Vector {
+        nadir.cross(&transformed(inertia, nadir)) * (3.0 * tide)
     }
 
-    /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode.
-    pub(super) fn modal_tensor((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
-        let (half, [x, y, z]) = (0.5 * tide, nadir.into());
+    /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode, from the nadir direction and
+    /// n² (1/s²), in the body's axes.
+    pub(super) fn modal_tensor(nadir: &Vector, tide: f64) -> Matrix3<f64> {
+        let (half, [x, y, z]) = (0.5 * tide, (*nadir).into());
         let (a, b, c) = (-3.0 * half * x, -3.0 * half * y, -3.0 * half * z);
         Matrix3::new(half + a * x, a * y, a * z, a * y, half + b * y, b * z, a * z, b * z, half + c * z)
     }

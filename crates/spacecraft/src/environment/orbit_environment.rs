@@ -140,7 +140,7 @@ impl OrbitEnvironment {
         }
     }
 
-    /// Returns the part of the Sun's disc in view at a time since the start (s) whose row is known.
+    /// Returns the part of the Sun's disc in view, from 0 to 1, at a time since the start (s) with its row.
     pub(super) fn part_in_row(&self, row: &SkyRow, t: f64) -> f64 {
         match (self.shadow, &self.orbit, &self.sun) {
             (ShadowShape::Cone, Some(orbit), Some(_)) => {
@@ -150,8 +150,8 @@ impl OrbitEnvironment {
         }
     }
 
-    /// Returns the times (s) about one on which position, magnetic field and Sun are polynomials, or arcs that are halved for them:
-    /// on an orbit by rows from one to the next.
+    /// Returns start and end (s) of the arc about a time since the start (s) on which position, magnetic field and Sun are
+    /// polynomials, before it is halved for an error that is too large: on an orbit by rows, from one row to the next.
     pub fn span(&self, t: f64) -> [f64; 2] {
         let length = match &self.orbit {
             None => LONGEST,
@@ -166,12 +166,12 @@ impl OrbitEnvironment {
 
     /// Returns position, magnetic field and Sun at a time since the start (s), from the arc about it.
     pub(super) fn row(&self, t: f64) -> SkyRow {
-        let parts = (self.orbit.as_ref(), self.field.as_ref(), self.sun.as_ref());
-        let has_rows = matches!(self.orbit, Some(OrbitPath::Sampled(_)));
+        let (orbit, field, sun) = (self.orbit.as_ref(), self.field.as_ref(), self.sun.as_ref());
+        let has_rows = matches!(orbit, Some(OrbitPath::Sampled(_)));
         SkyRow(self.arcs.read(
             t,
             || self.span(t),
-            |t| SkyRow::new(parts, self.has_height, t).0,
+            |t| SkyRow::new(orbit, field, sun, self.has_height, t).0,
             |arc, tail| SkyRow::is_resolved(arc, tail, has_rows),
             |arc| arc.at(t),
         ))

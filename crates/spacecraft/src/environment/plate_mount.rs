@@ -1,5 +1,6 @@
-//! Appendages on which plates are mounted, with which they turn.
+//! Plates for sunlight and drag, on the hub or on appendages with which they turn.
 
+use flexsc_dynamics::three_axis::PanelPlaces;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Matrix3;
@@ -57,12 +58,12 @@ impl MountedPlate {
         }
     }
 
-    /// Returns the unit normal, and the position (m) from a point, in the body's axes, with the rotations of the appendages.
+    /// Returns the unit normal, and the position (m) from the centre of mass, in the body's axes.
     #[inline]
-    pub fn place(&self, point: &Vector, axes: &[Matrix3<f64>]) -> [Vector; 2] {
-        let Some(mount) = &self.mount else { return [self.normal, self.at - point] };
-        let axes = axes.get(mount.panel).unwrap_or(&mount.axes);
-        [axes * self.normal, mount.root + axes * self.at - point]
+    pub fn place(&self, places: &PanelPlaces<'_>) -> [Vector; 2] {
+        let Some(mount) = &self.mount else { return [self.normal, self.at - places.centre] };
+        let axes = places.axes.get(mount.panel).unwrap_or(&mount.axes);
+        [axes * self.normal, mount.root + axes * self.at - places.centre]
     }
 
     /// Returns the largest distance (m) of the plate from a point, however its appendage turns.

@@ -9,6 +9,9 @@ use super::OrbitPosition;
 /// Number of rows of a polynomial.
 pub(super) const ROWS: usize = 8;
 
+/// Angle (rad) between two rows that are computed, at the perigee: one minute in a low orbit.
+pub(super) const STEP: f64 = 0.065;
+
 /// Largest number of rows.
 pub(super) const MOST_ROWS: usize = 1_000_000;
 

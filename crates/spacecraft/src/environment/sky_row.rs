@@ -11,7 +11,7 @@ use super::magnetic_field::PlanetField;
 use super::sun::Sunlight;
 use super::{OrbitPath, SunPath, density};
 
-/// Number of numbers, one of them unused: a multiple of the lanes of processors.
+/// Number of columns, of which the last is unused: a multiple of the lanes of processors.
 pub(super) const COLUMNS: usize = 16;
 
 /// Relative size of the last two Chebyshev coefficients of an arc up to which it is not halved.
@@ -34,32 +34,34 @@ pub(super) struct SkyRow(pub [f64; COLUMNS]);
 impl SkyRow {
     /// Evaluates the environment at a time since the start, with the height above the ellipsoid of the Earth, or without.
     pub fn new(
-        (orbit, field, sun): (Option<&OrbitPath>, Option<&PlanetField>, Option<&SunPath>),
+        orbit: Option<&OrbitPath>,
+        field: Option<&PlanetField>,
+        sun: Option<&SunPath>,
         has_height: bool,
         t: SplitTime,
     ) -> Self {
-        let mut row = [0.0; COLUMNS];
-        let mut set = |first: usize, v: &Vector| row[first..first + 3].copy_from_slice(v.as_slice());
+        let mut row = Self([0.0; COLUMNS]);
         let light = sun.map(|sun| sun.light(t));
-        let [position, velocity] = orbit.map_or_else(Default::default, |orbit| orbit.state(t));
-        set(POSITION, &position);
-        set(VELOCITY, &velocity);
-        if let Some(field) = field {
-            set(FIELD, &field.at(&position, t));
-        }
         if let Some(light) = &light {
-            set(SUN, &light.direction);
-            row[PRESSURE] = light.pressure;
+            row.set_vector(SUN, &light.direction);
+            row.0[PRESSURE] = light.pressure;
+        }
+        let Some(orbit) = orbit else { return row };
+        let [position, velocity] = orbit.state(t);
+        row.set_vector(POSITION, &position);
+        row.set_vector(VELOCITY, &velocity);
+        if let Some(field) = field {
+            row.set_vector(FIELD, &field.at(&position, t));
         }
         if has_height {
-            row[HEIGHT] = ground_site::height(&position);
-            row[BULGE] = light.map_or(0.0, |light| density::bulge_cosine(&position, &light.direction));
+            row.0[HEIGHT] = ground_site::height(&position);
+            row.0[BULGE] = light.map_or(0.0, |light| density::bulge_cosine(&position, &light.direction));
         }
-        Self(row)
+        row
     }
 
-    /// Returns true if an arc need not be halved. Position and field are checked on an orbit by rows only: of Kepler elements
-    /// the length of the arcs is proved.
+    /// Returns true if an arc need not be halved. Position and field are checked on an orbit by rows only: the length of arcs on
+    /// one by Kepler elements has a proof.
     pub fn is_resolved(arc: &TimeArc<COLUMNS>, tail: &[f64; COLUMNS], has_rows: bool) -> bool {
         let middle = Self(*arc.in_middle());
         let largest = |first: usize| tail[first].max(tail[first + 1]).max(tail[first + 2]);
@@ -68,6 +70,10 @@ impl SkyRow {
             && (!has_rows
                 || (largest(POSITION) <= TAIL * middle.position().norm()
                     && largest(FIELD) <= TAIL * middle.field().norm()))
+    }
+
+    fn set_vector(&mut self, first: usize, v: &Vector) {
+        self.0[first..first + 3].copy_from_slice(v.as_slice());
     }
 
     fn vector(&self, first: usize) -> Vector {
@@ -89,7 +95,7 @@ impl SkyRow {
         self.vector(FIELD)
     }
 
-    /// Returns the light of the Sun, in the planet's shadow or not.
+    /// Returns the light of the Sun as outside of the planet's shadow.
     pub fn light(&self) -> Sunlight {
         Sunlight { direction: self.vector(SUN), pressure: self.0[PRESSURE] }
     }

@@ -5,6 +5,7 @@
 //! and r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else zero: a plate with two sides is two
 //! plates. Plates do not shade each other.
 
+use flexsc_dynamics::three_axis::{PanelPlaces, SkyAt};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
@@ -153,40 +154,35 @@ impl SunlightLoad {
         }
     }
 
-    /// Returns the torque (N m) of sunlight about the centre of mass `centre` (m) on a body whose axes are the rows of `turn` in
-    /// inertial axes, in its axes; `strength` is the pressure relative to that at 1 au, and `part` the part of the Sun in view.
-    pub fn torque(
-        &self,
-        turn: &Matrix3<f64>,
-        (sun, strength, part): (&Vector, f64, f64),
-        (centre, axes): (&Vector, &[Matrix3<f64>]),
-    ) -> Vector {
+    /// Returns the torque (N m) of sunlight about the centre of mass on a body whose axes are the rows of `turn` in inertial
+    /// axes, in its axes.
+    pub fn torque(&self, turn: &Matrix3<f64>, sky: &SkyAt, places: &PanelPlaces<'_>) -> Vector {
         if let Some([force, at]) = &self.single {
-            return (at - centre).cross(&transformed(turn, force)) * part;
+            return (at - places.centre).cross(&transformed(turn, force)) * sky.part_in_view;
         }
-        let sun = transformed(turn, sun);
+        let sun = transformed(turn, &sky.sun);
         let mut sum = Vector::zeros();
         for LitPlate { plate, absorbed, specular, diffuse } in &self.plates {
-            let [normal, arm] = plate.place(centre, axes);
+            let [normal, arm] = plate.place(places);
             let faced = normal.dot(&sun);
             if faced > 0.0 {
                 let force = sun * *absorbed + normal * (specular * faced + diffuse);
                 sum += arm.cross(&force) * (plate.area * faced);
             }
         }
-        sum * -(self.pressure * strength * part)
+        sum * -(self.pressure * sky.pressure * sky.part_in_view)
     }
 
-    /// Returns an upper bound of the torque (N m) about the centre of mass `centre` (m); `nearest` is the largest pressure
+    /// Returns an upper bound of the torque (N m) about the centre of mass `centre` (m); `most_pressure` is the largest pressure
     /// relative to that at 1 au.
-    pub fn bound(&self, centre: &Vector, nearest: f64) -> f64 {
+    pub fn bound(&self, centre: &Vector, most_pressure: f64) -> f64 {
         if let Some([force, at]) = &self.single {
             return force.norm() * ((at - centre).norm() + self.centre_shift);
         }
         let most = |LitPlate { plate, absorbed, specular, diffuse }: &LitPlate| {
             (absorbed + specular + diffuse) * plate.area * (plate.arm(centre) + self.centre_shift)
         };
-        self.pressure * nearest * self.plates.iter().map(most).sum::<f64>()
+        self.pressure * most_pressure * self.plates.iter().map(most).sum::<f64>()
     }
 }
 
@@ -228,7 +224,9 @@ mod tests {
             let pressure = pressed(&keys);
             assert_eq!(pressure.fault(true), None);
             let load = SunlightLoad::new(&pressure, &PlateMounts::default());
-            let found = load.torque(&body_axes(&rotation(&by)), (&sun, 1.0, 1.0), (&centre, &[]));
+            let sky = SkyAt { sun, pressure: 1.0, part_in_view: 1.0, ..SkyAt::default() };
+            let places = PanelPlaces { centre, axes: &[] };
+            let found = load.torque(&body_axes(&rotation(&by)), &sky, &places);
             assert!(found.norm() <= load.bound(&centre, 1.0));
             found / (4.539_807_335_646_65e-6 * 2.0 * 0.5)
         };

@@ -47,9 +47,9 @@ pub struct SurroundingsState {
 }
 
 impl SurroundingsState {
-    /// Creates the environment of a body under `sky`, with the appendages of its plates. The inertia tensors (kg m²) are those of the body without the
-    /// rotors' axial inertia, and of the rotors about their axes; `centre` is the centre of mass from the origin of
-    /// positions (m).
+    /// Creates the environment of a body under `sky`, with the appendages of its plates. The inertia tensors (kg m²) are those of
+    /// the body without the rotors' axial inertia, and of the rotors about their axes; `centre` is the centre of mass from the
+    /// origin of positions (m).
     pub fn new(
         environment: &Environment,
         sky: OrbitEnvironment,
@@ -57,9 +57,9 @@ impl SurroundingsState {
         centre: &Vector,
         mounts: &PlateMounts,
     ) -> Self {
-        let nearest = sky.sun().map_or(1.0, SunPath::most_pressure);
+        let most_pressure = sky.sun().map_or(1.0, SunPath::most_pressure);
         let sunlight = environment.solar_pressure.as_ref().map(|spec| SunlightLoad::new(spec, mounts));
-        let pressed = sunlight.as_ref().map_or(0.0, |load| load.bound(centre, nearest));
+        let pressed = sunlight.as_ref().map_or(0.0, |load| load.bound(centre, most_pressure));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
@@ -134,15 +134,15 @@ impl SurroundingsState {
     }
 
     /// Returns the torques of sunlight and drag (N m) on a body with the rotation `turn` of inertial vectors to its axes, about
-    /// the centre of mass (m) and with the rotations of the appendages.
+    /// its centre of mass.
     #[inline]
-    fn plate_torque(&self, sky: &SkyAt, turn: &Matrix3<f64>, places: (&Vector, &[Matrix3<f64>])) -> Vector {
+    fn plate_torque(&self, sky: &SkyAt, turn: &Matrix3<f64>, places: &PanelPlaces<'_>) -> Vector {
         let mut torque = Vector::zeros();
         if let Some(load) = self.sunlight.as_ref().filter(|_| sky.part_in_view > 0.0) {
-            torque += load.torque(turn, (&sky.sun, sky.pressure, sky.part_in_view), places);
+            torque += load.torque(turn, sky, places);
         }
         if let Some(load) = &self.drag {
-            torque += load.torque(turn, (&sky.flow, sky.density), places);
+            torque += load.torque(turn, sky, places);
         }
         torque
     }
@@ -195,13 +195,11 @@ impl Surroundings for SurroundingsState {
         let turn = body_axes(attitude);
         let mut torque = sky.torque + transformed(&turn, &self.torque);
         if self.environment.gravity_gradient.is_some() {
-            torque += GravityGradient::torque(
-                (transformed(&turn, &sky.nadir), sky.tide),
-                &(inertia + self.spinning),
-            );
+            let nadir = transformed(&turn, &sky.nadir);
+            torque += GravityGradient::torque(&nadir, sky.tide, &(inertia + self.spinning));
         }
         if !self.plates_turn {
-            torque += self.plate_torque(sky, &turn, (&self.centre, &[]));
+            torque += self.plate_torque(sky, &turn, &PanelPlaces { centre: self.centre, axes: &[] });
         }
         // The body's own dipole along the axis of a circular orbit is the only field there, so torquers have none.
         let moment = if self.axial.is_some() { self.dipole } else { self.dipole + self.held };
@@ -212,12 +210,12 @@ impl Surroundings for SurroundingsState {
         if !self.plates_turn {
             return Vector::zeros();
         }
-        self.plate_torque(sky, &body_axes(attitude), (&panels.centre, panels.axes))
+        self.plate_torque(sky, &body_axes(attitude), panels)
     }
 
     fn tidal_tensor(&self, sky: &SkyAt, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
         self.environment.gravity_gradient.as_ref()?;
-        Some(GravityGradient::modal_tensor((transformed(&body_axes(attitude), &sky.nadir), sky.tide)))
+        Some(GravityGradient::modal_tensor(&transformed(&body_axes(attitude), &sky.nadir), sky.tide))
     }
 
     fn thermal_forces(&self) -> &[ThermalForces] {

@@ -12,12 +12,9 @@ use super::date::DAY;
 use super::deferred::Deferred;
 use super::element_set::ElementSet;
 use super::kepler::{earth_gravity, earth_radius};
-use super::sampled_orbit::{MOST_ROWS, ROWS, SampledOrbit};
+use super::sampled_orbit::{MOST_ROWS, ROWS, STEP, SampledOrbit};
 use super::sgp4::Sgp4;
 use super::two_lines::MeanElements;
-
-/// Angle at the perigee (rad) between two rows that are computed from the elements: one minute in a low orbit.
-const STEP: f64 = 0.065;
 
 /// Time from the epoch of the elements (days) beyond which a run is remarked.
 const FRESH: f64 = 14.0;
@@ -28,9 +25,10 @@ const FRESH: f64 = 14.0;
 #[serde(deny_unknown_fields)]
 pub struct TwoLineOrbit {
     /// Mean elements about the Earth, from 0.05 to 18 revolutions a day: both lines of a two-line element set, three with
-    /// a name, one text of them, or the path of a file of them or of an OMM (keywords, XML, JSON). SGP4 gives the position, from a period of 225 min on SDP4 with Sun, Moon and resonances. The run starts at the
-    /// `epoch`, else at that of the elements (`check` remarks more than 14 days between them), in axes of the true
-    /// equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of SDP4 of more than 2 km are refused.
+    /// a name, one text of them, or the path of a file of them or of an OMM (keywords, XML, JSON). SGP4 gives the position, from a
+    /// period of 225 min on SDP4 with Sun, Moon and resonances. The run starts at the `epoch`, else at that of the elements (`check`
+    /// remarks more than 14 days between them), in axes of the true equator and mean equinox, without nutation, up to 18 arc
+    /// seconds. Jumps of SDP4 of more than 2 km are refused.
     pub tle: ElementSet,
     /// Gravitational parameter of the planet (m³/s²); default: the Earth's.
     #[serde(default = "earth_gravity")]

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_formats::calendar_date::days_to;
+
 /// Range of the mean motion (revolutions a day): that of the Moon's orbit is 0.037.
 pub(super) const REVOLUTIONS: [f64; 2] = [0.05, 18.0];
 
@@ -152,12 +154,10 @@ fn epoch(year: f64, day: f64) -> Result<u64, String> {
     if year < 1970 {
         return Err(format!("must have an epoch from 1970 on, got the year {year}"));
     }
-    let past = year - 1;
-    let days = 365 * (year - 1970) + past / 4 - past / 100 + past / 400 - 477;
     // The fraction has eight digits: multiples of 864 microseconds.
     let whole = libm::floor(day);
     let nanoseconds = libm::round((day - whole) * 1e8) * 864_000.0;
-    Ok((days as u64 + whole as u64 - 1) * 86_400_000_000_000 + nanoseconds as u64)
+    Ok((days_to(year) as u64 + whole as u64 - 1) * 86_400_000_000_000 + nanoseconds as u64)
 }
 
 #[cfg(test)]

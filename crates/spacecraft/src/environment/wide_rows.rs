@@ -3,20 +3,21 @@
 
 use flexsc_numerics::attitude::Vector;
 
+use super::sampled_orbit::{ROWS, STEP};
+
 /// Angle from row to row (rad) above which positions alone are too few: three minutes in a low orbit.
 const WIDE: f64 = 0.2;
 
-/// Angle between rows that are computed (rad): one minute in a low orbit.
-const STEP: f64 = 0.065;
-
-/// Number of rows of a polynomial, and of the one that it is compared with.
-const ROWS: usize = 8;
+/// Number of rows of the polynomial with which one of [`ROWS`] rows is compared.
 const FEWER: usize = 6;
 
-/// Time (s), position (m) and velocity (m/s) of rows.
+/// Rows of an ephemeris with velocities, at least [`ROWS`].
 pub(super) struct WideRows<'a> {
+    /// Times (s), increasing.
     pub times: &'a [f64],
+    /// Positions (m).
     pub positions: &'a [Vector],
+    /// Velocities (m/s).
     pub velocities: &'a [Vector],
 }
 
@@ -49,7 +50,7 @@ impl WideRows<'_> {
         for row in 1..self.times.len() {
             let [from, to] = [self.times[row - 1], self.times[row]];
             let parts = if self.angle(row) > WIDE { libm::ceil(self.angle(row) / STEP) } else { 1.0 };
-            if parts > (most - times.len().min(most)) as f64 {
+            if parts > most.saturating_sub(times.len()) as f64 {
                 return None;
             }
             for part in 1..parts as usize {

@@ -41,8 +41,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     }
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
-    let mut tables = table::read(directory, &files, &args.metric)?;
-    tables.extend(parts::read(directory, &files, &args.metric)?);
+    let tables = tables(args, &files)?;
     let (asked, topics) = FigureName::split(&args.what);
     if let Some(topic) = topics.first() {
         let path = directory.display();
@@ -99,12 +98,17 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     target.save(&args.look.titled(figures), args.look.style()?, args.json)
 }
 
+/// Returns the campaigns of a directory: those of tables, then those of parts.
+fn tables(args: &PlotArgs, files: &[String]) -> Result<Vec<CampaignRuns>, CliError> {
+    let mut tables = table::read(&args.path, files, &args.metric)?;
+    tables.extend(parts::read(&args.path, files, &args.metric)?);
+    Ok(tables)
+}
+
 /// Writes the explorer of the campaign in a directory.
 fn explore(args: &PlotArgs, out: &Path) -> Result<(), CliError> {
     let directory = args.path.as_path();
-    let files = files(directory)?;
-    let mut tables = table::read(directory, &files, &args.metric)?;
-    tables.extend(parts::read(directory, &files, &args.metric)?);
+    let tables = tables(args, &files(directory)?)?;
     let [runs] = &tables[..] else {
         let why = format!("has {} campaigns, and an explorer shows one", tables.len());
         return Err(CliError::Arguments(format!("{}: {why}", directory.display())));

@@ -7,17 +7,24 @@ use super::super::quantity::ModeQuantity;
 use super::{Parser, Place, fault};
 
 impl Parser<'_> {
+    /// Reads a part with `until` and the part after it, or a part alone.
     pub(super) fn until(&mut self) -> Result<Expression, ConditionFault> {
+        self.skip_spaces();
+        let start = self.at;
         let held = self.one()?;
+        let end = self.at;
         if !self.operator("until", Place::Outermost)? {
             return Ok(held);
         }
+        if held.has_timed(Timed::is_outermost) {
+            return Err(fault(start..end, "has `until` or `when`, which cannot be within `until`"));
+        }
         let window = self.window()?;
-        let reached = self.one()?;
+        let reached = self.inside(Place::Window, Self::one)?;
         Ok(Expression::Timed(Box::new(Timed::Until(held, window, reached))))
     }
 
-    /// Takes an operator over time, if it comes next; it may stand in `innermost` and in places outside it.
+    /// Takes an operator over time, if it comes next; `innermost` is the narrowest place that may have it.
     pub(super) fn operator(&mut self, word: &str, innermost: Place) -> Result<bool, ConditionFault> {
         if !self.take(word) {
             return Ok(false);
@@ -26,7 +33,9 @@ impl Parser<'_> {
             (None, _) => {
                 "is for requirements: a condition of a mode is tested at one instant, and `for` is how long it holds"
             }
-            (_, Place::Event) => "cannot be in an event, which is one condition that becomes true",
+            (_, Place::Instant) => {
+                "cannot be in an event or in `during`, which are conditions at one instant"
+            }
             (_, Place::Window) if innermost == Place::Outermost => {
                 "cannot be within `always`, `eventually` or `until`"
             }
@@ -83,7 +92,7 @@ impl Parser<'_> {
         Ok(Some(TimeWindow { from: 0.0, to: Some(to) }))
     }
 
-    /// Reads a part in a place of its own.
+    /// Reads a part in another place.
     pub(super) fn inside(
         &mut self,
         place: Place,
@@ -95,6 +104,7 @@ impl Parser<'_> {
         inner
     }
 
+    /// Reads an event: `mode enters NAME`, or a condition that becomes true.
     pub(super) fn trigger(&mut self) -> Result<Expression, ConditionFault> {
         let start = self.at;
         if self.take("mode") && self.take("enters") {
@@ -106,10 +116,15 @@ impl Parser<'_> {
             )));
         }
         self.at = start;
-        self.inside(Place::Event, Self::any)
+        self.instant()
     }
 
-    /// Reads what follows `when`: an event, `within` and `for`, and what then holds.
+    /// Reads a condition without operators over time.
+    pub(super) fn instant(&mut self) -> Result<Expression, ConditionFault> {
+        self.inside(Place::Instant, Self::any)
+    }
+
+    /// Reads an event after `when`, its times `within` and `for`, and the expression that then holds.
     pub(super) fn when(&mut self) -> Result<Expression, ConditionFault> {
         let trigger = self.trigger()?;
         self.colon("the event")?;
@@ -132,6 +147,7 @@ impl Parser<'_> {
         Ok(Expression::Timed(Box::new(Timed::When(trigger, then))))
     }
 
+    /// Reads a colon after a part of `when`.
     fn colon(&mut self, after: &str) -> Result<(), ConditionFault> {
         if self.take(":") {
             return Ok(());

@@ -338,7 +338,8 @@ impl IntegrationStep<'_> {
         change
     }
 
-    /// Returns the environment torque (N m) and the tidal tensor under a sky, given the attitude of the mean axes, the elastic rotation of the hub `elastic_rotation` and the change of the inertia.
+    /// Returns the environment torque (N m) and the tidal tensor under a sky, given the attitude of the mean axes, the elastic
+    /// rotation of the hub `elastic_rotation` and the change of the inertia.
     pub(super) fn environment_at(
         &self,
         sky: &SkyAt,

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 
+use super::LONGEST;
 use super::element::{HollowSection, MassRule};
 use super::text::{Lines, TextLine};
 use crate::number::real;
@@ -51,13 +52,12 @@ const TYPES: [(&str, usize, ElementMass); 24] = [
     ("D", 3, Nothing),
 ];
 
-/// Largest number of files of a deck, and how deep one may include another.
+/// Largest number of files that a deck includes.
 const MOST_FILES: usize = 100;
+/// Largest number of included files within each other.
 const DEEPEST: usize = 10;
-/// Largest size of an included file (bytes).
-const LONGEST: u64 = 64 << 20;
 
-/// Sets of point masses have no more members, counted each time that one is looked up: sets may hold each other.
+/// Largest number of members of sets of point masses and beams, counted each time that one is looked up: sets may hold each other.
 const MOST_MEMBERS: usize = 10_000_000;
 
 /// Point mass at a node.
@@ -133,8 +133,10 @@ struct Reader {
     beams: BTreeMap<usize, [usize; 2]>,
     /// Hollow sections of sets, with the line of each.
     sections: Vec<(String, HollowSection, usize)>,
-    /// Number of files that were opened.
+    /// Number of included files.
     files: usize,
+    /// Number of bytes of the lines that were read.
+    bytes: u64,
     /// Masses of sets, with the line of each.
     set_masses: Vec<(String, f64, usize)>,
     /// How many members of sets were looked up.
@@ -167,6 +169,10 @@ fn read_file(
     let mut lines = Lines::new(text);
     let mut keyword = String::new();
     while let Some(line) = lines.next()? {
+        reader.bytes += line.text.len() as u64;
+        if reader.bytes > LONGEST {
+            return Err(format!("line {}: must have at most {LONGEST} bytes in all files", line.number));
+        }
         let text = line.text.trim();
         if text.is_empty() || text.starts_with("**") {
             continue;
@@ -215,7 +221,7 @@ fn include(
 }
 
 impl At {
-    /// Whether the last element has all its nodes before a keyword.
+    /// Checks that the last element has all its nodes before a keyword.
     fn is_whole(&self, line: &TextLine) -> Result<(), String> {
         match self {
             Self::Elements { missing, kind, .. } if *missing > 0 => {
@@ -461,7 +467,9 @@ fn hollow_section(line: &TextLine, words: &[&str], pipe: bool) -> Result<HollowS
 fn look_up(read: &mut usize, more: usize, line: usize) -> Result<(), String> {
     *read = read.saturating_add(more);
     if *read > MOST_MEMBERS {
-        return Err(format!("line {line}: must have at most {MOST_MEMBERS} members of sets of point masses"));
+        return Err(format!(
+            "line {line}: must have at most {MOST_MEMBERS} members of sets of point masses and beams"
+        ));
     }
     Ok(())
 }

@@ -51,7 +51,6 @@ impl HollowSection {
     /// Returns points of the wall in natural coordinates of the section from -1 to 1, whose halves have the lengths `halves`, with
     /// weights of which the whole square has 4; `None` if the wall is thicker than a half.
     pub fn points(self, halves: [f64; 2]) -> Option<Vec<([f64; 2], f64)>> {
-        let gauss = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
         let (Self::Pipe { wall } | Self::Box { wall }) = self;
         let inner = halves.map(|half| 1.0 - wall / half);
         if inner.iter().any(|inner| !(0.0..1.0).contains(inner)) {
@@ -61,7 +60,9 @@ impl HollowSection {
             Self::Pipe { .. } => {
                 // Exact up to the seventh power: by the square of the radius, and evenly about the circle.
                 let (low, high) = (inner[0] * inner[0], 1.0);
-                let rings = gauss.iter().map(|(at, _)| f64::sqrt(0.5 * ((high + low) + (high - low) * at)));
+                let rings = TWO_POINTS
+                    .into_iter()
+                    .map(move |(at, _)| f64::sqrt(0.5 * ((high + low) + (high - low) * at)));
                 let weight = std::f64::consts::PI * (high - low) / 16.0;
                 let angles = (0..8).map(|k| std::f64::consts::FRAC_PI_8 * (2.0 * f64::from(k) + 1.0));
                 let angles: Vec<(f64, f64)> = angles.map(|a| (libm::cos(a), libm::sin(a))).collect();
@@ -72,14 +73,10 @@ impl HollowSection {
                     .collect()
             }
             Self::Box { .. } => {
-                let line = [
-                    (-0.774_596_669_241_483_4, 5.0 / 9.0),
-                    (0.0, 8.0 / 9.0),
-                    (0.774_596_669_241_483_4, 5.0 / 9.0),
-                ];
                 // The whole without its inside.
                 let square = |[x, y]: [f64; 2], sign: f64| {
-                    let along = line.iter().flat_map(|a| line.iter().map(move |b| (*a, *b)));
+                    let along =
+                        THREE_POINTS.into_iter().flat_map(|a| THREE_POINTS.into_iter().map(move |b| (a, b)));
                     along.map(|(a, b)| ([x * a.0, y * b.0], sign * x * y * a.1 * b.1)).collect::<Vec<_>>()
                 };
                 [square([1.0; 2], 1.0), square(inner, -1.0)].concat()
@@ -87,6 +84,11 @@ impl HollowSection {
         })
     }
 }
+
+/// Points of Gauss from -1 to 1, each with its weight.
+const TWO_POINTS: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
+const THREE_POINTS: [(f64, f64); 3] =
+    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
 /// Quadrature point of an element: natural coordinates, and weight.
 type QuadraturePoint = ([f64; 3], f64);
@@ -182,12 +184,8 @@ impl ElementKind {
         let line = |count: usize| -> &[(f64, f64)] {
             match count {
                 1 => &[(0.0, 2.0)],
-                2 => &[(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)],
-                _ => &[
-                    (-0.774_596_669_241_483_4, 5.0 / 9.0),
-                    (0.0, 8.0 / 9.0),
-                    (0.774_596_669_241_483_4, 5.0 / 9.0),
-                ],
+                2 => &TWO_POINTS,
+                _ => &THREE_POINTS,
             }
         };
         let full = rule == MassRule::Full;

@@ -95,7 +95,7 @@ impl Reader {
             let shown: String = text.trim().chars().take(80).collect();
             return Err(format!("line {}: the run failed: `{shown}`", line.number));
         }
-        if text.trim_start().starts_with("SOL") && is_buckling(text) {
+        if is_buckling(text) {
             return Err(format!("line {}: is a buckling analysis: run normal modes (SOL 103)", line.number));
         }
         if text.starts_with('1') && text.contains("PAGE") {
@@ -270,8 +270,9 @@ fn title(line_text: &str) -> Option<At> {
 
 /// Returns true if a line of the executive control asks for buckling.
 fn is_buckling(text: &str) -> bool {
-    let solution = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty()).nth(1);
-    solution.is_some_and(|name| name == "105" || name.to_ascii_uppercase().contains("BUCKL"))
+    let mut words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+    words.next() == Some("SOL")
+        && words.next().is_some_and(|name| name == "105" || name.to_ascii_uppercase().contains("BUCKL"))
 }
 
 fn remark(line_text: &str) -> Remark {

@@ -198,8 +198,8 @@ fn every_kind_of_element_weighs_what_the_run_took_it_to_weigh() {
     }
 }
 
-/// Writes a file of its own directory for a test, and reads it.
-fn beside(
+/// Returns the results of `run.frd` among files that are written into a directory of their own.
+fn modes_of_files(
     files: &[(&str, &str)],
     points: &[StructurePoint],
     centre: [f64; 3],
@@ -235,11 +235,11 @@ fn decks_include_files_and_springs() {
         ("run.inp", &format!("*include, Input = \"Mesh 1.inp\"\n{rest}")),
         ("Mesh 1.inp", &mesh),
     ];
-    assert_eq!(beside(&files, &[], centre).expect("modes"), expected);
+    assert_eq!(modes_of_files(&files, &[], centre).expect("modes"), expected);
     let circle = [("run.frd", frd.as_str()), ("run.inp", "*INCLUDE, INPUT=run.inp\n")];
-    assert!(beside(&circle, &[], centre).expect_err("a circle").contains("does one include itself?"));
+    assert!(modes_of_files(&circle, &[], centre).expect_err("a circle").contains("does one include itself?"));
     let unnamed = [("run.frd", frd.as_str()), ("run.inp", "*INCLUDE\n")];
-    assert!(beside(&unnamed, &[], centre).expect_err("no name").contains("line 1: must name a file"));
+    assert!(modes_of_files(&unnamed, &[], centre).expect_err("no name").contains("line 1: must name a file"));
 }
 
 /// The closed form of a uniform cantilever: w = 1.8751041² sqrt(EI/m)/L², t = 0.7830 sqrt(m), r = 0.5688 sqrt(m) L.
@@ -310,7 +310,7 @@ fn modes_are_about_the_clamp_from_which_the_centre_is_given() {
         .collect();
     let (moved, deck) = (format!("{}\n", moved.join("\n")), format!("{}\n", deck.join("\n")));
     let files = [("run.frd", moved.as_str()), ("run.inp", deck.as_str())];
-    let results = beside(&files, &[tip([4.0, 0.0, 0.0])], centre).expect("modes");
+    let results = modes_of_files(&files, &[tip([4.0, 0.0, 0.0])], centre).expect("modes");
     for (found, expected) in results.modes.iter().zip(&own.modes) {
         let pairs = found
             .rotation
@@ -326,7 +326,7 @@ fn modes_are_about_the_clamp_from_which_the_centre_is_given() {
         );
     }
     // A centre that is at no distance from the clamp: about the origin of the file.
-    let far = beside(&files, &[], centre.map(|part| part + 1.0)).expect("modes");
+    let far = modes_of_files(&files, &[], centre.map(|part| part + 1.0)).expect("modes");
     let moment = far.mass.and_then(|mass| mass.moment).expect("moments");
     assert!((moment[0] / far.mass.expect("a mass").mass - (centre[0] + 3.0)).abs() < 1e-4);
 }

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexsc._numpy import np, npt
-from flexsc.structure._nastran import _read_bulk, _read_op2
-from flexsc.structure._punch import Solution, read_punch
+from flexsc.structure._nastran import _read_bulk, _read_solution
+from flexsc.structure._punch import Solution
 
 if TYPE_CHECKING:
     from flexsc.structure._lumped import Integrals
@@ -67,11 +67,10 @@ def appendage_from_nastran(
         OSError: A file cannot be read.
         ValueError: The files lack something that is needed, or contradict each other; the text names it.
     """
-    from flexsc.structure._lumped import axes_of, integrals_of, lumps_of
+    from flexsc.structure._lumped import in_basic_axes, integrals_of, lumps_of
 
     path, deck = Path(results), Path(model)
-    solution = read_punch(path, subcase) if path.suffix.lower() == ".pch" else _read_op2(path, subcase)
-    solution = _lowest(solution, keep, path)
+    solution = _lowest(_read_solution(path, subcase), keep, path)
     zetas = _dampings(damping, len(solution.frequencies))
     bulk = _read_bulk(deck)
     points = {} if points is None else points
@@ -89,12 +88,7 @@ def appendage_from_nastran(
             )
     if not any(not shape[:, :3].any() for shape in solution.shapes.values()):
         raise ValueError(f"{path}: must have a grid point at rest in all modes: clamp the root")
-    used = massive | set(points.values())
-    positions = {grid: np.asarray(bulk.nodes[grid].get_position(), dtype=np.float64) for grid in used}
-    shapes = {}
-    for grid in used:
-        turned = solution.shapes[grid].reshape(-1, 2, 3) @ axes_of(bulk.nodes[grid], deck)
-        shapes[grid] = turned.reshape(-1, 6)
+    positions, shapes = in_basic_axes(massive | set(points.values()), solution.shapes, bulk, deck)
     origin = _place(root, bulk, deck)
     sums = integrals_of(lumps, positions, shapes, origin)
     _check(sums, path, deck)

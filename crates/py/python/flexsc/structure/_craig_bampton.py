@@ -79,7 +79,9 @@ def appendage_from_craig_bampton(
     rigid = np.vstack([_rigid_motions(at - origin) for at in where])
     _check_reduced(stiffness, held, modal, rigid)
     keep = len(modal) if keep is None else _kept(keep, len(modal))
-    frequencies, shapes = _modes(mass[np.ix_(modal, modal)], stiffness[np.ix_(modal, modal)], keep)
+    frequencies, shapes = _modes(
+        mass[np.ix_(modal, modal)], stiffness[np.ix_(modal, modal)], keep, "stiffness"
+    )
     shapes = shapes * np.sign(shapes[np.abs(shapes).argmax(axis=0), np.arange(keep)])
     carried = shapes.T @ mass[np.ix_(modal, held)] @ rigid
     total = rigid.T @ mass[np.ix_(held, held)] @ rigid
@@ -102,7 +104,7 @@ def appendage_from_craig_bampton(
         recovered[point] = (rows_of_point[:, modal] @ shapes).T * scale[: len(rows_of_point)]
     modes = []
     for at_mode in range(keep):
-        told = {
+        at_points = {
             point: {"translation": found[at_mode, :3].tolist()}
             | ({"rotation": found[at_mode, 3:].tolist()} if found.shape[1] == 6 else {})
             for point, found in recovered.items()
@@ -113,7 +115,7 @@ def appendage_from_craig_bampton(
                 "damping": zetas[at_mode],
                 "translation": (mass_root * carried[at_mode, :3]).tolist(),
                 "rotation": (mass_root * length_unit * carried[at_mode, 3:]).tolist(),
-                "shapes": told,
+                "shapes": at_points,
             }
         )
     return {

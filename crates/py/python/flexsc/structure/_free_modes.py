@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flexsc._numpy import np, npt
-from flexsc.structure._lumped import Integrals, Lump, axes_of, integrals_of, lumps_of
+from flexsc.structure._lumped import Integrals, Lump, in_basic_axes, integrals_of, lumps_of
 from flexsc.structure._punch import Solution
 
 if TYPE_CHECKING:
@@ -34,15 +34,12 @@ def check_free(path: Path, solution: Solution, elastic: npt.NDArray[np.bool_], b
     massive = {lump.grid for lump in lumps}
     if missing := sorted(massive - set(solution.shapes)):
         raise ValueError(
-            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, as they tell "
-            f"its modes from those of a clamped structure, and has none at "
-            f"{', '.join(map(str, missing[:5]))}"
+            f"{path}: must have shapes at all grid points with mass, by `DISPLACEMENT = ALL`, to check that "
+            f"its modes are those of a free structure, and has none at "
+            f"{', '.join(map(str, missing[:5]))}{' and others' if missing[5:] else ''}"
         )
-    positions, shapes = {}, {}
-    for grid in massive:
-        positions[grid] = np.asarray(bulk.nodes[grid].get_position(), dtype=np.float64)
-        turned = solution.shapes[grid][elastic].reshape(-1, 2, 3) @ axes_of(bulk.nodes[grid], deck)
-        shapes[grid] = turned.reshape(-1, 6)
+    positions, shapes = in_basic_axes(massive, solution.shapes, bulk, deck)
+    shapes = {grid: shape[elastic] for grid, shape in shapes.items()}
     sums = integrals_of(lumps, positions, shapes, np.zeros(3))
     norms = np.diagonal(sums.generalised)
     frequencies = solution.frequencies[elastic]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -90,6 +90,18 @@ def axes_of(grid: Any, path: Path) -> Numbers:
         return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ axes
     up, out = np.array([z, across]) / np.hypot(z, across)
     return np.array([[out * c, out * s, up], [up * c, up * s, -out], [-s, c, 0.0]]) @ axes
+
+
+def in_basic_axes(
+    grids: Iterable[int], shapes: Mapping[int, Numbers], bulk: Any, path: Path
+) -> tuple[dict[int, Numbers], dict[int, Numbers]]:
+    """Positions and shapes, (modes, 6), of grid points in the basic coordinate system."""
+    positions, turned = {}, {}
+    for grid in grids:
+        node = bulk.nodes[grid]
+        positions[grid] = np.asarray(node.get_position(), dtype=np.float64)
+        turned[grid] = (shapes[grid].reshape(-1, 2, 3) @ axes_of(node, path)).reshape(-1, 6)
+    return positions, turned
 
 
 def lumps_of(bulk: Any, path: Path) -> list[Lump]:

@@ -115,12 +115,12 @@ def appendage_from_matrices(
     mass_root = float(np.sqrt(mass_unit))
     modes = []
     for at in range(keep):
-        told_shapes = {}
+        at_points = {}
         for point, number in points.items():
             shape = whole[at, number] / mass_root
-            told_shapes[point] = {"translation": shape[:3].tolist()}
+            at_points[point] = {"translation": shape[:3].tolist()}
             if number in turns:
-                told_shapes[point]["rotation"] = (shape[3:] / length_unit).tolist()
+                at_points[point]["rotation"] = (shape[3:] / length_unit).tolist()
         modes.append(
             {
                 "frequency": float(frequencies[at]),
@@ -128,7 +128,7 @@ def appendage_from_matrices(
                 "translation": (mass_root * carried[at, :3]).tolist(),
                 "rotation": (mass_root * length_unit * rotation[at]).tolist(),
                 "moments": (mass_root * length_unit * moments[at]).tolist(),
-                "shapes": told_shapes,
+                "shapes": at_points,
             }
         )
     return {
@@ -241,9 +241,12 @@ def _kept(keep: int, rows: int) -> int:
     return min(keep, rows)
 
 
-def _modes(mass: Any, stiffness: Any, keep: int) -> tuple[Numbers, Numbers]:
-    """Frequencies (rad per unit of time) and shapes of unit generalised mass, shape (rows, keep)."""
-    held = "clamped: must hold the structure: the stiffness that is left is not positive definite"
+def _modes(mass: Any, stiffness: Any, keep: int, key: str = "clamped") -> tuple[Numbers, Numbers]:
+    """Frequencies (rad per unit of time) and shapes of unit generalised mass, shape (rows, keep).
+
+    `key` is the argument that errors name.
+    """
+    held = f"{key}: must hold the structure: the stiffness that is left is not positive definite"
     if hasattr(mass, "tocsr"):
         from scipy.sparse.linalg import eigsh
 
@@ -276,7 +279,7 @@ def _modes(mass: Any, stiffness: Any, keep: int) -> tuple[Numbers, Numbers]:
     frequencies = 1.0 / np.sqrt(flexible[order])
     if len(frequencies) > 1 and frequencies[0] <= MECHANISM * frequencies[1]:
         raise ValueError(
-            f"clamped: must leave no mechanism, and a mode at {frequencies[0]:g} is below a thousandth of "
+            f"{key}: must leave no mechanism, and a mode at {frequencies[0]:g} is below a thousandth of "
             f"the next ({frequencies[1]:g})"
         )
     shapes = shapes[:, order]

@@ -53,7 +53,7 @@ def from_nastran(
         ValueError: The files lack something that is needed; the text names it.
     """
     path = Path(results)
-    solution = read_punch(path, subcase) if path.suffix.lower() == ".pch" else _read_op2(path, subcase)
+    solution = _read_solution(path, subcase)
     bulk = _read_bulk(Path(model))
     origin, inertia = _mass_properties(bulk, centre)
     elastic = solution.frequencies > lowest
@@ -77,6 +77,11 @@ def from_nastran(
     tensor = None if inertia is None else inertia * mass_unit * length_unit**2
     frequencies = solution.frequencies[elastic]
     return Structure(frequencies, np.full(len(frequencies), damping), positions, shapes, tensor)
+
+
+def _read_solution(path: Path, subcase: int | None) -> Solution:
+    """Frequencies and mass-normalised shapes of a punch file or of an OP2 file."""
+    return read_punch(path, subcase) if path.suffix.lower() == ".pch" else _read_op2(path, subcase)
 
 
 def _pynastran(module: str) -> Any:

@@ -3,15 +3,15 @@
 use std::path::Path;
 
 use flexsc_formats::document::ConfigError;
-use flexsc_formats::foreign_file;
+use flexsc_formats::foreign_file::read_file;
 use flexsc_formats::structure::Shape;
-use flexsc_formats::structure::fe::{FileMass, FileMode, ResultFormat, StructurePoint};
+use flexsc_formats::structure::fe::{FileMass, FileMode, FileResults, ResultFormat, StructurePoint};
 use flexsc_formats::structure::mode_table::{MOST_MODES, ModeRow};
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Appendage, ClampedMode};
+use super::{Appendage, ClampedMode, CraigBampton};
 use crate::body::spatial::NamedPoint;
 
 /// Difference allowed between moments of inertia of the file's structure and of the appendage about the root, of the largest.
@@ -27,8 +27,8 @@ impl Appendage {
     /// The key, and the reason or the error in the file.
     pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), ConfigError> {
         self.modes.locate(directory);
-        if self.craig_bampton.is_some() {
-            return self.reduce(directory);
+        if let Some(model) = self.craig_bampton.take() {
+            return self.read_reduced(model, directory);
         }
         let file = self.modes.file();
         let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::from_path(file)?))) else {
@@ -62,52 +62,31 @@ impl Appendage {
             let why = "must be given: a structure from a finite-element program is not a point mass";
             return Err(ConfigError::new("inertia", why));
         }
-        if let Some(keep) = self.keep.filter(|keep| !(1..=MOST_MODES).contains(keep)) {
-            return Err(ConfigError::new("keep", format!("must be 1 to {MOST_MODES} modes, got {keep}")));
-        }
-        let reported = |why| ConfigError::new("modes", format!("cannot be used: {}: {why}", file.display()));
+        self.check_keep()?;
         let places = if format.has_shapes() { self.places() } else { Vec::new() };
         let unit = self.units.unwrap_or_default().length();
         let centre = Vector3::from(self.centre.map(Finite::get)) / unit;
-        let results = format.read(file, self.keep, &places, Some(centre.into())).map_err(|why| {
-            let reads = "results of Nastran, MYSTRAN, CalculiX and 42";
-            reported(foreign_file::refusal(file, &[], reads, why))
+        let read = |file: &Path| format.read(file, self.keep, &places, Some(centre.into()));
+        let results = read_file(file, &[], "results of Nastran, MYSTRAN, CalculiX and 42", read)
+            .map_err(|why| ConfigError::new("modes", why))?;
+        let modes = self.clamped_modes_of(&results, |why| {
+            ConfigError::new("modes", format!("cannot be used: {}: {why}", file.display()))
         })?;
-        if let Some(mass) = results.mass {
-            self.weighs(&mass)?;
-        }
-        let dampings = self.dampings(&results.modes)?;
-        let modes = results.modes.iter().zip(dampings).enumerate();
-        let modes = modes.map(|(index, (mode, damping))| {
-            self.clamped(mode, damping)
-                .map_err(|why| reported(format!("mode {} of the lowest: {why}", index + 1)))
-        });
-        let modes = modes.collect::<Result<Vec<_>, _>>()?;
         self.modes.fill(modes);
         Ok(())
     }
 
-    /// Takes the modes of the Craig-Bampton model, and their damping, in its place.
-    fn reduce(&mut self, directory: &Path) -> Result<(), ConfigError> {
-        let Some(mut model) = self.craig_bampton.take() else { return Ok(()) };
+    /// Replaces a Craig-Bampton model by its modes, with their damping.
+    fn read_reduced(&mut self, mut model: CraigBampton, directory: &Path) -> Result<(), ConfigError> {
         if self.modes.file().is_some() || !self.modes.is_empty() {
             return Err(ConfigError::new(
                 "craig_bampton",
                 "must be left out beside `modes`: it has the modes",
             ));
         }
-        let within = |fault: ConfigError| fault.within("craig_bampton");
-        let results = model.results(directory, self.keep).map_err(within)?;
-        if let Some(mass) = results.mass {
-            self.weighs(&mass)?;
-        }
-        let dampings = self.dampings(&results.modes)?;
-        let modes = results.modes.iter().zip(dampings).enumerate().map(|(index, (mode, damping))| {
-            let reported =
-                |why| ConfigError::new("craig_bampton", format!("mode {} of the lowest: {why}", index + 1));
-            self.clamped(mode, damping).map_err(reported)
-        });
-        let modes = modes.collect::<Result<Vec<_>, _>>()?;
+        self.check_keep()?;
+        let results = model.results(directory, self.keep).map_err(|fault| fault.within("craig_bampton"))?;
+        let modes = self.clamped_modes_of(&results, |why| ConfigError::new("craig_bampton", why))?;
         self.modes.fill(modes);
         // From here on they are modes of a table, which contains this itself.
         (self.keep, self.units, self.damping) = (None, None, None);
@@ -151,9 +130,38 @@ impl Appendage {
             if *key == "damping" && self.uniform_plate().is_some() {
                 return Err(ConfigError::new(*key, "must be in `plate`, whose mode it damps"));
             }
-            let why = "must be left out: it applies to `modes` from a .f06, .frd, .dat or .flex file, and a table contains this itself";
+            let why = "must be left out: it applies to `craig_bampton` and to `modes` from a .f06, .frd, .dat or .flex file, and a table \
+                       contains this itself";
             Err(ConfigError::new(*key, why))
         })
+    }
+
+    /// Checks the number of modes to keep.
+    fn check_keep(&self) -> Result<(), ConfigError> {
+        match self.keep.filter(|keep| !(1..=MOST_MODES).contains(keep)) {
+            Some(keep) => {
+                Err(ConfigError::new("keep", format!("must be 1 to {MOST_MODES} modes, got {keep}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the modes of results in SI units with their damping, once mass properties of the results agree with the appendage's;
+    /// `fault` is the error of a mode, with its reason.
+    fn clamped_modes_of(
+        &self,
+        results: &FileResults,
+        fault: impl Fn(String) -> ConfigError,
+    ) -> Result<Vec<ClampedMode>, ConfigError> {
+        if let Some(mass) = &results.mass {
+            self.weighs(mass)?;
+        }
+        let modes = results.modes.iter().zip(self.dampings(&results.modes)?).enumerate();
+        let clamped = |(index, (mode, damping)): (usize, (&FileMode, NonNegative))| {
+            self.clamped(mode, damping)
+                .map_err(|why| fault(format!("mode {} of the lowest: {why}", index + 1)))
+        };
+        modes.map(clamped).collect()
     }
 
     /// Returns the appendage's points in the units of the file.

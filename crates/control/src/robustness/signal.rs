@@ -9,7 +9,7 @@ use crate::operation::{Expression, TimeWindow, Timed};
 
 /// Robustness of an expression from a start on.
 #[derive(Clone, Debug)]
-pub(super) enum Stream {
+pub(super) enum RobustnessSignal {
     /// Comparison or flag with this number, between two times (s).
     Leaf {
         /// Number.
@@ -22,21 +22,21 @@ pub(super) enum Stream {
         last: Option<SignalPiece>,
     },
     /// Opposite.
-    Not(Box<Stream>),
+    Not(Box<RobustnessSignal>),
     /// Least, with the pieces of each that wait for the others.
-    Least(Vec<(Stream, VecDeque<SignalPiece>)>),
+    Least(Vec<(RobustnessSignal, VecDeque<SignalPiece>)>),
     /// Least over a window that slides.
-    Sliding(Box<Stream>, SlidingMinimum),
+    Sliding(Box<RobustnessSignal>, SlidingMinimum),
     /// Infinite with the sign of another.
-    Sign(Box<Stream>),
+    Sign(Box<RobustnessSignal>),
 }
 
-impl Stream {
+impl RobustnessSignal {
     /// Creates the robustness between two times (s); `source` is the number of its first comparison, and then that after its
     /// last one.
     pub fn new(expression: &Expression, span: [f64; 2], is_negated: bool, source: &mut usize) -> Self {
         let mut new = |inner: &Expression, span, is_negated| Self::new(inner, span, is_negated, source);
-        let waiting = |stream| (stream, VecDeque::new());
+        let waiting = |signal| (signal, VecDeque::new());
         match expression {
             Expression::Compared { .. } | Expression::Flag(_) => {
                 *source += 1;
