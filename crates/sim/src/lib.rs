@@ -276,7 +276,7 @@ impl Simulation {
         self.estimation.begin_segment(now, &self.plant, &self.loads);
         self.plant.begin_segment(self.loads.wrench(now));
         self.laws.objective.add_torque(now, axes, &self.loads);
-        self.update_requirements(|requirements, run| requirements.begin_segment(run));
+        self.update_requirements(RequirementMonitors::begin_segment);
         self.find_crossing(record)
     }
 
