@@ -113,6 +113,7 @@ mod failures;
 mod kinds;
 mod own_parts;
 mod properties;
+mod public_files;
 mod stepping;
 mod unwatched;
 

@@ -29,11 +29,13 @@ pub struct ElementMessage {
 }
 
 /// Values that a message may only have as here, if it has them.
-const FIXED: [(&str, &[&str]); 4] = [
+const FIXED: [(&str, &[&str]); 5] = [
     ("CENTER_NAME", &["EARTH"]),
     ("REF_FRAME", &["TEME"]),
     ("TIME_SYSTEM", &["UTC"]),
     ("MEAN_ELEMENT_THEORY", &["SGP4", "SGP/SGP4", "SDP4"]),
+    // 4 is SGP4-XP, whatever the theory is called.
+    ("EPHEMERIS_TYPE", &["0", "1", "2", "3"]),
 ];
 
 /// Returns true if a text is a message, by its beginning.
@@ -166,6 +168,7 @@ mod tests {
             assert!(error.contains(why), "{error}");
         };
         refused(&KEYWORDS.replace("SGP/SGP4", "SGP4-XP"), "`MEAN_ELEMENT_THEORY = SGP4`, got `SGP4-XP`");
+        refused(&format!("{KEYWORDS}EPHEMERIS_TYPE = 4\n"), "`EPHEMERIS_TYPE = 0`, got `4`");
         refused(&KEYWORDS.replace("TEME", "EME2000"), "`REF_FRAME = TEME`");
         refused(&KEYWORDS.replace("BSTAR", "BTERM"), "must have `BSTAR`");
         refused(&KEYWORDS.replace("13.7918", "x"), "number as `ARG_OF_PERICENTER`, got `x`");

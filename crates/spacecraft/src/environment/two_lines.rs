@@ -45,6 +45,11 @@ pub(super) fn parse(lines: &[String; 2]) -> Result<MeanElements, (usize, String)
         let why = format!("must be of the satellite of line 1, {}, got {}", &first[2..7], &second[2..7]);
         return Err((1, why));
     }
+    if first.as_bytes()[62] == b'4' {
+        let why = "must have the type 0 in column 63, got 4: these are elements of SGP4-XP, another theory"
+            .to_owned();
+        return Err((0, why));
+    }
     let number = |index: usize, [from, to]: [usize; 2], prefix: &str| {
         let text = &lines[index][from - 1..to];
         // Digits behind an assumed point are in fixed places, where a blank is a zero.
@@ -225,6 +230,7 @@ mod tests {
         assert!(fault(1, "14.35478080", " 0.03660000", true).contains("from 0.05 to 18 revolutions"));
         assert!(fault(1, "14.35478080", "94.35478080", true).contains("mean motion"));
         assert!(fault(1, "14.35478080", "-4.35478080", true).contains("mean motion"));
+        assert!(fault(0, "35940-4 0", "35940-4 4", true).contains("elements of SGP4-XP"));
         assert!(fault(0, " 35940-4", " 3594x-4", true).contains("columns 54 to 61"));
         assert!(fault(0, "06177.78615833", "06977.78615833", true).contains("day of the year"));
         assert!(fault(0, "06177.78615833", "58177.78615833", true).contains("from 1970 on"));

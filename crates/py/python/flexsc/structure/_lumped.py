@@ -180,14 +180,15 @@ def _of_element(bulk: Any, element: Any, path: Path) -> Iterator[Lump]:
 
 
 def _torsion(element: Any, along: Numbers) -> Numbers:
-    """The integral of x x' dm of half a beam, across it: its torsional inertia is half of rho (I1 + I2) L."""
+    """The integral of x x' dm that gives an end of a beam half of its inertia rho (I1 + I2) L about its axis,
+    and none across it, as Nastran lumps it."""
     length = float(np.linalg.norm(along))
     if not length > 0.0:
         return np.zeros((3, 3))
     polar = float(element.Rho() * (element.I11() + element.I22())) * length / 2.0
     axis = along / length
-    across: Numbers = polar / 2.0 * (np.eye(3) - np.outer(axis, axis))
-    return across
+    second: Numbers = polar * (np.eye(3) / 2.0 - np.outer(axis, axis))
+    return second
 
 
 def _end(bulk: Any, element: Any, end: int, path: Path) -> Numbers:
