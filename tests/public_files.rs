@@ -138,7 +138,7 @@ fn fields_of_agencies_agree() {
     assert!(late.contains("2025"), "{late}");
 }
 
-/// What an example is refused for, or nothing where it is an orbit about the Earth.
+/// Each example with the reason for which it is refused; without one it is an orbit about the Earth.
 #[test]
 fn examples_of_the_standards_are_read_or_refused_with_the_reason() {
     for (key, name, reason) in [

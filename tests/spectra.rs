@@ -372,6 +372,47 @@ fn lines_of_wheels_have_indices_over_speed() {
     }
 }
 
+/// Of weak motion the contrast loses 2 pi² n² times the variance about the mean of the exposure; lines lose by Bessel functions, here
+/// the means of cos(x sin p) over p.
+#[test]
+fn motion_takes_contrast_from_an_image() {
+    let dir = Dir::with(&["earth-observer", "wheel-run-up"]);
+    let pixel = 1e-3;
+    let loss = 2.0 * (PI * 0.5 / pixel) * (PI * 0.5 / pixel);
+    let line = format!("spectrum earth-observer.toml --pixel {pixel}");
+    for (window, key) in [("--window 2", Some("rpe_uniform")), ("", None)] {
+        let report = dir.run(&format!("{line} {window} --json")).exits(0).json();
+        for output in report["outputs"].as_array().expect("outputs") {
+            let rms = key.map_or(&output["rms"], |key| &output["window"][key]).as_f64().expect("a number");
+            let mtf = output["mtf"].as_f64().expect("a contrast");
+            agree("loss", 1.0 - mtf, loss * rms * rms, 2e-3);
+        }
+    }
+    let report =
+        dir.run("spectrum wheel-run-up.toml --pixel 1e-4 --speeds 46.45:92.9:3 --json").exits(0).json();
+    let wheels = &report["wheels"];
+    let bessel =
+        |x: f64| (0..400).map(|k| (x * (PI * (f64::from(k) + 0.5) / 400.0).sin()).cos()).sum::<f64>() / 400.0;
+    for speed in 0..3 {
+        let mut expected = 1.0;
+        for of_wheel in &wheels["lines"].as_array().expect("lines")[8 * speed..8 * (speed + 1)] {
+            let output = &of_wheel["outputs"][0];
+            for line in output["aliases"].as_array().expect("aliases").iter().chain([&output["direct"]]) {
+                expected *= bessel(PI / 1e-4 * line["amplitude"].as_f64().expect("a number"));
+            }
+        }
+        let found = wheels["mtf"][0][speed].as_f64().expect("a contrast");
+        assert!((found - expected).abs() < 1e-12 && found < 1.0, "{found} {expected}");
+    }
+    let text = dir.run("spectrum wheel-run-up.toml --window 10ms --pixel 2arcsec").exits(0);
+    text.says(&["over exposures of 10 ms, at the Nyquist frequency of pixels of 2 arcsec", "888.1"]);
+    dir.run("spectrum wheel-run-up.toml --pixel 0")
+        .exits(2)
+        .says(&["--pixel must be 1e-12 to 1 rad, got 0 rad"]);
+    let command = "spectrum wheel-run-up.toml --signal command_roll --pixel 1e-5";
+    dir.run(command).exits(2).says(&["--pixel needs an output in rad"]);
+}
+
 /// The lines of wheels that turn near a multiple of a sampling rate have slow aliases, which the loop follows: narrow peaks. A grid
 /// that is dense there has none that the default speeds pass by, and the text lists them.
 #[test]

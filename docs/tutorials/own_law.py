@@ -107,7 +107,7 @@ plt.show()
 # %% [markdown]
 # ## Conclusions
 #
-# - A law is a class with a period and `decide`. Campaigns, figures, exports and the report take it like a law of the engine.
+# - A law is a class with a period and `decide`. Campaigns, figures and exports of runs take it like a law of the engine.
 # - The same holds for [sensors, estimators, actuators and adaptations](../own-parts.md), and for one mode of operation alone:
 #   `with_parts(law={"point": Sliding()})`.
 # - What is fast in Python may be written in Rust later: [extending](../extending.md).

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use flexsc_core::Document;
 use serde_json::json;
@@ -99,9 +99,10 @@ pub struct ExamplesArgs {
     /// Examples to copy [default: list all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
-    /// Directory for the copies, created if missing, or FILE.toml for one of them
-    #[arg(short, long, alias = "output", value_name = "DIR|FILE", default_value = ".")]
-    out: PathBuf,
+    /// Directory for the copies, created if missing, or FILE.toml for one of them; without names all are copied [default: the current
+    /// directory]
+    #[arg(short, long, alias = "output", value_name = "DIR|FILE")]
+    out: Option<PathBuf>,
     /// Replace files of other content
     #[arg(long)]
     force: bool,
@@ -140,16 +141,27 @@ pub fn text(name: &str) -> Result<&'static str, CliError> {
     })
 }
 
+/// Returns the command that copies an example to a path where there is no file; `None` if it is not the name of one.
+pub fn copying(path: &Path) -> Option<String> {
+    let stem = path.file_stem()?.to_str()?;
+    let is_example = EXAMPLES.iter().any(|(example, _)| *example == stem);
+    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let into = directory.map_or_else(String::new, |parent| format!(" -o {}", parent.display()));
+    (is_example && !path.exists()).then(|| format!("`flexsc examples {stem}{into}` copies this example"))
+}
+
 pub fn run(args: &ExamplesArgs) -> Result<(), CliError> {
-    if args.names.is_empty() {
+    let Some(directory) = args.out.as_deref().or((!args.names.is_empty()).then_some(Path::new("."))) else {
         return list(args.json);
-    }
-    let out = Out::new(&args.out, &["toml"], &[])?;
-    if let (Out::File(path, _), [_, _, ..]) = (&out, &args.names[..]) {
+    };
+    let out = Out::new(directory, &["toml"], &[])?;
+    let all = || EXAMPLES.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let names: Vec<String> = if args.names.is_empty() { all() } else { args.names.clone() };
+    if let (Out::File(path, _), [_, _, ..]) = (&out, &names[..]) {
         let why = "cannot contain several examples\n\nhint: give a directory";
         return Err(CliError::Arguments(format!("-o {}: {why}", path.display())));
     }
-    let copies = args.names.iter().map(|name| {
+    let copies = names.iter().map(|name| {
         let stem = name.strip_suffix(".toml").unwrap_or(name);
         let path = match &out {
             Out::File(path, _) => path.clone(),

@@ -7,6 +7,7 @@ use flexsc_core::requirement_verdict::validate_metrics;
 use flexsc_core::{Document, LONGEST, Scenario};
 
 use crate::error::CliError;
+use crate::examples;
 
 /// Largest integer of TOML.
 pub const LARGEST_SEED: u64 = i64::MAX as u64;
@@ -70,7 +71,10 @@ pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, 
 /// Reads a document; `-` is stdin.
 pub fn document(path: &Path) -> Result<Document, CliError> {
     if path != Path::new("-") {
-        return Ok(Document::load(path)?);
+        return Document::load(path).map_err(|fault| match examples::copying(path) {
+            Some(command) => CliError::Arguments(format!("{fault}\n\nhint: {command}")),
+            None => fault.into(),
+        });
     }
     let unread =
         |why: std::io::Error| CliError::Arguments(format!("cannot read a scenario from stdin: {why}"));

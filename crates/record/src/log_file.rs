@@ -65,6 +65,12 @@ pub enum LogError {
         /// Path of the file.
         path: PathBuf,
     },
+    /// Rows of a campaign in place of a log.
+    #[error("{}: a table, not a log\n\nhint: a campaign is drawn from its directory: `flexsc simulate SCENARIO --runs N -o DIR`", path.display())]
+    Rows {
+        /// Path of the file.
+        path: PathBuf,
+    },
     /// Topic that is not in the log.
     #[error("{}: no topic `{topic}` in this log\n\nhint: it has {topics}{}", path.display(), elsewhere(topic))]
     NoTopic {
@@ -121,11 +127,10 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, LogError> {
     let mut magic = [0; 8];
     if file.read_exact(&mut magic).is_err() || magic != *mcap::MAGIC {
         let path = path.to_owned();
-        let is_scenario = path.extension().is_some_and(|extension| extension == "toml");
-        return Err(if is_scenario {
-            LogError::Scenario { path }
-        } else {
-            LogError::Damaged { path, source: McapError::BadMagic }
+        return Err(match path.extension().and_then(|extension| extension.to_str()) {
+            Some("toml") => LogError::Scenario { path },
+            Some("csv" | "parquet") => LogError::Rows { path },
+            _ => LogError::Damaged { path, source: McapError::BadMagic },
         });
     }
     let mut bytes = Vec::new();

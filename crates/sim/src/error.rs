@@ -30,7 +30,9 @@ pub enum SimulationError {
         limit: f64,
     },
     /// The law switches endlessly at one instant.
-    #[error("chatter: the law decided {count} times at t = {at} s")]
+    #[error(
+        "chatter: the law decided {count} times at t = {at} s: is the next time or level that it gives passed already?"
+    )]
     Chatter {
         /// Instant of the decisions.
         at: Instant,

@@ -71,8 +71,8 @@ impl RootLocus {
         }
         let designed = branches.iter().map(|branch| branch[own]).collect();
         let moves = |branch: &Vec<Complex<f64>>| {
-            let farthest = branch.iter().map(|pole| (pole - branch[own]).norm()).fold(0.0, f64::max);
-            farthest > STILL * branch[own].norm()
+            let farthest = branch.iter().map(|pole| modulus(pole - branch[own])).fold(0.0, f64::max);
+            farthest > STILL * modulus(branch[own])
         };
         branches.retain(moves);
         let without = gain.logarithms(0.0)?;
@@ -90,8 +90,9 @@ fn follow(branches: &mut [Vec<Complex<f64>>], poles: &[Complex<f64>]) {
     let ends: Vec<Complex<f64>> = branches.iter().filter_map(|branch| branch.last().copied()).collect();
     let mut pairs: Vec<(f64, usize, usize)> = Vec::with_capacity(ends.len() * poles.len());
     for (branch, end) in ends.iter().enumerate() {
-        pairs
-            .extend(poles.iter().enumerate().map(|(pole, other)| (apart(*end, *other).norm(), branch, pole)));
+        pairs.extend(
+            poles.iter().enumerate().map(|(pole, other)| (modulus(apart(*end, *other)), branch, pole)),
+        );
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let (mut next, mut is_taken) = (ends.clone(), (vec![false; ends.len()], vec![false; poles.len()]));
@@ -175,7 +176,7 @@ impl VariedGain<'_> {
             let expected = (inner + outer) / Complex::from(2.0);
             let all = self.logarithms(factor)?;
             let ways = all.iter().map(|pole| apart(expected, *pole));
-            let pole = expected + ways.min_by(|a, b| a.norm().total_cmp(&b.norm()))?;
+            let pole = expected + ways.min_by(|a, b| modulus(*a).total_cmp(&modulus(*b)))?;
             if pole.re < 0.0 { (stable, inner) = (factor, pole) } else { (unstable, outer) = (factor, pole) }
         }
         let frequency_rad_s = outer.im.abs() / self.opened.period;

@@ -11,7 +11,8 @@ use nalgebra::{DVector, Matrix3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::lines::{LineLoop, OutputLines, SineLoad};
+use super::image_contrast::ImageBlur;
+use super::lines::{LineLoop, OutputLines, SineLoad, SpectralLine};
 use super::speed_grid::{ResonantSpeed, resonant_speeds};
 use super::window_rms::WindowRms;
 use super::windows::Window;
@@ -43,6 +44,10 @@ pub struct WheelSpectrum {
     /// a window.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub windows: Vec<Vec<WindowRms>>,
+    /// Modulation transfer of each output at each speed, of the noise and of all lines; empty for outputs that are no angles, and
+    /// without a pixel.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mtf: Vec<Vec<f64>>,
 }
 
 /// Number of equal steps up to the largest speed, and the smallest of them relative to the largest.
@@ -80,6 +85,26 @@ impl WheelSpectrum {
         self
     }
 
+    /// Returns the highest frequency of all lines (rad/s).
+    pub(super) fn highest_frequency(&self) -> f64 {
+        let lines = self.lines.iter().flat_map(|lines| lines.outputs.iter().flat_map(OutputLines::all));
+        lines.map(|line| line.frequency_rad_s).fold(0.0, f64::max)
+    }
+
+    /// Adds the modulation transfer at a spatial frequency (cycles/rad) of some outputs, each with the blur of its noise.
+    pub(super) fn add_contrast(&mut self, frequency: f64, outputs: &[(usize, ImageBlur)]) {
+        let each = (self.lines.len() / self.speed_rad_s.len().max(1)).max(1);
+        self.mtf = vec![Vec::new(); self.rms.len()];
+        for (output, blur) in outputs {
+            let at = |own: &[WheelLines]| {
+                let lines: Vec<SpectralLine> =
+                    own.iter().flat_map(|lines| lines.outputs[*output].all()).copied().collect();
+                blur.contrast(frequency, &lines)
+            };
+            self.mtf[*output] = self.lines.chunks(each).map(at).collect();
+        }
+    }
+
     /// Returns the lines at some of the speeds.
     fn selected(&self, places: &[usize]) -> Self {
         let each = self.lines.len() / self.speed_rad_s.len().max(1);
@@ -90,6 +115,7 @@ impl WheelSpectrum {
             rms: self.rms.iter().map(of).collect(),
             lines: lines.cloned().collect(),
             windows: Vec::new(),
+            mtf: Vec::new(),
         }
     }
 
@@ -159,6 +185,7 @@ impl WheelImbalance {
             speed_rad_s: speeds.to_vec(),
             lines,
             windows: Vec::new(),
+            mtf: Vec::new(),
         })
     }
 

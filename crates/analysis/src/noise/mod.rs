@@ -9,20 +9,21 @@
 //! - the autocovariance, and the expectation of Welch's estimate of the density: [`NoisyLoop::autocovariance`],
 //!   [`NoisyLoop::welch_expectation`];
 //! - the variance of a weighted sum of samples, as a pointing index is: [`OutputSamples`];
-//! - pointing indices over windows in continuous time: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities.
+//! - pointing indices over windows in continuous time: [`NoisyLoop::window_variances`], and [`WindowWeights`] for sines and densities;
+//! - the contrast of an image that moves with an output, over an exposure: [`ImageBlur`].
 //!
 //! [`LineLoop`] has the lines of the loop under loads that turn, [`WheelImbalance`] those of wheels over their speed.
 //! [`NoiseReport`] has all of them for some outputs.
 
 mod covariance;
 mod density;
+mod image_contrast;
 mod imbalance;
 mod lines;
 mod motion;
 mod noisy_loop;
 mod output;
 mod output_samples;
-
 mod period_rows;
 mod report;
 mod sample_times;
@@ -34,6 +35,7 @@ mod window_rms;
 mod windows;
 
 pub use density::{OutputDensity, cumulative_rms};
+pub use image_contrast::ImageBlur;
 pub use imbalance::{WheelImbalance, WheelLines, WheelSpectrum};
 pub use lines::{LineLoop, OutputLines, SineLoad, SpectralLine, TurningMotion};
 pub use noisy_loop::{NoiseError, NoisyLoop};

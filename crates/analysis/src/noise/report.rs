@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::density::cumulative_rms;
+use super::image_contrast::ImageBlur;
 use super::imbalance::{WheelImbalance, WheelSpectrum};
 use super::lines::LineLoop;
 use super::noisy_loop::{NoiseError, NoisyLoop};
@@ -15,6 +16,9 @@ use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
 const MOST_SPEEDS: usize = 2000;
+/// Angles of a pixel (rad).
+const LEAST_PIXEL: f64 = 1e-12;
+const MOST_PIXEL: f64 = 1.0;
 
 /// Request for the noise of a loop.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +27,9 @@ pub struct NoiseRequest {
     pub signals: Vec<String>,
     /// Window of the indices, if there is one.
     pub window: Option<Window>,
+    /// Angle of a pixel (rad), at whose Nyquist frequency the contrast of the image is wanted; over the window as exposure, or without one
+    /// over one without end.
+    pub pixel: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for steps up to their largest and the peaks between.
     pub speeds: Option<Vec<f64>>,
 }
@@ -77,6 +84,9 @@ pub struct OutputNoise {
     /// Indices over windows, if a window is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<WindowRms>,
+    /// Modulation transfer of the noise at the Nyquist frequency of the pixels, if a pixel is given and the output is an angle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mtf: Option<f64>,
 }
 
 impl NoiseReport {
@@ -98,8 +108,36 @@ impl NoiseReport {
                 "has no noise: neither sensors nor `disturbance` have any, and no wheels have `imbalance`";
             return Err(NoiseError::Key(ConfigError::new("sensor", why)));
         }
-        let report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
-        Ok(Self { wheels, ..report })
+        let mut report = Self::new(&noisy, &outputs, request.window).map_err(NoiseError::Request)?;
+        report.wheels = wheels;
+        if let Some(pixel) = request.pixel {
+            report.add_contrast(&noisy, &outputs, pixel).map_err(NoiseError::Request)?;
+        }
+        Ok(report)
+    }
+
+    /// Adds the modulation transfer of the motion of an image at the Nyquist frequency of pixels of an angle (rad), during windows if
+    /// there are any: of the noise, and of the noise and the lines of the wheels at each speed.
+    fn add_contrast(&mut self, noisy: &NoisyLoop, outputs: &[usize], pixel: f64) -> Result<(), String> {
+        if !(LEAST_PIXEL..=MOST_PIXEL).contains(&pixel) {
+            return Err(format!("pixel must be {LEAST_PIXEL:e} to {MOST_PIXEL} rad, got {pixel} rad"));
+        }
+        let nyquist = 0.5 / pixel;
+        let fastest = self.wheels.as_ref().map_or(0.0, WheelSpectrum::highest_frequency);
+        let mut over_speed = Vec::new();
+        for (place, own) in self.outputs.iter_mut().enumerate().filter(|(_, own)| own.unit == "rad") {
+            let exposure = own.window.map(|window| window.window_s);
+            let blur = ImageBlur::new(noisy, outputs[place], exposure, fastest)?;
+            own.mtf = Some(blur.contrast(nyquist, &[]));
+            over_speed.push((place, blur));
+        }
+        if over_speed.is_empty() {
+            return Err("pixel needs an output in rad, such as a line of sight".to_owned());
+        }
+        if let Some(wheels) = &mut self.wheels {
+            wheels.add_contrast(nyquist, &over_speed);
+        }
+        Ok(())
     }
 
     /// Computes the noise of some outputs, with their indices over windows if there is a window.
@@ -124,6 +162,7 @@ impl NoiseReport {
                 density: density.total,
                 density_by_source: density.by_source,
                 window: window.map(|window| WindowRms::new(noisy, outputs[place], window)).transpose()?,
+                mtf: None,
             });
         }
         Ok(Self {

@@ -60,7 +60,7 @@ pub struct Window {
 
 /// Linear functional of an output: weights that are straight lines over intervals, and values at times.
 #[derive(Default)]
-struct Functional {
+pub(super) struct Functional {
     /// Start, end, and weight at time t: first + second t.
     lines: Vec<([f64; 2], [f64; 2])>,
     /// Times, and weights.
@@ -69,12 +69,12 @@ struct Functional {
 
 impl Functional {
     /// Returns the mean over an interval, times a factor.
-    fn mean(from: f64, length: f64, factor: f64) -> Self {
+    pub fn mean(from: f64, length: f64, factor: f64) -> Self {
         Self { lines: vec![([from, from + length], [factor / length, 0.0])], points: Vec::new() }
     }
 
     /// Adds a value at a time.
-    fn with_point(mut self, time: f64) -> Self {
+    pub fn with_point(mut self, time: f64) -> Self {
         self.points.push((time, 1.0));
         self
     }
@@ -103,15 +103,8 @@ impl NoisyLoop {
     /// A window that is not positive, or longer than a million periods of the loop.
     pub fn window_variances(&self, output: usize, window: Window) -> Result<Vec<WindowVariances>, String> {
         let Window { length, separation } = window;
-        for (name, time) in [("window", Some(length)), ("separation", separation)] {
-            let Some(time) = time else { continue };
-            if !(time > 0.0 && time <= MOST_PERIODS * self.period) {
-                return Err(format!(
-                    "{name} must be positive and at most {MOST_PERIODS:e} periods of {} s, got {time} s",
-                    self.period
-                ));
-            }
-        }
+        self.check_time("window", length)?;
+        separation.map_or(Ok(()), |separation| self.check_time("separation", separation))?;
         let mean = || Functional::mean(0.0, length, 1.0);
         // Legendre's polynomial of degree 1 over the window, normalised to a mean square of 1.
         let root = f64::sqrt(3.0) / length;
@@ -142,6 +135,17 @@ impl NoisyLoop {
         Ok(found)
     }
 
+    /// Checks that a time of windows is positive, and that the loop has at most a million periods in it.
+    pub(super) fn check_time(&self, name: &str, time: f64) -> Result<(), String> {
+        if time > 0.0 && time <= MOST_PERIODS * self.period {
+            return Ok(());
+        }
+        let period = self.period;
+        Err(format!(
+            "{name} must be positive and at most {MOST_PERIODS:e} periods of {period} s, got {time} s"
+        ))
+    }
+
     /// Returns the mean variances of an output over a window, from each source.
     fn window_totals(&self, output: usize, length: f64) -> Vec<f64> {
         let mut sums = vec![0.0; self.sources.len()];
@@ -169,7 +173,7 @@ impl NoisyLoop {
     }
 
     /// Returns the integrals of an output's row, and of the row times the time, over an interval of the period.
-    fn moments(&self, output: usize, interval: [f64; 2]) -> [RowDVector<f64>; 2] {
+    pub(super) fn moments(&self, output: usize, interval: [f64; 2]) -> [RowDVector<f64>; 2] {
         let columns = self.a.nrows() + self.drawn_by.len();
         let mut found = [RowDVector::zeros(columns), RowDVector::zeros(columns)];
         self.motion.integrate(&[output], interval, 0.0, |time, weight, rows| {
@@ -181,7 +185,7 @@ impl NoisyLoop {
 
     /// Returns the variance of a functional that begins at a sample of the law, from each source: the mean over the samples
     /// of a period.
-    fn functional_variances(
+    pub(super) fn functional_variances(
         &self,
         output: usize,
         functional: &Functional,
@@ -294,7 +298,7 @@ impl WindowWeights {
 }
 
 /// Returns the spherical Bessel function of order 0, sin u/u.
-fn j0(u: f64) -> f64 {
+pub(super) fn j0(u: f64) -> f64 {
     if u.abs() < 1e-4 { 1.0 - u * u / 6.0 } else { libm::sin(u) / u }
 }
 

@@ -155,13 +155,16 @@ fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<
             is_line && is_data(layer) && layer.points.len() > LEVEL
         };
         let named = |panel: &Panel| -> Vec<(String, Vec<Point>)> {
-            // Of several panels, the main line of each.
-            let count = if is_single { usize::MAX } else { 1 };
             let name = |layer: &Layer| {
-                if is_single && !layer.name.is_empty() { layer.name.clone() } else { panel.y.name.clone() }
+                if layer.name.is_empty() { panel.y.name.clone() } else { layer.name.clone() }
             };
-            let lines = panel.layers.iter().filter(data).take(count);
-            lines.map(|layer| (name(layer), layer.points.clone())).collect()
+            // Of several panels, the main line of each: that of the quantity itself, which has no name.
+            let mut lines: Vec<&Layer> = panel.layers.iter().filter(data).collect();
+            if !is_single {
+                lines.sort_by_key(|layer| !layer.name.is_empty());
+                lines.truncate(1);
+            }
+            lines.into_iter().map(|layer| (name(layer), layer.points.clone())).collect()
         };
         panels.into_iter().flat_map(named).collect()
     };
@@ -174,16 +177,26 @@ fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<
         first.y.unit,
         lines.iter().flat_map(|(_, line)| line).map(|point| point.1),
     );
+    let times = || lines.iter().flat_map(|(_, line)| line.iter().map(|point| point.0));
+    let both = times().fold(f64::INFINITY, f64::min)..times().fold(f64::NEG_INFINITY, f64::max);
     let is_named = lines.len() > 1;
-    let layer = |(index, (name, line)): (usize, (String, Vec<Point>))| {
-        let name = if is_named { name } else { String::new() };
+    let same = |name: &str| lines.iter().filter(|(other, _)| other == name).count() > 1;
+    let numbered: Vec<String> = lines
+        .iter()
+        .enumerate()
+        .map(|(index, (name, _))| if same(name) { format!("{name} {}", index + 1) } else { name.clone() })
+        .collect();
+    let layer = |(index, (_, line)): (usize, (String, Vec<Point>))| {
+        let name = if is_named { numbered[index].clone() } else { String::new() };
         let colour = if is_named { COLOURS[index % COLOURS.len()] } else { colour::BLACK };
         Layer::new(&name, colour, LayerShape::Line(1.0), line)
     };
     let is_something = lines.iter().flat_map(|(_, line)| line).any(|point| point.1.abs() > 0.0);
     let layers: Vec<Layer> = lines.into_iter().enumerate().map(layer).collect();
     is_something.then(|| {
-        Panel::new(last.x.covering(&other.panels[other.panels.len() - 1].x), y.like(&first.y), layers)
+        let mut x = last.x.clone();
+        x.range = both;
+        Panel::new(x, y.like(&first.y), layers)
     })
 }
 

@@ -15,6 +15,7 @@ use flexsc_core::analysis::noise::{
     NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -48,6 +49,10 @@ pub struct SpectrumArgs {
     /// Time from the start of a window to that of the next (s), for differences of their means
     #[arg(long, value_name = "TIME", requires = "window", value_parser = in_unit("s"))]
     separation: Option<f64>,
+    /// Angle of a pixel (rad): prints the contrast (MTF) that the motion leaves an image at its Nyquist frequency, over exposures of
+    /// --window, or without one over a long exposure
+    #[arg(long, value_name = "ANGLE", value_parser = in_unit("rad"))]
+    pixel: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance [default: 48 up to their largest, and the peaks between]
     #[arg(long, value_name = "LO:HI:COUNT", value_parser = grid_in("rad/s"))]
     speeds: Option<PositiveGrid>,
@@ -79,6 +84,8 @@ pub struct SpectrumResults {
     required: Vec<Option<RequiredIndex>>,
     /// Window of the indices (s), if one is given.
     window_s: Option<f64>,
+    /// Angle of a pixel (rad), if one is given.
+    pixel: Option<f64>,
     modes: Vec<NamedMode>,
 }
 
@@ -95,6 +102,7 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
     let mut request = NoiseRequest {
         signals: args.signal.clone(),
         window: args.window.map(|length| Window { length, separation: args.separation }),
+        pixel: args.pixel,
         speeds: args.speeds.clone().map(|PositiveGrid(speeds)| speeds),
     };
     let compared = match &args.log {
@@ -120,6 +128,7 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
         required: required.collect(),
         modes: NamedMode::all(scenario),
         window_s: args.window,
+        pixel: args.pixel,
         over_speed: args.speeds.is_some(),
         units: args.units.units,
         name,
@@ -192,6 +201,14 @@ impl SpectrumResults {
     }
 }
 
+/// Columns of the contrast of an image that moves with an output.
+const CONTRAST: [Column<'_>; 4] = [
+    column("output", "output"),
+    column("noise", "MTF\nof noise"),
+    column("least", "least with\nlines of wheels"),
+    column("speed_rad_s", "at"),
+];
+
 /// Returns the indices of an output with its name and unit.
 fn index_row(window: &WindowRms, output: &OutputNoise) -> Json {
     let mut row = json!(window);
@@ -200,6 +217,35 @@ fn index_row(window: &WindowRms, output: &OutputNoise) -> Json {
 }
 
 impl SpectrumResults {
+    /// Prints the contrast that the motion of each output leaves an image, if a pixel is given.
+    fn print_contrast(&self) {
+        let Some(pixel) = self.pixel else { return };
+        let wheels = self.report.wheels.as_ref();
+        let row = |(index, output): (usize, &OutputNoise)| {
+            let over_speed =
+                wheels.and_then(|wheels| Some(wheels.speed_rad_s.iter().zip(wheels.mtf.get(index)?)));
+            let least = over_speed.and_then(|all| all.min_by(|a, b| a.1.total_cmp(b.1)));
+            Some(json!({
+                "output": output.output,
+                "noise": output.mtf?,
+                "least": least.map(|(_, value)| value),
+                "speed_rad_s": least.map(|(speed, _)| speed),
+            }))
+        };
+        let rows: Vec<Json> = self.report.outputs.iter().enumerate().filter_map(row).collect();
+        let exposure = match self.window_s {
+            Some(window) => format!("exposures of {}", ReaderUnit::for_time_axis(window).quantity(window)),
+            None => "a long exposure".to_owned(),
+        };
+        say!(
+            "  contrast (MTF) that the motion leaves an image over {exposure}, at the Nyquist frequency of pixels of {}",
+            ReaderUnits::Engineering.fitting(pixel, "rad").quantity(pixel)
+        );
+        let columns =
+            if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };
+        print_rows(&rows, columns, self.units);
+    }
+
     /// Prints the estimates of a log beside the exact rms, with a warning where its bins are too wide for a peak.
     fn print_welch(&self) {
         let Some(first) = self.welch.first() else { return };
@@ -294,6 +340,7 @@ impl Results for SpectrumResults {
             print_table(&rows, 1);
             self.print_windows();
         }
+        self.print_contrast();
         self.print_welch();
         if let Some(wheels) = &self.report.wheels {
             wheels::print(&self.report, wheels, self.units);

@@ -120,9 +120,9 @@ impl<'a> OutputWaterfall<'a> {
 
     fn figure(&self, name: &str, modes: &[NamedMode]) -> Figure {
         let lines = self.points();
-        let panels = vec![self.effect(), self.places(&lines, modes)];
+        let panels = [Some(self.effect()), self.contrast(), Some(self.places(&lines, modes))];
         let name = format!("{name}: lines of the wheels in {}", self.output.output);
-        Figure { title: name, panels, panel_height: 260 }
+        Figure { title: name, panels: panels.into_iter().flatten().collect(), panel_height: 260 }
     }
 
     fn speed(&self) -> FigureAxis {
@@ -160,6 +160,20 @@ impl<'a> OutputWaterfall<'a> {
         }
         let y = FigureAxis::decades(&label, unit, values).in_unit(self.unit());
         Panel::new(x.unnamed(), y, layers).noted(notes)
+    }
+
+    /// Returns the panel of the contrast of an image over the speed, if a pixel was given.
+    fn contrast(&self) -> Option<Panel> {
+        let mtf = self.wheels.mtf.get(self.index).filter(|mtf| !mtf.is_empty())?;
+        let points: Vec<Point> = self.wheels.speed_rad_s.iter().copied().zip(mtf.iter().copied()).collect();
+        let (speed, least) = points.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let text = format!("{} at {:.0} rpm", four_digits(least), speed * 30.0 / PI);
+        let note = Note::new(text, (speed, least), colour::BLUE).on(NoteSide::Below);
+        // Room for the note below.
+        let low = (least - 0.25 * (1.0 - least)).min(0.9);
+        let y = FigureAxis::exact("contrast (MTF)", "", low..1.0);
+        let line = Layer::new("", colour::BLUE, LayerShape::Line(1.6), points);
+        Some(Panel::new(self.speed().unnamed(), y, vec![line]).noted(vec![note]))
     }
 
     /// Returns a note at the largest of some values over the speed.

@@ -77,7 +77,7 @@ fn print_windows(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
     print_rows(&rows, &[&INDICES[..], &[column("speed_rad_s", "speed")]].concat(), units);
 }
 
-/// Returns rms and indices of each output as a table over the speed of the wheels.
+/// Returns rms, contrast and indices of each output as a table over the speed of the wheels.
 pub fn table(report: &NoiseReport, wheels: &WheelSpectrum) -> NumberTable {
     let mut columns = vec!["speed_rad_s".to_owned()];
     let mut lists: Vec<Vec<Option<f64>>> =
@@ -86,6 +86,10 @@ pub fn table(report: &NoiseReport, wheels: &WheelSpectrum) -> NumberTable {
         let name = &output.output;
         columns.push(format!("{name}_rms"));
         lists.push(wheels.rms[index].iter().map(|rms| Some(*rms)).collect());
+        if let Some(mtf) = wheels.mtf.get(index).filter(|mtf| !mtf.is_empty()) {
+            columns.push(format!("{name}_mtf"));
+            lists.push(mtf.iter().map(|value| Some(*value)).collect());
+        }
         let Some(over_speed) = wheels.windows.get(index) else { continue };
         let indices: [(&str, IndexOf); 7] = [
             ("mpe", |of| Some(of.mpe)),

@@ -1,6 +1,5 @@
 //! Answers of two campaigns side by side.
 
-use flexsc_formats::count::counted;
 use flexsc_formats::text_columns::columns;
 use serde::Serialize;
 
@@ -26,7 +25,7 @@ impl CampaignComparison {
         let verdicts = self
             .answers
             .each_ref()
-            .map(|answer| format!("{}   {}", answer.verdict_text, counted(answer.runs, "run")));
+            .map(|answer| format!("{}   {}", answer.verdict_text, answer.counted_runs()));
         let blocks =
             [heads(&self.names, &verdicts), key_lines(&self.keys, options.all), self.requirement_lines()];
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));

@@ -21,7 +21,7 @@ impl CampaignAnswer {
     /// Returns the answer as text; `took` is the real time that the runs took (s).
     pub fn screen(&self, took: Option<f64>, options: ScreenOptions) -> String {
         let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
-        let head = format!("{}   {}   {}{took}", self.scenario, self.verdict_text, counted(self.runs, "run"));
+        let head = format!("{}   {}   {}{took}", self.scenario, self.verdict_text, self.counted_runs());
         let mut blocks = vec![wrapped(&head, options.width, 4)];
         let texts: Vec<&str> = self.warnings.iter().map(|warning| &*warning.text).collect();
         let mut warnings = warning_lines(&texts, options);
@@ -43,6 +43,12 @@ impl CampaignAnswer {
         blocks.push(lines);
         let blocks = blocks.into_iter().filter(|block| !block.is_empty()).map(|block| block.join("\n"));
         options.style.styled(&blocks.collect::<Vec<_>>().join("\n\n"))
+    }
+
+    /// Returns the number of runs, with those that failed.
+    pub(super) fn counted_runs(&self) -> String {
+        let failed = if self.failed == 0 { String::new() } else { format!(", {} failed", self.failed) };
+        counted(self.runs, "run") + &failed
     }
 
     fn requirement_table(&self, options: ScreenOptions) -> Vec<String> {

@@ -99,6 +99,14 @@ class WheelSpectrum(Brief):
     >>> over.window["yaw"]["rpe_uniform"].shape
     (2,)
     """
+    mtf: dict[str, Values] | None
+    """Contrast that the noise and these lines leave an image, if a pixel is given, of outputs in rad, each of
+    shape (speeds,).
+
+    >>> craft = flexsc.Scenario.example("wheel-run-up")
+    >>> craft.spectrum(pixel=1e-3, speeds=[40.0, 93.0]).wheels.mtf["yaw"].shape
+    (2,)
+    """
 
 
 WheelSpectrum.__module__ = WheelLines.__module__ = "flexsc"
@@ -110,6 +118,7 @@ def noise_spectrum(
     window: float | None,
     separation: float | None,
     speeds: npt.ArrayLike | None,
+    pixel: float | None,
 ) -> NoiseSpectrum:
     """Return the noise of the loop of a scenario."""
     if separation is not None and window is None:
@@ -117,8 +126,15 @@ def noise_spectrum(
     if isinstance(signals, str):
         signals = [signals]
     given = None if speeds is None else np.asarray(speeds, dtype=np.float64).ravel().tolist()
-    options = {"signals": list(signals or ()), "window": window, "separation": separation, "speeds": given}
-    found = analysis("spectrum", scenario, **options)
+    found = analysis(
+        "spectrum",
+        scenario,
+        signals=list(signals or ()),
+        window=window,
+        separation=separation,
+        pixel=pixel,
+        speeds=given,
+    )
     if "wheels" in found:
         found["wheels"] = _wheels(found["wheels"], [each["output"] for each in found["outputs"]])
     return NoiseSpectrum._read(found)
@@ -169,4 +185,6 @@ def _wheels(found: dict[str, Any], names: list[str]) -> WheelSpectrum:
             name: {index: _array([window[index] for window in each]) for index in each[0]}
             for name, each in zip(names, over_speed, strict=True)
         }
-    return WheelSpectrum(speed, rms, tuple(harmonics), windows)
+    over = zip(names, found.get("mtf", ()), strict=False)
+    mtf = {name: _array(values) for name, values in over if values} or None
+    return WheelSpectrum(speed, rms, tuple(harmonics), windows, mtf)

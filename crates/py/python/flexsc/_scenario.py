@@ -603,6 +603,7 @@ class Scenario:
         window: float | None = None,
         separation: float | None = None,
         speeds: npt.ArrayLike | None = None,
+        pixel: float | None = None,
     ) -> NoiseSpectrum:
         """Return the noise of the scenario's loop, exact from its linear model: `flexsc spectrum`.
 
@@ -617,6 +618,8 @@ class Scenario:
             separation: Time (s) from the start of a window to that of the next, for differences of means.
             speeds: Speeds (rad/s) of the wheels for the lines of their imbalance; None for 48 up to their
                 largest.
+            pixel: Angle (rad) of a pixel: `mtf` then has the contrast that the motion leaves an image at its
+                Nyquist frequency, over exposures of `window`, or without one over a long exposure.
 
         >>> spectrum = flexsc.Scenario.example("attitude-hold").spectrum(["roll", "command_roll"])
         >>> spectrum.sources
@@ -630,7 +633,7 @@ class Scenario:
         """
         from flexsc._noise import noise_spectrum
 
-        return noise_spectrum(self, signals, window, separation, speeds)
+        return noise_spectrum(self, signals, window, separation, speeds, pixel)
 
     def budget(self, runs: int = 20, jobs: int = 0) -> PointingBudget:
         """Return the pointing budget of the scenario's `[[requirement]]` tables: `flexsc budget`.
