@@ -273,3 +273,72 @@ fn what_does_not_fit_is_refused() {
         assert!(scenario.to_toml().contains("actuator = \"ideal\""));
     }
 }
+
+/// Returns the time of each refusal, its sensor and its outcome.
+fn refusals(trace: &Trace) -> Vec<(f64, usize, String)> {
+    let Some(rows) = trace.topic("/refusals") else { return Vec::new() };
+    let Some(Column::Rows(counts, inner)) = rows.get("readings") else { panic!("no readings") };
+    let (Some(Column::Counts(sensors)), Some(Column::Labels(outcomes, labels))) =
+        (inner.get("sensor"), inner.get("outcome"))
+    else {
+        panic!("no sensors and outcomes")
+    };
+    let times = crate::traces::times(trace, "/refusals");
+    let times =
+        times.iter().zip(counts).flat_map(|(time, count)| std::iter::repeat_n(*time, *count as usize));
+    let each = times.zip(sensors).zip(outcomes);
+    each.map(|((time, sensor), outcome)| (time, *sensor as usize, labels[usize::from(*outcome)].clone()))
+        .collect()
+}
+
+/// The shipped scenario: each false reading is refused when it arrives, and only that which nothing shows turns the estimate.
+#[test]
+fn an_attitude_filter_refuses_false_readings() {
+    let path = format!("{}/../../scenarios/false-readings.toml", env!("CARGO_MANIFEST_DIR"));
+    let scenario = Scenario::load(path.as_ref()).expect("a shipped scenario");
+    let trace = traced(&scenario);
+    let found = refusals(&trace);
+    let of = |from: f64, to: f64| -> Vec<(usize, &str)> {
+        let within = found.iter().filter(|(time, ..)| (from..to).contains(time));
+        within.map(|(_, sensor, outcome)| (*sensor, outcome.as_str())).collect()
+    };
+    // A star tracker reports 0.2 s after its exposure.
+    assert_eq!(of(60.1, 60.3), [(1, "improbable")]);
+    assert_eq!(of(90.0, 90.05), []);
+    assert_eq!(of(120.1, 120.3), [(1, "unsound")]);
+    assert_eq!(of(135.0, 135.05), [(0, "unsound")]);
+    assert_eq!(of(150.1, 160.1), vec![(1, "unsound"); 20]);
+    assert_eq!(of(180.1, 182.0), vec![(1, "improbable"); 3]);
+    let spiked = of(240.0, 260.0);
+    assert_eq!(spiked[..6], [[(1, "improbable"); 5].as_slice(), &[(1, "reaccepted")]].concat(), "{spiked:?}");
+    let errors = within(&trace, "/attitude_filter", "axes", "angle_error_rad");
+    let times = crate::traces::times(&trace, "/attitude_filter");
+    for (time, error) in times.iter().zip(errors.chunks(3)) {
+        let most = if (20.0..240.0).contains(time) || *time > 300.0 { 3e-4 } else { 1e-1 };
+        assert!(error.iter().all(|part| part.abs() < most), "{time}: {error:?}");
+    }
+}
+
+#[test]
+fn false_readings_need_a_filter_and_a_size() {
+    let text = |fault: &str, estimator: &str| {
+        format!(
+            "duration = 20.0\n[spacecraft]\nmass = 1.0\ninertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\
+             [[sensor]]\ngyro = {{ period = 0.1, angle_random_walk = 1e-6 }}\n\
+             [[sensor]]\nstar_tracker = {{ period = 0.5, noise = [1e-5, 1e-5, 1e-5], faults = [{fault}] }}\n\
+             {estimator}\n[law.attitude]\nperiod = 0.5\nbandwidth = 0.05\n"
+        )
+    };
+    let said = refused(&text("{ outlier = { from = 1.0 } }", "[estimator.attitude]"));
+    assert!(
+        said.contains("faults") && said.contains("must have an `angle` or a `rate` other than 0"),
+        "{said}"
+    );
+    let said = refused(&text("{ zero = { from = 1.0 } }", ""));
+    assert!(said.contains("has `zero`, which an `[estimator.attitude]` refuses"), "{said}");
+    let said = refused(&text("{ invalid = { from = 2.0, to = 1.0 } }", "[estimator.attitude]"));
+    assert!(said.contains("`from` before `to`"), "{said}");
+    let said =
+        refused(&text("{ silent = { from = 1.0 } }", "[estimator.attitude]\ngate = { deviations = 0 }"));
+    assert!(said.contains("deviations"), "{said}");
+}

@@ -31,6 +31,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "earth-observer",
     "earth-observer-lqg",
     "eclipse-snap",
+    "false-readings",
     "field-aligned",
     "flexible-boom",
     "four-clamped-modes",

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::formats::document::ConfigError;
-use flexsc_export_c::package::{self, ExportError, Guest};
+use flexsc_export_c::control_system::NotExportable;
+use flexsc_export_c::package::{self, ExportError, ExportOrigin, Guest};
 use flexsc_export_c::vectors::{self, VectorError};
 
 use crate::error::CliError;
@@ -37,6 +38,9 @@ pub struct ExportCArgs {
     /// Add the control system as an app of cFS or a component of F Prime; may be given twice
     #[arg(long, value_name = "GUEST")]
     guest: Vec<GuestName>,
+    /// Fail if a part of the control loop is not in the code
+    #[arg(long)]
+    complete: bool,
     /// Replace files of other content in DIR
     #[arg(long)]
     force: bool,
@@ -99,8 +103,21 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
     };
     let guests: BTreeSet<Guest> = args.guest.iter().map(|name| Guest::from(*name)).collect();
     let guests: Vec<Guest> = guests.into_iter().collect();
-    let package = package::export(&scenario, &origin, &prefix, args.calls as usize, &guests)
+    let mode = args.mode.iter().map(|name| format!("--mode {name}"));
+    let changes: Vec<String> = args.set.iter().map(|set| format!("--set {set}")).chain(mode).collect();
+    let origin = ExportOrigin { file: &origin, changes: &changes };
+    let package = package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
         .map_err(|error| refused(&args.scenario, error))?;
+    if args.complete
+        && let Some(part) = package.left_out.first()
+    {
+        let reason = format!(
+            "is not part of the exported code, and you would have to {}: without `--complete` the rest is exported",
+            part.duty
+        );
+        let fault = NotExportable::new(part.key.clone(), reason);
+        return Err(refused(&args.scenario, ExportError::Vectors(VectorError::NotExportable(fault))));
+    }
     let written: Vec<(PathBuf, Vec<u8>)> =
         package.files.iter().map(|file| (args.out.join(&file.path), file.bytes.clone())).collect();
     for (path, bytes) in &written {
@@ -113,6 +130,9 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.calls.iter().map(|call| format!("{prefix}_{}", call.name)).collect::<Vec<_>>().join(", "),
         package.vectors
     );
+    for part in &package.left_out {
+        eprintln!("not part of it: {}; you must {}", part.key, part.duty);
+    }
     eprintln!("`make -C {} check` compares them by bits", args.out.display());
     for guest in guests {
         let directory = args.out.join(guest.directory());

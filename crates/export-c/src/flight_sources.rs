@@ -14,7 +14,7 @@ macro_rules! sources {
 }
 
 /// Number of files.
-const COUNT: usize = 47;
+const COUNT: usize = 49;
 
 /// Returns the source files of the flight code.
 pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
@@ -23,6 +23,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "argument_reduction",
         "attitude_estimator",
         "attitude_filter",
+        "attitude_gate",
         "attitude_history",
         "attitude_law",
         "attitude_observation",
@@ -55,6 +56,7 @@ pub fn flight_sources() -> [SourceFile<'static>; COUNT] {
         "pulse_timing",
         "pulse_width",
         "quaternion",
+        "reading_status",
         "relay",
         "rigid_rate",
         "square_root",

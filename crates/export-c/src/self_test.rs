@@ -87,16 +87,24 @@ pub fn self_tests<const N: usize>(system: &ControlSystem, cycles: [u64; N]) -> [
     let mut hashes = [hash; N];
     let (mut current, mut words) = (system.clone(), Vec::new());
     for cycle in 0..cycles.into_iter().max().unwrap_or(0) {
-        if cycle % BLOCK == 0 {
-            current = system.clone();
-        }
         let is_extreme = cycle / BLOCK % EXTREME_BLOCK == EXTREME_BLOCK - 1;
         let time = cycle * milliseconds;
         let now = Ticks { whole: (time / 1000) as i64, part: (time % 1000) as i64 * 1_000_000_000_000 };
+        if cycle % BLOCK == 0 {
+            current = system.clone();
+            current.start_at(now);
+        }
         let due = |call: &WordLayout<'_>| !call.is_start || cycle % BLOCK == 0;
         for (index, call) in layouts.iter().enumerate().filter(|(_, call)| due(call)) {
             words.clear();
             words.extend(call.inputs.iter().map(|channel| inputs.word(channel, is_extreme)));
+            let mut place = 0;
+            for channel in &calls[index].inputs {
+                if channel.is_unit && !is_extreme {
+                    unit_words(&mut words[place..place + channel.count]);
+                }
+                place += channel.count;
+            }
             let outputs = current.call(index, now, &words);
             for (word, kind) in outputs.into_iter().zip(&call.outputs) {
                 for byte in canonical(word, *kind).to_le_bytes() {
@@ -109,6 +117,19 @@ pub fn self_tests<const N: usize>(system: &ControlSystem, cycles: [u64; N]) -> [
         }
     }
     hashes
+}
+
+/// Replaces words of numbers by those of a unit vector, whose last number is free: the inverse stereographic projection.
+fn unit_words(words: &mut [u64]) {
+    let count = words.len() - 1;
+    let mut square = 0.0;
+    for word in &words[..count] {
+        square += f64::from_bits(*word) * f64::from_bits(*word);
+    }
+    for word in &mut words[..count] {
+        *word = (2.0 * f64::from_bits(*word) / (1.0 + square)).to_bits();
+    }
+    words[count] = ((1.0 - square) / (1.0 + square)).to_bits();
 }
 
 /// Returns the milliseconds of a period of the self-test.

@@ -4,8 +4,9 @@ use std::process::Command;
 
 use flexsc_core::Scenario;
 use flexsc_export_c::control_system::ControlSystem;
+use flexsc_export_c::package::{self, ExportOrigin};
+use flexsc_export_c::self_test;
 use flexsc_export_c::vectors::{self, CallVector};
-use flexsc_export_c::{package, self_test};
 use tempfile::TempDir;
 
 /// Returns the scenario `safe-mode` with laws by wheels in all modes, of different periods.
@@ -136,7 +137,8 @@ fn bits_are_equal(name: &str, text: &str, level: &str) {
         return;
     }
     let scenario = scenario(text);
-    let files = package::export(&scenario, "modes.toml", name, 20_000, &[]).expect("a package").files;
+    let origin = ExportOrigin { file: "modes.toml", changes: &[] };
+    let files = package::export(&scenario, origin, name, 20_000, &[]).expect("a package").files;
     let dir = TempDir::new().expect("a directory");
     for file in files {
         let path = dir.path().join(&file.path);

@@ -1,26 +1,26 @@
 //! Estimator of the attitude from a gyro and delayed observations: the filter's recent past, and the propagation to an instant.
 
 use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use crate::attitude_gate::AttitudeGate;
 use crate::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
-use crate::attitude_observation::AttitudeObservation;
+use crate::attitude_observation::{AttitudeObservation, Correction};
 use crate::quaternion::Quaternion;
+use crate::reading_status::ReadingStatus;
+use crate::square_root::sqrt;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
 
-/// Time of the start.
-const START: Ticks = Ticks { whole: 0, part: 0 };
-
-/// Returns the end of the interval that a gyro reading covers, which arrives with a latency; before the first latency has elapsed,
-/// the start.
+/// Returns the end of the interval that a gyro reading covers, which arrives with a latency; until the first latency after the start
+/// has elapsed, the start.
 #[inline]
-pub fn gyro_exposure(now: Ticks, latency: Ticks) -> Ticks {
-    if now.is_before(latency) { START } else { now.since(latency) }
+pub fn gyro_exposure(now: Ticks, latency: Ticks, start: Ticks) -> Ticks {
+    if now.since(start).is_before(latency) && !now.is_before(start) { start } else { now.since(latency) }
 }
 
 /// Returns the time of exposure of an observation that arrives with a latency; at the start it has none.
 #[inline]
-pub fn observation_exposure(now: Ticks, latency: Ticks) -> Ticks {
-    if now.whole == 0 && now.part == 0 { START } else { now.since(latency) }
+pub fn observation_exposure(now: Ticks, latency: Ticks, start: Ticks) -> Ticks {
+    if now.whole == start.whole && now.part == start.part { now } else { now.since(latency) }
 }
 
 /// Estimator of the attitude. The caller gives the storage of its recent past, the same at every call.
@@ -32,18 +32,32 @@ pub struct AttitudeEstimator {
     pub reading: Vector3,
     /// Time at which the interval of that reading ended.
     pub since: Ticks,
+    /// Time of the start.
+    pub started: Ticks,
+    /// Last measurement that corrected the filter.
+    pub correction: Correction,
 }
 
 impl AttitudeEstimator {
-    /// Starts the estimator with a filter at the start of time.
+    /// Starts the estimator with a filter at `now`. An attitude that is not of unit length is replaced by the identity, and a bias
+    /// that is not finite by 0.
     pub fn start(
+        now: Ticks,
         filter: AttitudeBiasFilter,
         noise: GyroNoise,
         reach: Ticks,
+        gate: AttitudeGate,
         entries: &mut [AttitudeHistoryEntry],
     ) -> Self {
-        let history: AttitudeHistory = AttitudeHistory::start(START, filter, noise, reach, entries);
-        Self { history, reading: Vector3::ZERO, since: START }
+        let mut sound: AttitudeBiasFilter = filter;
+        if !filter.attitude.is_unit() {
+            sound.attitude = Quaternion::IDENTITY;
+        }
+        if !filter.bias.norm_squared().is_finite() {
+            sound.bias = Vector3::ZERO;
+        }
+        let history: AttitudeHistory = AttitudeHistory::start(now, sound, noise, reach, gate, entries);
+        Self { history, reading: Vector3::ZERO, since: now, started: now, correction: Correction::NONE }
     }
 
     /// Takes a gyro reading (rad/s) at `now`. It comes before the observations of the same time.
@@ -54,10 +68,16 @@ impl AttitudeEstimator {
         reading: Vector3,
         entries: &mut [AttitudeHistoryEntry],
         observations: &mut [DelayedObservation],
-    ) {
-        self.reading = reading;
-        self.since = gyro_exposure(now, latency);
-        self.history.add_gyro(self.since, reading, entries, observations);
+    ) -> ReadingStatus {
+        let exposed: Ticks = gyro_exposure(now, latency, self.started);
+        let status: ReadingStatus = self.history.judge_gyro(exposed, &reading, entries);
+        if status == ReadingStatus::Accepted {
+            self.reading = reading;
+            self.since = exposed;
+            let waited: Correction = self.history.add_gyro(exposed, reading, entries, observations);
+            self.keep(&waited);
+        }
+        status
     }
 
     /// Takes an observation at `now`.
@@ -68,20 +88,58 @@ impl AttitudeEstimator {
         observation: &AttitudeObservation,
         entries: &mut [AttitudeHistoryEntry],
         observations: &mut [DelayedObservation],
-    ) {
-        let delayed: DelayedObservation =
-            DelayedObservation { exposed: observation_exposure(now, latency), observation: *observation };
-        self.history.add_observation(delayed, entries, observations);
+    ) -> ReadingStatus {
+        let delayed: DelayedObservation = DelayedObservation {
+            exposed: observation_exposure(now, latency, self.started),
+            observation: *observation,
+            angle_inflation: 0.0,
+            bias_inflation: 0.0,
+        };
+        let correction: Correction = self.history.add_observation(delayed, entries, observations);
+        self.keep(&correction);
+        correction.status
+    }
+
+    /// Keeps a correction as the last one.
+    fn keep(&mut self, correction: &Correction) {
+        if correction.status.has_corrected() {
+            self.correction = *correction;
+        }
     }
 
     /// Returns the attitude at `now`, propagated with the last gyro reading.
     pub fn attitude(&self, now: Ticks, entries: &[AttitudeHistoryEntry]) -> Quaternion {
-        let seconds: f64 = now.since(self.since).seconds();
+        let seconds: f64 = if now.is_before(self.since) { 0.0 } else { now.since(self.since).seconds() };
         entries[self.history.latest()].filter.attitude_after(&self.reading, seconds)
     }
 
     /// Returns the rate of the body (rad/s): the last gyro reading without the estimated bias.
     pub fn rate(&self, entries: &[AttitudeHistoryEntry]) -> Vector3 {
         self.reading.minus(&entries[self.history.latest()].filter.bias)
+    }
+
+    /// Returns the time (s) since the exposure of the last measurement that corrected the filter, or since the start.
+    pub fn age(&self, now: Ticks) -> f64 {
+        now.since(self.history.corrected).seconds()
+    }
+
+    /// Returns the size of the innovation of the last correction (rad).
+    pub fn innovation_size(&self) -> f64 {
+        self.correction.innovation.norm()
+    }
+
+    /// Returns the standard deviation of the attitude about all axes together (rad), as the filter believes it.
+    pub fn deviation_size(&self, entries: &[AttitudeHistoryEntry]) -> f64 {
+        self.deviation(entries).norm()
+    }
+
+    /// Returns the standard deviation of the attitude about each axis (rad), as the filter believes it.
+    pub fn deviation(&self, entries: &[AttitudeHistoryEntry]) -> Vector3 {
+        let filter: AttitudeBiasFilter = entries[self.history.latest()].filter;
+        Vector3 {
+            x: sqrt(filter.covariance.rows[0][0]),
+            y: sqrt(filter.covariance.rows[1][1]),
+            z: sqrt(filter.covariance.rows[2][2]),
+        }
     }
 }

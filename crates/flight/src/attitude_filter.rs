@@ -12,6 +12,7 @@ use crate::covariance_propagation::IntervalNoise;
 use crate::matrix3::Matrix3;
 use crate::matrix6::{AttitudeBiasError, Matrix6, Matrix6x3};
 use crate::quaternion::Quaternion;
+use crate::reading_status::ReadingStatus;
 use crate::vector3::Vector3;
 
 /// Gyro noise in the filter's model, the same about each axis.
@@ -78,20 +79,32 @@ impl AttitudeBiasFilter {
         self.attitude = turned.normalized();
     }
 
-    /// Corrects the filter by a measurement of any kind, with its constant gain if it has one.
-    pub fn observe(&mut self, observation: &AttitudeObservation) -> Correction {
+    /// Adds variances of attitude (rad²) and bias (rad²/s²) about each axis to the covariance.
+    pub fn inflate(&mut self, angle: f64, bias: f64) {
+        for axis in 0..3 {
+            self.covariance.rows[axis][axis] += angle;
+            self.covariance.rows[3 + axis][3 + axis] += bias;
+        }
+    }
+
+    /// Corrects the filter by a measurement of any kind, with its constant gain if it has one. Changes nothing if the normalised
+    /// innovation squared exceeds `most_nis` or is NaN.
+    pub fn observe(&mut self, observation: &AttitudeObservation, most_nis: f64) -> Correction {
         if observation.has_gain {
-            return self.correct_with_gain(observation);
+            return self.correct_with_gain(observation, most_nis);
         }
         match observation.kind {
-            ObservationKind::Attitude => self.correct(&observation.attitude, &observation.noise),
-            ObservationKind::Vector | ObservationKind::Direction => self.correct_vector(observation),
+            ObservationKind::Attitude => self.correct(&observation.attitude, &observation.noise, most_nis),
+            ObservationKind::Vector | ObservationKind::Direction => {
+                self.correct_vector(observation, most_nis)
+            }
         }
     }
 
     /// Corrects the filter by a measured attitude whose error has the covariance `noise` in body axes (rad²). Changes
-    /// nothing if the covariance of the innovation is not positive definite.
-    pub fn correct(&mut self, measured: &Quaternion, noise: &Matrix3) -> Correction {
+    /// nothing if the covariance of the innovation is not positive definite, or if the normalised innovation squared exceeds
+    /// `most_nis`.
+    pub fn correct(&mut self, measured: &Quaternion, noise: &Matrix3, most_nis: f64) -> Correction {
         let innovation: Vector3 = self.attitude.rotation_to(measured);
         let to_attitude: Matrix6x3 = self.covariance.first_columns();
         let mut inverse: Matrix3 = Matrix3::ZERO;
@@ -104,18 +117,21 @@ impl AttitudeBiasFilter {
         if !is_definite {
             return Correction::NONE;
         }
+        let scaled: Vector3 = inverse.times(&innovation);
+        let nis: f64 = innovation.dot(&scaled);
+        if !(nis <= most_nis) {
+            return Correction { innovation, nis, components: 3, status: ReadingStatus::Improbable };
+        }
         let gain: Matrix6x3 = to_attitude.times(3, &inverse);
         let error: AttitudeBiasError = gain.times_vector(3, &innovation);
         let added: Matrix6 = gain.spread(3, noise);
         self.apply(&error, &gain, &added);
-        let scaled: Vector3 = inverse.times(&innovation);
-        let nis: f64 = innovation.dot(&scaled);
-        Correction { innovation, nis, components: 3, is_valid: true }
+        Correction { innovation, nis, components: 3, status: ReadingStatus::Accepted }
     }
 
     /// Corrects the filter by a measured vector or direction. Changes nothing if the covariance of the innovation is not
-    /// positive definite.
-    pub fn correct_vector(&mut self, observation: &AttitudeObservation) -> Correction {
+    /// positive definite, or if the normalised innovation squared exceeds `most_nis`.
+    pub fn correct_vector(&mut self, observation: &AttitudeObservation, most_nis: f64) -> Correction {
         let expected: Vector3 = self.attitude.to_body(&observation.inertial);
         let is_direction: bool = matches!(observation.kind, ObservationKind::Direction);
         let off: Vector3 = observation.vector.minus(&expected);
@@ -137,26 +153,33 @@ impl AttitudeBiasFilter {
         if !is_definite {
             return Correction::NONE;
         }
+        let across: Vector3 = off.cross(&expected);
+        let innovation: Vector3 = across.divided(expected.norm_squared());
+        let components: u32 = if is_direction { 2 } else { 3 };
+        let nis: f64;
+        if is_direction {
+            let x: f64 = inverse.rows[0][0] * measured.off.x + inverse.rows[0][1] * measured.off.y;
+            let y: f64 = inverse.rows[1][0] * measured.off.x + inverse.rows[1][1] * measured.off.y;
+            nis = (measured.off.x * x + measured.off.y * y) * 1.5;
+        } else {
+            let scaled: Vector3 = inverse.times(&off);
+            nis = off.dot(&scaled);
+        }
+        if !(nis <= most_nis) {
+            return Correction { innovation, nis, components, status: ReadingStatus::Improbable };
+        }
         let gain: Matrix6x3 = to_measured.times(count, &inverse);
         let error: AttitudeBiasError = gain.times_vector(count, &measured.off);
         let action: Matrix6x3 = gain.times(count, &measured.jacobian);
         let added: Matrix6 = gain.spread(count, &measured.noise);
         self.apply(&error, &action, &added);
-        let across: Vector3 = off.cross(&expected);
-        let innovation: Vector3 = across.divided(expected.norm_squared());
-        if is_direction {
-            let x: f64 = inverse.rows[0][0] * measured.off.x + inverse.rows[0][1] * measured.off.y;
-            let y: f64 = inverse.rows[1][0] * measured.off.x + inverse.rows[1][1] * measured.off.y;
-            let nis: f64 = (measured.off.x * x + measured.off.y * y) * 1.5;
-            return Correction { innovation, nis, components: 2, is_valid: true };
-        }
-        let scaled: Vector3 = inverse.times(&off);
-        Correction { innovation, nis: off.dot(&scaled), components: 3, is_valid: true }
+        Correction { innovation, nis, components, status: ReadingStatus::Accepted }
     }
 
     /// Corrects the filter with the observation's constant gain on the measured angle relative to the attitude. The
-    /// covariance becomes that of the errors which this gain leaves.
-    pub fn correct_with_gain(&mut self, observation: &AttitudeObservation) -> Correction {
+    /// covariance becomes that of the errors which this gain leaves. Changes nothing if the normalised innovation squared exceeds
+    /// `most_nis`.
+    pub fn correct_with_gain(&mut self, observation: &AttitudeObservation, most_nis: f64) -> Correction {
         let is_attitude: bool = matches!(observation.kind, ObservationKind::Attitude);
         let components: u32 = if matches!(observation.kind, ObservationKind::Direction) { 2 } else { 3 };
         let off: Vector3;
@@ -187,11 +210,14 @@ impl AttitudeBiasFilter {
         }
         let solution: Vector3 = factor.solve(&off);
         let nis: f64 = 3.0 / f64::from(components) * off.dot(&solution);
+        if !(nis <= most_nis) {
+            return Correction { innovation, nis, components, status: ReadingStatus::Improbable };
+        }
         let error: AttitudeBiasError = gain.times_vector(3, &off);
         let action: Matrix6x3 = gain.times(3, &jacobian);
         let added: Matrix6 = gain.spread(3, &observation.noise);
         self.apply(&error, &action, &added);
-        Correction { innovation, nis, components, is_valid: true }
+        Correction { innovation, nis, components, status: ReadingStatus::Accepted }
     }
 
     /// Applies the estimated error, and updates the covariance for the action `gain` on the attitude and the term

@@ -2,10 +2,14 @@
 //!
 //! Each entry holds the filter after the events at its instant, with the gyro reading of the interval that ends there.
 //! A delayed measurement is inserted at its exposure, and all later steps are repeated: the result is that of a filter
-//! without delays. The caller gives the storage of entries and measurements, the same at every call.
+//! without delays. The caller gives the storage of entries and measurements, the same at every call. Measurements are judged once,
+//! when they first correct: one that was accepted is accepted in every repetition.
 
 use crate::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use crate::attitude_gate::AttitudeGate;
 use crate::attitude_observation::{AttitudeObservation, Correction};
+use crate::binary64::infinity;
+use crate::reading_status::ReadingStatus;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
 
@@ -33,12 +37,28 @@ pub struct DelayedObservation {
     pub exposed: Ticks,
     /// Measured attitude or vector.
     pub observation: AttitudeObservation,
+    /// Variance by which that of the attitude is inflated before the correction (rad²); 0 for most measurements.
+    pub angle_inflation: f64,
+    /// Variance by which that of the bias is inflated (rad²/s²).
+    pub bias_inflation: f64,
 }
 
 impl DelayedObservation {
     /// Empty measurement, which fills storage.
-    pub const NONE: Self =
-        Self { exposed: Ticks { whole: 0, part: 0 }, observation: AttitudeObservation::NONE };
+    pub const NONE: Self = Self {
+        exposed: Ticks { whole: 0, part: 0 },
+        observation: AttitudeObservation::NONE,
+        angle_inflation: 0.0,
+        bias_inflation: 0.0,
+    };
+
+    /// Corrects a filter, if the normalised innovation squared is at most `most_nis`.
+    fn correct(&self, filter: &mut AttitudeBiasFilter, most_nis: f64) -> Correction {
+        if self.angle_inflation > 0.0 {
+            filter.inflate(self.angle_inflation, self.bias_inflation);
+        }
+        filter.observe(&self.observation, most_nis)
+    }
 }
 
 /// Counts of the entries and measurements of an attitude filter's recent past.
@@ -48,6 +68,18 @@ pub struct AttitudeHistory {
     pub noise: GyroNoise,
     /// Largest delay of a measurement.
     pub reach: Ticks,
+    /// Limits of the readings.
+    pub gate: AttitudeGate,
+    /// Number of improbable measurements since the last correction.
+    pub improbable: u32,
+    /// True after the clock was set back, until a measurement has corrected the filter with an inflated covariance.
+    pub is_unsure: bool,
+    /// Number of gyro readings in a row that were older than the last one.
+    pub setbacks: u32,
+    /// Number of readings refused since the start.
+    pub refused: u64,
+    /// Exposure of the last measurement that corrected the filter; before the first one, the start.
+    pub corrected: Ticks,
     /// Index of the oldest entry.
     pub first: usize,
     /// Number of entries, by time.
@@ -65,6 +97,7 @@ impl AttitudeHistory {
         filter: AttitudeBiasFilter,
         noise: GyroNoise,
         reach: Ticks,
+        gate: AttitudeGate,
         entries: &mut [AttitudeHistoryEntry],
     ) -> Self {
         let mut count: usize = 0;
@@ -72,7 +105,20 @@ impl AttitudeHistory {
             entries[0] = AttitudeHistoryEntry { time, reading: Vector3::ZERO, filter };
             count = 1;
         }
-        Self { noise, reach, first: 0, entries: count, applied: 0, waiting: 0 }
+        Self {
+            noise,
+            reach,
+            gate,
+            improbable: 0,
+            is_unsure: false,
+            setbacks: 0,
+            refused: 0,
+            corrected: time,
+            first: 0,
+            entries: count,
+            applied: 0,
+            waiting: 0,
+        }
     }
 
     /// Returns true if the storage holds the history.
@@ -89,7 +135,44 @@ impl AttitudeHistory {
         self.first + self.entries - 1
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements that
+    /// Judges a gyro reading (rad/s) of an interval that ends at `now`, before it is added. After several readings in a row that are
+    /// older than the last one, the clock was set back: the history begins again at `now`, with the latest filter.
+    pub fn judge_gyro(
+        &mut self,
+        now: Ticks,
+        reading: &Vector3,
+        entries: &mut [AttitudeHistoryEntry],
+    ) -> ReadingStatus {
+        if self.entries == 0 || self.first + self.entries > entries.len() {
+            return ReadingStatus::Untimely;
+        }
+        if !self.gate.is_sound_rate(reading) {
+            self.refused += 1;
+            return ReadingStatus::Unsound;
+        }
+        if !now.is_before(entries[self.latest()].time) {
+            self.setbacks = 0;
+            return ReadingStatus::Accepted;
+        }
+        self.setbacks += 1;
+        if self.setbacks <= self.gate.most_refusals {
+            self.refused += 1;
+            return ReadingStatus::Untimely;
+        }
+        entries[0] = entries[self.latest()];
+        entries[0].time = now;
+        self.first = 0;
+        self.entries = 1;
+        self.applied = 0;
+        self.waiting = 0;
+        self.setbacks = 0;
+        // The rotation since the last reading is not known.
+        self.is_unsure = true;
+        self.corrected = now;
+        ReadingStatus::Accepted
+    }
+
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the result of the last measurement that
     /// waited for it. If the storage is full, the oldest entry is dropped.
     pub fn add_gyro(
         &mut self,
@@ -121,8 +204,8 @@ impl AttitudeHistory {
         correction
     }
 
-    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the last
-    /// correction.
+    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the result of the last
+    /// one.
     fn apply_waiting(
         &mut self,
         now: Ticks,
@@ -137,7 +220,7 @@ impl AttitudeHistory {
                 early += 1;
             } else {
                 let result: Correction = self.apply(index, entries, observations);
-                if result.is_valid {
+                if result.status != ReadingStatus::None {
                     correction = result;
                 }
             }
@@ -145,8 +228,7 @@ impl AttitudeHistory {
         correction
     }
 
-    /// Adds a measurement, delayed or not. Returns its correction, which is not valid if the measurement is older than the
-    /// history, waits for a gyro reading, or finds the storage of measurements full.
+    /// Adds a measurement, delayed or not. Returns its result: it corrects the filter, waits for a gyro reading, or is refused.
     pub fn add_observation(
         &mut self,
         observation: DelayedObservation,
@@ -156,17 +238,22 @@ impl AttitudeHistory {
         if !self.is_held(entries, observations) {
             return Correction::NONE;
         }
+        if !observation.observation.is_sound() {
+            self.refused += 1;
+            return Correction::unused(ReadingStatus::Unsound);
+        }
         if self.applied + self.waiting == observations.len() {
             self.discard_old(entries, observations);
         }
         let index: usize = self.applied + self.waiting;
         if index == observations.len() {
-            return Correction::NONE;
+            self.refused += 1;
+            return Correction::unused(ReadingStatus::Untimely);
         }
         observations[index] = observation;
         self.waiting += 1;
         if entries[self.latest()].time.is_before(observation.exposed) {
-            return Correction::NONE;
+            return Correction::unused(ReadingStatus::Waiting);
         }
         self.apply(index, entries, observations)
     }
@@ -179,9 +266,31 @@ impl AttitudeHistory {
         entries: &mut [AttitudeHistoryEntry],
         observations: &mut [DelayedObservation],
     ) -> Correction {
-        let observation: DelayedObservation = observations[index];
-        let correction: Correction = self.correct_at_exposure(&observation, entries);
-        if correction.is_valid {
+        let mut observation: DelayedObservation = observations[index];
+        // No innovation passes the limit -1.
+        let most_nis: f64 = if self.is_unsure { -1.0 } else { self.gate.most_nis };
+        let mut correction: Correction = self.correct_at_exposure(&observation, most_nis, entries);
+        if correction.status == ReadingStatus::Improbable && self.is_reaccepted(&observation) {
+            // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction.
+            let seconds: f64 = observation.exposed.since(self.corrected).seconds();
+            observation.angle_inflation = correction.innovation.norm_squared();
+            if seconds > 0.0 && !self.is_unsure {
+                observation.bias_inflation = observation.angle_inflation / (seconds * seconds);
+            }
+            correction = self.correct_at_exposure(&observation, infinity(), entries);
+            if correction.status == ReadingStatus::Accepted {
+                correction.status = ReadingStatus::Reaccepted;
+            }
+        }
+        if correction.status.is_refusal() {
+            self.refused += 1;
+        }
+        if correction.status.has_corrected() {
+            self.improbable = 0;
+            self.is_unsure = false;
+            if self.corrected.is_before(observation.exposed) {
+                self.corrected = observation.exposed;
+            }
             let mut place: usize = index;
             while place > self.applied
                 || place > 0 && observation.exposed.is_before(observations[place - 1].exposed)
@@ -202,15 +311,26 @@ impl AttitudeHistory {
         correction
     }
 
+    /// Counts an improbable measurement. Returns true if it is accepted all the same: after several in a row, after a gap, or
+    /// after the clock was set back.
+    fn is_reaccepted(&mut self, observation: &DelayedObservation) -> bool {
+        if !self.is_unsure && self.improbable < self.gate.most_refusals {
+            self.improbable += 1;
+            return self.gate.gap.is_before(observation.exposed.since(self.corrected));
+        }
+        true
+    }
+
     /// Corrects the filter at the exposure of a measurement, for which it inserts an entry if there is none.
     fn correct_at_exposure(
         &mut self,
         observation: &DelayedObservation,
+        most_nis: f64,
         entries: &mut [AttitudeHistoryEntry],
     ) -> Correction {
         let exposed: Ticks = observation.exposed;
         if exposed.is_before(entries[self.first].time) {
-            return Correction::NONE;
+            return Correction::unused(ReadingStatus::Untimely);
         }
         let mut later: usize = 0;
         while later + 1 < self.entries && !entries[self.latest() - later - 1].time.is_before(exposed) {
@@ -219,12 +339,12 @@ impl AttitudeHistory {
         if exposed.is_before(entries[self.latest() - later].time) {
             if self.entries == entries.len() && later + 2 == self.entries {
                 // The entry from which the filter is propagated would have to be dropped.
-                return Correction::NONE;
+                return Correction::unused(ReadingStatus::Untimely);
             }
             self.insert_entry(later, exposed, entries);
             later += 1;
         }
-        entries[self.latest() - later].filter.observe(&observation.observation)
+        observation.correct(&mut entries[self.latest() - later].filter, most_nis)
     }
 
     /// Inserts an entry at `time`, between the oldest and the one before which there are `later` later entries.
@@ -267,7 +387,7 @@ impl AttitudeHistory {
             entries[index].filter = entries[index - 1].filter;
             entries[index].filter.predict(&reading, time.since(before).seconds(), &self.noise);
             while next < self.applied && !time.is_before(observations[next].exposed) {
-                entries[index].filter.observe(&observations[next].observation);
+                observations[next].correct(&mut entries[index].filter, infinity());
                 next += 1;
             }
         }

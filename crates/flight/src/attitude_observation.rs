@@ -3,6 +3,7 @@
 use crate::matrix3::Matrix3;
 use crate::matrix6::Matrix6x3;
 use crate::quaternion::Quaternion;
+use crate::reading_status::ReadingStatus;
 use crate::vector3::Vector3;
 
 /// Quantity that a sensor measures.
@@ -58,13 +59,20 @@ pub struct Correction {
     pub nis: f64,
     /// Number of components of the measurement.
     pub components: u32,
-    /// True if the filter was corrected.
-    pub is_valid: bool,
+    /// Outcome of the measurement.
+    pub status: ReadingStatus,
 }
 
 impl Correction {
     /// Result of a measurement that changed nothing.
-    pub const NONE: Self = Self { innovation: Vector3::ZERO, nis: 0.0, components: 0, is_valid: false };
+    pub const NONE: Self =
+        Self { innovation: Vector3::ZERO, nis: 0.0, components: 0, status: ReadingStatus::None };
+
+    /// Returns the result of a measurement that has changed nothing for this reason.
+    #[inline]
+    pub fn unused(status: ReadingStatus) -> Self {
+        Self { innovation: Vector3::ZERO, nis: 0.0, components: 0, status }
+    }
 }
 
 /// Components of the innovation of a vector.

@@ -29,8 +29,12 @@ impl FieldRate {
         rate: Vector3::ZERO,
     };
 
-    /// Takes a sample of the field in body axes (T). One at the time of the last sample replaces it.
+    /// Takes a sample of the field in body axes (T). One at the time of the last sample replaces it; one that is not finite changes
+    /// nothing.
     pub fn take(&mut self, now: Ticks, field: &Vector3) {
+        if !field.norm_squared().is_finite() {
+            return;
+        }
         self.has_rate = self.has_field && self.at.is_before(now);
         if self.has_rate {
             let change: Vector3 = field.minus(&self.field);

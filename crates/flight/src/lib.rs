@@ -24,6 +24,7 @@ pub mod active_damping;
 pub mod argument_reduction;
 pub mod attitude_estimator;
 pub mod attitude_filter;
+pub mod attitude_gate;
 pub mod attitude_history;
 pub mod attitude_law;
 pub mod attitude_observation;
@@ -56,6 +57,7 @@ pub mod phase_plane;
 pub mod pulse_timing;
 pub mod pulse_width;
 pub mod quaternion;
+pub mod reading_status;
 pub mod relay;
 pub mod rigid_rate;
 // The translator takes `square_root.rs`.

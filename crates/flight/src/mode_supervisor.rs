@@ -11,8 +11,8 @@ pub const MOST_CHANGES: usize = 32;
 
 /// Time in which changes are counted.
 const SECOND: Ticks = Ticks { whole: 1, part: 0 };
-/// Time of the start.
-const START: Ticks = Ticks { whole: 0, part: 0 };
+/// Time that stands for none.
+const NEVER: Ticks = Ticks { whole: 0, part: 0 };
 
 /// End of a mode in the list of ends.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub struct ModeChatter {
 
 impl ModeChatter {
     /// Before the first change.
-    pub const NONE: Self = Self { times: [START; 32], count: 0, oldest: 0 };
+    pub const NONE: Self = Self { times: [NEVER; 32], count: 0, oldest: 0 };
 
     /// Counts a change; returns false, and does not count it, if there were as many in the last second as there may be.
     fn count(&mut self, now: Ticks) -> bool {
@@ -107,20 +107,48 @@ pub struct ModeSupervisor {
     pub next: Ticks,
     /// Time of the last test.
     pub tested: Ticks,
+    /// Time of the start.
+    pub started: Ticks,
     /// Last changes.
     pub chatter: ModeChatter,
 }
 
 impl ModeSupervisor {
-    /// Returns the supervisor at the start, in the first mode.
-    pub fn start(modes: &mut [SupervisedMode], exits: &mut [SupervisedExit]) -> Self {
+    /// Returns the supervisor that starts at `now`, in the first mode. The instants of the ends are counted from then on.
+    pub fn start(now: Ticks, modes: &mut [SupervisedMode], exits: &mut [SupervisedExit]) -> Self {
         for mode in 0..modes.len() {
             modes[mode].entries = 0;
         }
-        let mut supervisor: Self =
-            Self { active: 0, entered: START, next: START, tested: START, chatter: ModeChatter::NONE };
-        supervisor.enter(START, 0, modes, exits);
+        for exit in 0..exits.len() {
+            exits[exit].instant = exits[exit].instant.plus(now);
+        }
+        let mut supervisor: Self = Self {
+            active: 0,
+            entered: now,
+            next: now,
+            tested: now,
+            started: now,
+            chatter: ModeChatter::NONE,
+        };
+        supervisor.enter(now, 0, modes, exits);
         supervisor
+    }
+
+    /// Moves all times back with the clock, which was set from the last test to `now`, an earlier time: the mode goes on as if no
+    /// time had passed.
+    fn follow_clock(&mut self, now: Ticks, exits: &mut [SupervisedExit]) {
+        let back: Ticks = self.tested.since(now);
+        self.entered = self.entered.since(back);
+        self.started = self.started.since(back);
+        self.next = self.next.since(back);
+        self.tested = now;
+        for exit in 0..exits.len() {
+            exits[exit].instant = exits[exit].instant.since(back);
+            exits[exit].since = exits[exit].since.since(back);
+        }
+        for change in 0..MOST_CHANGES {
+            self.chatter.times[change] = self.chatter.times[change].since(back);
+        }
     }
 
     /// Enters a mode.
@@ -143,7 +171,7 @@ impl ModeSupervisor {
     /// Returns the next time at which conditions are tested, apart from instants that are not in the tables.
     pub fn due(&self, modes: &[SupervisedMode], exits: &[SupervisedExit]) -> ModeDue {
         let mode: SupervisedMode = modes[self.active];
-        let mut due: ModeDue = ModeDue { has_time: false, time: START };
+        let mut due: ModeDue = ModeDue { has_time: false, time: NEVER };
         for place in 0..mode.exit_count {
             let exit: SupervisedExit = exits[mode.first_exit + place];
             if !exit.is_exact {
@@ -171,6 +199,9 @@ impl ModeSupervisor {
         exits: &mut [SupervisedExit],
         steps: &[ConditionStep],
     ) -> ModeTest {
+        if now.is_before(self.tested) {
+            self.follow_clock(now, exits);
+        }
         let mode: SupervisedMode = modes[self.active];
         let is_sample: bool = !now.is_before(self.next);
         if is_sample {
@@ -178,13 +209,15 @@ impl ModeSupervisor {
         }
         self.tested = now;
         let mode_time: Ticks = now.since(self.entered);
+        let run_time: Ticks = now.since(self.started);
         let mut test: ModeTest = ModeTest { has_changed: false, is_chattering: false, exit: 0 };
         let mut is_met: bool = false;
         for place in 0..mode.exit_count {
             let index: usize = mode.first_exit + place;
             let mut exit: SupervisedExit = exits[index];
             if exit.is_exact || is_sample {
-                let holds: bool = condition_holds(steps, exit.first_step, mode_time, now, readings, modes);
+                let holds: bool =
+                    condition_holds(steps, exit.first_step, mode_time, run_time, readings, modes);
                 if holds && !exit.is_held {
                     exit.since = now;
                 }

@@ -69,9 +69,25 @@ fn least_largest(wheels: &[AllocatedWheel]) -> f64 {
     best
 }
 
-/// Scales the torques of all wheels down, so that none exceeds a limit (N m) and the whole torque keeps its axis.
+/// Returns true if all torques are finite.
+#[inline]
+fn are_finite(wheels: &[AllocatedWheel]) -> bool {
+    let mut are_finite: bool = true;
+    for index in 0..wheels.len() {
+        are_finite = are_finite && wheels[index].torque.is_finite();
+    }
+    are_finite
+}
+
+/// Scales the torques of all wheels down, so that none exceeds a limit (N m) and the whole torque keeps its axis. Where one is not
+/// finite, all are 0.
 #[inline]
 pub fn limit_torques(wheels: &mut [AllocatedWheel], limit: f64) {
+    if !are_finite(wheels) {
+        for index in 0..wheels.len() {
+            wheels[index].torque = 0.0;
+        }
+    }
     let most: f64 = largest(wheels, 0.0);
     if most > limit {
         for index in 0..wheels.len() {

@@ -47,7 +47,7 @@ impl Pair {
             compared(ConditionRelation::Below, 1.0, CONDITION_MET, CONDITION_UNMET),
             compared(ConditionRelation::Above, 2.0, CONDITION_MET, CONDITION_UNMET),
         ];
-        let supervisor = ModeSupervisor::start(&mut modes, &mut exits);
+        let supervisor = ModeSupervisor::start(at(0.0), &mut modes, &mut exits);
         Self { modes, exits, steps, supervisor }
     }
 

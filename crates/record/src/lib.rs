@@ -58,7 +58,7 @@ pub use requirement_errors::{
     RobustnessOfRequirements,
 };
 pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
-pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
+pub use states::{Gate, Latch, Light, Lock, Onset, Phase, ReadingOutcome, Sliding, Trust, Use, Watch};
 pub use stop_flag::StopFlag;
 pub use three_axis::{ModeTargetStart, SteeringRecord, TargetVisit, ThreeAxisCycle};
 pub use topics::*;

@@ -140,7 +140,21 @@ labels! {
     }
 }
 
-label_cells!(Sliding);
+labels! {
+    /// Outcome of a reading that an attitude filter did not accept at once.
+    ReadingOutcome {
+        /// Refused: not finite, not of unit length, or a rate above the largest.
+        Unsound = "unsound",
+        /// Refused: its innovation is above the gate.
+        Improbable = "improbable",
+        /// Refused: older than the recent past of the filter.
+        Untimely = "untimely",
+        /// Accepted after refusals or a gap, with an inflated covariance.
+        Reaccepted = "reaccepted",
+    }
+}
+
+label_cells!(Sliding, ReadingOutcome);
 
 impl From<SlipDirection> for Sliding {
     fn from(direction: SlipDirection) -> Self {

@@ -1,7 +1,9 @@
 //! Failures of sensors and actuators: checks, and intervals.
 
 use flexsc_control::actuator::{Failure, FailureScope};
+use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::interval::Interval;
+use flexsc_control::sensor::{SensorFailure, SensorKind};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
@@ -54,15 +56,45 @@ impl ScenarioSpec {
         all
     }
 
+    /// Returns true if readings of an attitude filter are false within intervals that the scenario declares.
+    pub fn has_false_readings(&self) -> bool {
+        let has_filter = self.estimator.as_ref().and_then(EstimatorKind::attitude).is_some();
+        has_filter
+            && self.sensor.iter().any(|sensor| sensor.faults().iter().any(SensorFailure::alters_readings))
+    }
+
     /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
     pub(super) fn validate_failures(&self, model: &BodyModel, errors: &mut Vec<ConfigError>) {
         for (number, sensor) in self.sensor.iter().enumerate() {
             let key = format!("{}.faults", self.sensor_key(number));
-            errors.extend(errors_in(&key, sensor.faults(), |failure| failure.interval().validate()));
+            errors.extend(errors_in(&key, sensor.faults(), SensorFailure::validate));
+            errors.extend(self.altered_error(sensor).map(|error| error.within(&key)));
         }
         let members = self.actuator.members();
         errors.extend(members.iter().filter_map(|member| member.failure_fault(self.axis_count())));
         errors.extend(self.sines_error(model));
+    }
+
+    /// Checks that a sensor's readings can be altered, and that an attitude filter refuses those that are not measurements.
+    fn altered_error(&self, sensor: &SensorKind) -> Option<ConfigError> {
+        let altered = |failure: &&SensorFailure| failure.alters_readings();
+        let failure = sensor.faults().iter().find(altered)?;
+        if !sensor.measures_motion() || sensor.is_continuous() {
+            return Some(ConfigError::new(
+                "",
+                format!("has no `{}`: only `stuck` and `silent`", failure.kind()),
+            ));
+        }
+        let senseless = sensor.faults().iter().find(|failure| failure.is_senseless())?;
+        let filter = self.estimator.as_ref().and_then(EstimatorKind::attitude);
+        let is_refused = filter.is_some_and(|filter| !filter.watch_only);
+        (!is_refused).then(|| {
+            let why = format!(
+                "has `{}`, which an `[estimator.attitude]` refuses, and the laws of this scenario do not read one",
+                senseless.kind()
+            );
+            ConfigError::new("", why)
+        })
     }
 
     /// Checks that the motion under sinusoidal torques has a closed form, or is integrated with steps that resolve

@@ -188,6 +188,10 @@ impl ScenarioSpec {
             ModeQuantity::LockLost => {
                 (!filters).then_some("reads the lock of a Kalman filter about each axis, and there is none")
             }
+            ModeQuantity::FilterAge | ModeQuantity::FilterInnovation | ModeQuantity::FilterDeviation => {
+                let filter = self.estimator.as_ref().and_then(EstimatorKind::attitude);
+                filter.is_none().then_some("reads an `[estimator.attitude]`, and there is none")
+            }
             ModeQuantity::Silent(sensor) => {
                 let of = &self.sensor[sensor];
                 if !in_use[sensor] {

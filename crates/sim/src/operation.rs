@@ -167,6 +167,14 @@ impl ModeReadings for RunView<'_> {
             ModeQuantity::LockLost => {
                 f64::from(u8::from(self.estimation.estimator.lock_lost().contains(&true)))
             }
+            ModeQuantity::FilterAge | ModeQuantity::FilterInnovation | ModeQuantity::FilterDeviation => {
+                let health = self.estimation.estimator.filter_health(self.now);
+                health.map_or(f64::NAN, |health| match quantity {
+                    ModeQuantity::FilterAge => health.age,
+                    ModeQuantity::FilterInnovation => health.innovation,
+                    _ => health.deviation,
+                })
+            }
             ModeQuantity::Sunlight
             | ModeQuantity::Elevation(_)
             | ModeQuantity::TrueSunlight

@@ -38,6 +38,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/jets", scenario.study.fires()),
         ("/faults", !scenario.failures().is_empty()),
         ("/mode", !scenario.mode.is_empty()),
+        ("/refusals", scenario.has_false_readings()),
         (
             "/thrusters",
             scenario

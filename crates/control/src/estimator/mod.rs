@@ -122,6 +122,17 @@ pub struct SampleContext<'a> {
     pub ahead: f64,
 }
 
+/// How well an attitude filter knows the attitude.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct FilterHealth {
+    /// Time since the exposure of the last measurement that corrected it, or since the start (s).
+    pub age: f64,
+    /// Size of the innovation of the last correction (rad).
+    pub innovation: f64,
+    /// Standard deviation of the attitude about all axes together, as the filter believes it (rad).
+    pub deviation: f64,
+}
+
 /// Run-time state of an estimator, which writes the whole state estimate of each axis.
 pub trait Estimator: Part {
     /// Sets the reduced moments about the axes (rad/s²) that the actuator applies from now on.
@@ -145,6 +156,11 @@ pub trait Estimator: Part {
     /// Returns true about each axis whose filter has lost lock.
     fn lock_lost(&self) -> [bool; 3] {
         [false; 3]
+    }
+
+    /// Returns how well an attitude filter knows the attitude at `now`; `None` of other estimators, and before its start.
+    fn filter_health(&self, _now: Instant) -> Option<FilterHealth> {
+        None
     }
 
     /// Returns the interface for a batch that processes the samples of many runs; `None` for most estimators.

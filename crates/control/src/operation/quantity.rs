@@ -35,6 +35,12 @@ pub enum ModeQuantity {
     Entries(usize),
     /// True if a filter has lost lock.
     LockLost,
+    /// Time since the last correction of the attitude filter (s).
+    FilterAge,
+    /// Size of the innovation of its last correction (rad).
+    FilterInnovation,
+    /// Standard deviation of its attitude about all axes together (rad).
+    FilterDeviation,
     /// True time since the mode was entered (s), at any instant.
     TrueTime,
     /// True time since the start of the run (s), at any instant.
@@ -112,7 +118,7 @@ use ModeFormula::{Distance, LargestSize, Norm, Single};
 use ModeWord::{OfLine, OfMode, OfSensor, Plain};
 
 /// Words of the quantities, with their units and formulas.
-const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 24] = [
+const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 27] = [
     ("time", Plain(ModeQuantity::Time), "s", Single),
     ("run_time", Plain(ModeQuantity::RunTime), "s", Single),
     ("rate", Plain(ModeQuantity::Rate), "rad/s", Norm(Rate)),
@@ -124,6 +130,9 @@ const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 24] = [
     ("field_rate", Plain(ModeQuantity::FieldRate), "T/s", Norm(FieldRate)),
     ("sunlight", Plain(ModeQuantity::Sunlight), "", Single),
     ("lock_lost", Plain(ModeQuantity::LockLost), "", Single),
+    ("filter_age", Plain(ModeQuantity::FilterAge), "s", Single),
+    ("filter_innovation", Plain(ModeQuantity::FilterInnovation), "rad", Single),
+    ("filter_deviation", Plain(ModeQuantity::FilterDeviation), "rad", Single),
     ("truth.time", Plain(ModeQuantity::TrueTime), "s", Single),
     ("truth.run_time", Plain(ModeQuantity::TrueRunTime), "s", Single),
     ("truth.sunlight", Plain(ModeQuantity::TrueSunlight), "", Single),
@@ -212,7 +221,7 @@ impl ModeQuantity {
     /// Returns true for a quantity whose values follow from the time and from its value at an instant: the time itself, and
     /// times since an event.
     pub fn grows_with_time(self) -> bool {
-        self.is_clock() || matches!(self, Self::Silent(_))
+        self.is_clock() || matches!(self, Self::Silent(_) | Self::FilterAge)
     }
 
     /// Returns true for a quantity of the truth, whose condition is met at an exact instant.

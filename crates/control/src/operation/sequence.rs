@@ -48,7 +48,7 @@ impl ModeSequence {
             instants
         };
         let crossings = tables.written.iter().map(|exit| passed(&exit.condition)).collect();
-        let supervisor = ModeSupervisor::start(&mut tables.modes, &mut tables.exits);
+        let supervisor = ModeSupervisor::start(Instant::START.ticks(), &mut tables.modes, &mut tables.exits);
         Some(Self { tables, supervisor, crossings })
     }
 

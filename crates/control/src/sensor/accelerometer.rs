@@ -228,7 +228,8 @@ impl AccelerometerState {
                 let held = self.last.iter().flatten();
                 sensed.iter_mut().zip(held).for_each(|(sample, held)| sample.measured = *held);
             }
-            None => {}
+            // Other kinds are refused.
+            _ => {}
         }
         self.last = Some(sensed.iter().map(|sample| sample.measured).collect());
         let reported = now + Span::from_seconds(spec.latency.get());

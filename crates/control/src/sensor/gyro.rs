@@ -10,8 +10,8 @@ use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::failure::with_failures;
 use super::gauss_markov_bias::GaussMarkovBias;
-use super::latency_queue::with_failures;
 use super::linear_noise::{KeyNoise, SensorNoise, Side, diagonal, existing, padded, rounding, wander_noise};
 use super::rate_integrator::{self, RateIntegrator};
 use super::{LinearMeasurement, Reading, Sensor, SensorFailure, SensorSpec, Truth, stream};

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use flexsc_numerics::time::{Instant, Span};
 
-use super::{Orientation, Reading, SensorFailure};
+use super::{Orientation, Reading};
 
 /// Readings delayed by the sensor's latency.
 #[derive(Clone, Debug)]
@@ -54,20 +54,5 @@ impl LatencyQueue {
     /// Returns the next time of an exposure or a reading.
     pub fn next_due(&self) -> Instant {
         self.waiting.front().map_or(self.exposes, |(available, _)| self.exposes.min(*available))
-    }
-}
-
-/// Returns the reading of a sensor at `now` under its failures, given the reading without failures and the last
-/// reading.
-pub(super) fn with_failures(
-    faults: &[SensorFailure],
-    now: Instant,
-    reading: Option<Reading>,
-    last: Option<&Reading>,
-) -> Option<Reading> {
-    match faults.iter().find(|fault| fault.interval().contains(now)) {
-        None => reading,
-        Some(SensorFailure::Stuck(_)) => last.copied().or(reading),
-        Some(SensorFailure::Silent(_)) => None,
     }
 }

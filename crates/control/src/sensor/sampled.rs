@@ -7,10 +7,9 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::latency_queue::with_failures;
+use super::failure::{SensorFailure, with_failures};
 use super::linear_noise::{KeyNoise, SensorNoise, diagonal, existing, rounding};
 use super::{LinearMeasurement, Reading, ReferenceNoise, Sensor, SensorSpec, Truth, stream};
-use crate::interval::Interval;
 use crate::part::Part;
 
 /// A sampled angle sensor.
@@ -38,33 +37,6 @@ pub struct Sampled {
     /// Intervals in which the sensor fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
-}
-
-/// A failure of the sensor, gyro included.
-#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-#[schemars(rename = "Fault")]
-pub enum SensorFailure {
-    /// It repeats the last measurement before the failure.
-    Stuck(Interval),
-    /// It gives no measurement; the last one remains valid.
-    Silent(Interval),
-}
-
-impl SensorFailure {
-    /// Returns the interval of the failure.
-    pub fn interval(&self) -> Interval {
-        let (Self::Stuck(interval) | Self::Silent(interval)) = self;
-        *interval
-    }
-
-    /// Returns the name of the kind, as in a scenario.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::Stuck(_) => "stuck",
-            Self::Silent(_) => "silent",
-        }
-    }
 }
 
 impl SensorSpec for Sampled {

@@ -10,7 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::exclusion::Exclusion;
-use super::latency_queue::{LatencyQueue, with_failures};
+use super::failure::with_failures;
+use super::latency_queue::LatencyQueue;
 use super::linear_noise::{KeyNoise, SensorNoise, existing};
 use super::{
     ExposureMean, Orientation, Reading, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Truth, stream,
@@ -229,8 +230,9 @@ impl StarTrackerState {
         let reported = with_failures(faults, now, Some(reading), last);
         // A repeated reading, and the reading at the start, already have their exposure.
         let again = with_failures(faults, now, None, last).is_some() || now == Instant::START;
-        self.open_exposure =
-            (reported.is_some() && !again && self.tracker.has_exposure()).then_some((attitude, error));
+        let is_altered = faults.iter().any(|fault| fault.alters_readings() && fault.interval().contains(now));
+        let opens = reported.is_some() && !again && !is_altered && self.tracker.has_exposure();
+        self.open_exposure = opens.then_some((attitude, error));
         reported
     }
 }

@@ -16,7 +16,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::direction_sensor::SensedBody;
-use super::latency_queue::{LatencyQueue, with_failures};
+use super::failure::with_failures;
+use super::latency_queue::LatencyQueue;
 use super::sun_sensor::SensedSun;
 use super::{
     MeasuredQuantity, Reading, ReferenceNoise, Sensor, SensorFailure, SensorSpec, Subject, Truth,

@@ -11,7 +11,8 @@ use flexsc_spacecraft::axes::PerAxis;
 use flexsc_spacecraft::environment::{EnvironmentObservation, to_body};
 use nalgebra::Matrix3;
 
-use super::latency_queue::{LatencyQueue, with_failures};
+use super::failure::with_failures;
+use super::latency_queue::LatencyQueue;
 use super::{Orientation, Reading, Sensor, SensorSpec, Subject, Truth, VectorMeasurement, stream};
 use crate::part::Part;
 

@@ -6,12 +6,15 @@ use flexsc_core::control::estimator::attitude::{FilterSetup, SensorRole};
 use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::numerics::flight_types::{to_matrix3, to_matrix6x3};
 use flexsc_core::numerics::time::Span;
+use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
 use flexsc_flight::matrix6::Matrix6x3;
 use flexsc_flight::quaternion::Quaternion;
+use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
@@ -30,6 +33,13 @@ pub struct Corrector {
     pub observation: AttitudeObservation,
 }
 
+impl Corrector {
+    /// Returns true for a sensor of a vector, whose reference is an input.
+    pub fn is_of_vector(&self) -> bool {
+        self.observation.kind != ObservationKind::Attitude
+    }
+}
+
 /// Attitude filter with its storage.
 #[derive(Clone, Debug)]
 pub struct AttitudeUnit {
@@ -43,6 +53,8 @@ pub struct AttitudeUnit {
     pub noise: GyroNoise,
     /// Largest delay of an observation.
     pub reach: Ticks,
+    /// Limits of the readings.
+    pub gate: AttitudeGate,
     /// Standard deviations of attitude (rad) and bias (rad/s) at the start.
     pub deviations: [f64; 2],
     /// Index of the gyro, and its latency.
@@ -102,13 +114,14 @@ impl AttitudeUnit {
         let mut entries = vec![AttitudeHistoryEntry::NONE; entries];
         let filter =
             AttitudeBiasFilter::new(Quaternion::IDENTITY, Vector3::ZERO, deviations[0], deviations[1]);
-        let (noise, reach) = (setup.noise, setup.reach.ticks());
+        let (noise, reach, gate) = (setup.noise, setup.reach.ticks(), setup.gate);
         Self {
-            estimator: AttitudeEstimator::start(filter, noise, reach, &mut entries),
+            estimator: AttitudeEstimator::start(Ticks::default(), filter, noise, reach, gate, &mut entries),
             entries,
             observations: vec![DelayedObservation::NONE; observations],
             noise,
             reach,
+            gate,
             deviations,
             gyro,
             correctors,
@@ -117,49 +130,82 @@ impl AttitudeUnit {
 
     /// Returns the functions: the start of the estimate, and a sample of the sensors.
     pub(super) fn calls(&self) -> [CallLayout; 2] {
-        let attitude = || Channel::real("attitude", "Estimated attitude: quaternion w, x, y, z", 4, 1.0);
+        let attitude = || Channel::unit("attitude", "Estimated attitude: quaternion w, x, y, z", 4);
         let start = CallLayout {
             name: "start",
-            about: "Starts the attitude filter with an attitude and a gyro bias.",
+            about: "Starts the attitude filter at this time with an attitude and a gyro bias; at any time, and again after a fault.",
             is_start: true,
             inputs: vec![attitude(), Channel::real("bias", "Estimated gyro bias (rad/s)", 3, 1e-5)],
             outputs: vec![attitude()],
         };
         let mut inputs = vec![
             Channel::flag("gyro_is_valid", "True if there is a gyro reading", 1),
-            Channel::real("gyro_rate", "Gyro reading (rad/s)", 3, 1e-2),
+            Channel::real("gyro_rate", "Gyro reading (rad/s)", 3, 1e-2).within(self.gate.most_rate),
         ];
         for corrector in &self.correctors {
             let name = &corrector.name;
             inputs.push(Channel::flag(&format!("{name}_is_valid"), "True if there is a measurement", 1));
             if corrector.observation.kind == ObservationKind::Attitude {
                 let about = "Measured attitude: quaternion w, x, y, z";
-                inputs.push(Channel::real(&format!("{name}_attitude"), about, 4, 1.0));
+                inputs.push(Channel::unit(&format!("{name}_attitude"), about, 4));
             } else {
-                let about = "Measured vector, body axes";
-                inputs.push(Channel::real(&format!("{name}_vector"), about, 3, 1.0));
+                let is_unit = corrector.observation.kind == ObservationKind::Direction;
+                let mut vector = |name: String, about: &str| {
+                    inputs.push(Channel { is_unit, ..Channel::real(&name, about, 3, 1.0) });
+                };
+                vector(format!("{name}_vector"), "Measured vector, body axes");
                 let about = "Reference of the vector at its exposure, inertial axes";
-                inputs.push(Channel::real(&format!("{name}_reference"), about, 3, 1.0));
+                vector(format!("{name}_reference"), about);
             }
         }
-        let rate = Channel::real("rate", "Estimated rate (rad/s)", 3, 1.0);
+        let status = |name: &str| {
+            let about = "Outcome of the reading: 0 there was none, 1 accepted, 2 accepted after refusals, 3 waits for a gyro \
+                         reading; refused: 4 not sound, 5 improbable, 6 too old";
+            Channel::integer(&format!("{name}_status"), about, 1, 7)
+        };
+        let mut outputs =
+            vec![attitude(), Channel::real("rate", "Estimated rate (rad/s)", 3, 1.0), status("gyro")];
+        outputs.extend(self.correctors.iter().map(|corrector| status(&corrector.name)));
+        outputs.extend([
+            Channel::integer("refused", "Number of readings refused since the start", 1, 0),
+            Channel::real("age", "Time since the last correction, or since the start (s)", 1, 1.0),
+            Channel::real("innovation", "Innovation of the last correction, body axes (rad)", 3, 1.0),
+            Channel::real(
+                "nis",
+                "Its normalised square over its dimension: about 1 of sound readings",
+                1,
+                1.0,
+            ),
+            Channel::real("deviation", "Standard deviation of the attitude about each axis (rad)", 3, 1.0),
+        ]);
         let sample = CallLayout {
             name: "sample",
             about: "Takes a sample of the sensors.",
             is_start: false,
             inputs,
-            outputs: vec![attitude(), rate],
+            outputs,
         };
         [start, sample]
+    }
+
+    /// Starts the filter at the identity.
+    pub(super) fn start_at_identity(&mut self, now: Ticks) {
+        self.start_with(now, Quaternion::IDENTITY, Vector3::ZERO);
     }
 
     /// Starts the filter, and returns the words of the outputs.
     pub(super) fn start(&mut self, now: Ticks, inputs: &[u64]) -> Vec<u64> {
         let mut words = WordReader::new(inputs);
         let (attitude, bias) = (quaternion(&mut words), vector(&mut words));
-        let filter = AttitudeBiasFilter::new(attitude, bias, self.deviations[0], self.deviations[1]);
-        self.estimator = AttitudeEstimator::start(filter, self.noise, self.reach, &mut self.entries);
+        self.start_with(now, attitude, bias);
         quaternion_words(&self.estimator.attitude(now, &self.entries)).to_vec()
+    }
+
+    /// Starts the filter with an attitude and a bias (rad/s).
+    fn start_with(&mut self, now: Ticks, attitude: Quaternion, bias: Vector3) {
+        let filter = AttitudeBiasFilter::new(attitude, bias, self.deviations[0], self.deviations[1]);
+        self.estimator =
+            AttitudeEstimator::start(now, filter, self.noise, self.reach, self.gate, &mut self.entries);
     }
 
     /// Takes a sample, and returns the words of the outputs.
@@ -167,10 +213,11 @@ impl AttitudeUnit {
         let mut words = WordReader::new(inputs);
         let (is_valid, rate) = (words.flag(), vector(&mut words));
         let Self { estimator, entries, observations, .. } = self;
+        let mut statuses = vec![ReadingStatus::None; 1 + self.correctors.len()];
         if is_valid {
-            estimator.take_gyro(now, self.gyro.1, rate, entries, observations);
+            statuses[0] = estimator.take_gyro(now, self.gyro.1, rate, entries, observations);
         }
-        for corrector in &self.correctors {
+        for (corrector, status) in self.correctors.iter().zip(&mut statuses[1..]) {
             let is_valid = words.flag();
             let mut observation = corrector.observation;
             if observation.kind == ObservationKind::Attitude {
@@ -180,12 +227,18 @@ impl AttitudeUnit {
                 observation.inertial = vector(&mut words);
             }
             if is_valid {
-                estimator.take_observation(now, corrector.latency, &observation, entries, observations);
+                *status =
+                    estimator.take_observation(now, corrector.latency, &observation, entries, observations);
             }
         }
         let (attitude, rate) = (estimator.attitude(now, entries), estimator.rate(entries));
         let mut outputs = quaternion_words(&attitude).to_vec();
-        outputs.extend([rate.x, rate.y, rate.z].map(f64::to_bits));
+        outputs.extend(vector_words(&rate));
+        outputs.extend(statuses.into_iter().map(|status| status as u64));
+        outputs.extend([estimator.history.refused, estimator.age(now).to_bits()]);
+        outputs.extend(vector_words(&estimator.correction.innovation));
+        outputs.push((estimator.correction.nis / AttitudeEstimate::MEASUREMENTS).to_bits());
+        outputs.extend(vector_words(&estimator.deviation(entries)));
         outputs
     }
 }
@@ -227,6 +280,10 @@ pub(super) fn quaternion(words: &mut WordReader<'_>) -> Quaternion {
 fn vector(words: &mut WordReader<'_>) -> Vector3 {
     let [x, y, z] = words.reals();
     Vector3 { x, y, z }
+}
+
+fn vector_words(v: &Vector3) -> [u64; 3] {
+    [v.x, v.y, v.z].map(f64::to_bits)
 }
 
 fn quaternion_words(q: &Quaternion) -> [u64; 4] {

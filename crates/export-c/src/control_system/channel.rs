@@ -28,13 +28,26 @@ pub struct Channel {
     pub scale: f64,
     /// Quantity of the run that the channel passes; `None` of one that only flight code has.
     pub quantity: Option<FlightQuantity>,
+    /// True for the components of a unit vector or quaternion, of which random inputs have unit length.
+    pub is_unit: bool,
+    /// Largest size of the numbers; infinite if there is no limit.
+    pub largest: f64,
 }
 
 impl Channel {
     /// Creates a channel of doubles of this typical size.
     pub fn real(name: &str, about: &str, count: usize, scale: f64) -> Self {
         let (name, about) = (name.to_owned(), about.to_owned());
-        Self { name, about, count, kind: NumberKind::Real, scale, quantity: None }
+        Self {
+            name,
+            about,
+            count,
+            kind: NumberKind::Real,
+            scale,
+            quantity: None,
+            is_unit: false,
+            largest: f64::INFINITY,
+        }
     }
 
     /// Creates a channel of doubles of this typical size that passes a quantity of the run.
@@ -45,10 +58,37 @@ impl Channel {
         Self { quantity: Some(quantity), ..Self::real(channel, &about, count, scale) }
     }
 
+    /// Returns the channel with a limit of the size of its numbers.
+    #[must_use]
+    pub fn within(self, largest: f64) -> Self {
+        Self { largest, ..self }
+    }
+
+    /// Returns the unit, which the meaning has in parentheses; empty for a number without one.
+    pub fn unit_of_numbers(&self) -> &str {
+        let inside = self.about.rsplit_once('(').and_then(|(_, rest)| rest.split_once(')'));
+        inside.map_or("", |(unit, _)| unit)
+    }
+
+    /// Returns the frame of a vector or a quaternion; `None` of other numbers.
+    pub fn frame(&self) -> Option<&'static str> {
+        match (self.kind, self.count) {
+            (NumberKind::Real, 4) if self.name.ends_with("attitude") => Some("body axes to inertial axes"),
+            (NumberKind::Real, 3) if self.name.ends_with("_reference") => Some("inertial axes"),
+            (NumberKind::Real, 3) => Some("body axes"),
+            _ => None,
+        }
+    }
+
     /// Returns the channel with another meaning.
     #[must_use]
     pub fn with_about(self, about: &str) -> Self {
         Self { about: about.to_owned(), ..self }
+    }
+
+    /// Creates a channel of the components of a unit quaternion, or with three of a unit vector.
+    pub fn unit(name: &str, about: &str, count: usize) -> Self {
+        Self { is_unit: true, ..Self::real(name, about, count, 1.0) }
     }
 
     /// Creates a channel of truth values.

@@ -5,6 +5,7 @@ mod b_dot;
 mod channel;
 mod kalman_unit;
 mod laws_of_axes;
+mod left_out;
 mod mode_inputs;
 mod mode_system;
 mod rate_unit;
@@ -22,6 +23,7 @@ pub use b_dot::BDotLaws;
 pub use channel::{CallLayout, Channel, NumberKind, WordReader};
 pub use kalman_unit::{AxisFilter, KalmanUnit};
 pub use laws_of_axes::{LawsOfAxes, WheelDistribution};
+pub use left_out::LeftOut;
 pub use mode_inputs::{ModeInputs, ReadingFormula};
 pub use mode_system::{LawsOfMode, ModeSystem};
 pub use rate_unit::RateUnit;
@@ -84,6 +86,13 @@ impl ControlSystem {
             Some(LawKind::Relay(_)) => Ok(Self::Relays(Relays::new(&laws)?)),
             Some(LawKind::BDot(_)) => Ok(Self::BDot(BDotLaws::new(scenario, &laws)?)),
             _ => Ok(Self::Sampled(Box::new(SampledLaws::new(scenario, &laws)?))),
+        }
+    }
+
+    /// Sets the start to a time, where the function that sets the state has one.
+    pub fn start_at(&mut self, now: Ticks) {
+        if let Self::Modes(modes) = self {
+            modes.start_at(now);
         }
     }
 

@@ -19,6 +19,8 @@ pub enum ReadingFormula {
     Input(String),
     /// 1 or 0 of an input that is true or false.
     Flag(String),
+    /// Quantity of the attitude filter in the code.
+    OfFilter(ModeQuantity),
     /// Formula over arrays.
     Known(ModeFormula),
 }
@@ -93,6 +95,22 @@ impl ModeInputs {
                 let name = name.to_ascii_lowercase().replace('-', "_");
                 let about = "Elevation above the horizon of the site of a mode, by the ephemeris (rad)";
                 self.scalar(&format!("elevation_{name}"), about, scale)
+            }
+            ModeQuantity::FilterAge | ModeQuantity::FilterInnovation | ModeQuantity::FilterDeviation
+                if has_filter =>
+            {
+                ReadingFormula::OfFilter(quantity)
+            }
+            ModeQuantity::FilterAge => {
+                self.scalar("filter_age", "Time since the last correction of the attitude filter (s)", scale)
+            }
+            ModeQuantity::FilterInnovation => {
+                let about = "Size of the innovation of the last correction of the attitude filter (rad)";
+                self.scalar("filter_innovation", about, scale)
+            }
+            ModeQuantity::FilterDeviation => {
+                let about = "Standard deviation of the attitude filter about all axes together (rad)";
+                self.scalar("filter_deviation", about, scale)
             }
             ModeQuantity::LockLost => {
                 let about = "True while a filter has lost lock";
@@ -195,6 +213,11 @@ impl ModeInputs {
                 f64::from(u8::from(is_set))
             }
             ReadingFormula::Input(name) => given(name).first().copied().unwrap_or(f64::NAN),
+            ReadingFormula::OfFilter(quantity) => filter.map_or(f64::NAN, |unit| match quantity {
+                ModeQuantity::FilterAge => unit.estimator.age(now),
+                ModeQuantity::FilterInnovation => unit.estimator.innovation_size(),
+                _ => unit.estimator.deviation_size(&unit.entries),
+            }),
             ReadingFormula::Known(ModeFormula::Norm(vector)) => norm(&array(*vector)),
             ReadingFormula::Known(ModeFormula::Distance(one, other)) => {
                 distance(&array(*one), &array(*other))

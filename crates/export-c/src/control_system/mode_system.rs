@@ -110,9 +110,17 @@ impl ModeSystem {
         }
         let estimator = AttitudeUnit::new(scenario).filter(|_| scenario.study.axes.len() == 3);
         let inputs = ModeInputs::new(scenario, &tables, estimator.is_some());
-        let supervisor = ModeSupervisor::start(&mut tables.modes, &mut tables.exits);
+        let supervisor = ModeSupervisor::start(Ticks::default(), &mut tables.modes, &mut tables.exits);
         let layout = Arc::new(StepLayout::new(&modes, estimator.is_some()));
         Ok(Self { tables, supervisor, modes, estimator, inputs, moved: None, layout })
+    }
+
+    /// Starts the supervisor and the attitude filter again at a time, as `init` does.
+    pub(super) fn start_at(&mut self, now: Ticks) {
+        self.supervisor = ModeSupervisor::start(now, &mut self.tables.modes, &mut self.tables.exits);
+        if let Some(unit) = &mut self.estimator {
+            unit.start_at_identity(now);
+        }
     }
 
     /// Returns the shortest period of the laws (s).

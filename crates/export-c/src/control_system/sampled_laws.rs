@@ -195,11 +195,11 @@ impl SampledLaws {
         }
         if let Some(wheels) = &self.wheels {
             let about = "Torque of the motor of each wheel on its rotor (N m)";
-            outputs.push(Channel::real("wheel_torque", about, wheels.wheels.len(), 1.0));
+            outputs.push(Channel::real("wheel_torque", about, wheels.wheels.len(), 1.0).within(wheels.limit));
         }
         if self.jets.is_some() {
             let about = "Time for which the jets about each axis fire (s), negative for those of the negative direction";
-            outputs.push(Channel::real("on_time", about, axes, 1.0));
+            outputs.push(Channel::real("on_time", about, axes, 1.0).within(self.period));
         }
         let about = "Decides on the commands of a period.";
         CallLayout { name: "step", about, is_start: false, inputs, outputs }

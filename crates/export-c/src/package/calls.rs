@@ -80,7 +80,7 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let _ = writeln!(
             text,
-            "    memset(state, 0, sizeof *state);\n    start_filter(state, {identity}, {zero});"
+            "    memset(state, 0, sizeof *state);\n    start_filter(state, ({prefix}_ticks){{ .whole = 0, .part = 0 }}, {identity}, {zero});"
         );
     } else if let LawsOfAxes::StateSpace(_) = &laws.laws {
         text.push_str("    memset(state, 0, sizeof *state);\n");

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::Plan;
-use super::signature::has_time;
+use super::signature::{has_time, inits_at_time};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::self_test::{BLOCK, EXTREME_BLOCK, EXTREMES, SEED, cycle_milliseconds};
 
@@ -37,6 +37,7 @@ pub fn driver(plan: &Plan<'_>) -> String {
         extremes.len(),
         extremes.join(",\n    ")
     );
+    init(plan, &mut text);
     text.push_str(&SELF_TEST.replace("PREFIX", prefix).replace("SEED", &format!("UINT64_C(0x{SEED:016x})")));
     text.push_str(&REPLAY.replace("PREFIX", prefix));
     let names: Vec<String> = plan.calls.iter().map(|call| format!("\"{}\"", call.name)).collect();
@@ -51,7 +52,7 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
         let mut rows: Vec<String> = words
             .map(|channel| {
                 let (kind, below) = match channel.kind {
-                    NumberKind::Real => ('R', 0),
+                    NumberKind::Real => ('R', unit_count(channel)),
                     NumberKind::Flag => ('F', 2),
                     NumberKind::Integer(below) => ('I', below),
                 };
@@ -79,6 +80,17 @@ fn table(plan: &Plan<'_>, name: &str, of_call: fn(&CallLayout) -> &Vec<Channel>,
         list(&|call| format!("{}_{name}s", call.name)),
         list(&|call| of_call(call).iter().map(|channel| channel.count).sum::<usize>().to_string()),
     );
+}
+
+/// Writes the macro that sets the state at a time.
+fn init(plan: &Plan<'_>, text: &mut String) {
+    let prefix = plan.prefix;
+    let _ = if inits_at_time(plan) {
+        let ticks = format!("({prefix}_ticks){{ .whole = (int64_t)(time)[0], .part = (int64_t)(time)[1] }}");
+        writeln!(text, "#define INIT(state, time) {prefix}_init(state, {ticks})\n")
+    } else {
+        writeln!(text, "#define INIT(state, time) ((void)(time), {prefix}_init(state))\n")
+    };
 }
 
 /// Writes the function that calls a function of the control system with words.
@@ -142,6 +154,11 @@ fn call(plan: &Plan<'_>, text: &mut String) {
     text.push_str("}\n\n");
 }
 
+/// Returns the number of components of a unit vector; 0 of other numbers.
+fn unit_count(channel: &Channel) -> u64 {
+    if channel.is_unit { channel.count as u64 } else { 0 }
+}
+
 fn member(channel: &Channel, element: usize) -> String {
     if channel.count == 1 { channel.name.clone() } else { format!("{}[{element}]", channel.name) }
 }
@@ -155,7 +172,7 @@ const COUNTING: &str = "#ifdef DRIVER_COUNT
 
 ";
 
-const WORDS: &str = "/* Kind of a word: R double, F truth value, I integer below a limit. */
+const WORDS: &str = "/* Kind of a word: R double, or one of the given number of components of a unit vector; F truth value, I integer below a limit. */
 typedef struct {
     const char *name;
     char kind;
@@ -212,6 +229,26 @@ static uint64_t random_word(const word_kind *kind, bool is_extreme)
     return bits(unit * kind->scale * size);
 }
 
+/* Replaces the numbers of unit vectors, of which the last one is free: the inverse stereographic projection. */
+static void make_units(size_t index, uint64_t *in)
+{
+    size_t word = 0;
+    while (word < input_counts[index]) {
+        const size_t count = inputs[index][word].kind == 'R' ? (size_t)inputs[index][word].below : 0;
+        double square = 0.0;
+        for (size_t place = word; place + 1 < word + count; ++place) {
+            square += real(in[place]) * real(in[place]);
+        }
+        for (size_t place = word; place + 1 < word + count; ++place) {
+            in[place] = bits(2.0 * real(in[place]) / (1.0 + square));
+        }
+        if (count > 0) {
+            in[word + count - 1] = bits((1.0 - square) / (1.0 + square));
+        }
+        word += count > 0 ? count : 1;
+    }
+}
+
 static uint64_t self_test(uint64_t cycles)
 {
     static PREFIX_state state;
@@ -220,18 +257,21 @@ static uint64_t self_test(uint64_t cycles)
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     generator = SEED;
     for (uint64_t cycle = 0; cycle < cycles; ++cycle) {
-        if (cycle % BLOCK == 0) {
-            PREFIX_init(&state);
-        }
         const bool is_extreme = cycle / BLOCK % EXTREME_BLOCK == EXTREME_BLOCK - 1;
         const uint64_t time = cycle * MILLISECONDS;
         const uint64_t now[2] = { time / 1000, time % 1000 * UINT64_C(1000000000000) };
+        if (cycle % BLOCK == 0) {
+            INIT(&state, now);
+        }
         for (size_t index = 0; index < CALLS; ++index) {
             if (is_start[index] && cycle % BLOCK != 0) {
                 continue;
             }
             for (size_t word = 0; word < input_counts[index]; ++word) {
                 in[word] = random_word(&inputs[index][word], is_extreme);
+            }
+            if (!is_extreme) {
+                make_units(index, in);
             }
             call(index, &state, now, in, out);
             for (size_t word = 0; word < output_counts[index]; ++word) {
@@ -300,7 +340,8 @@ static int replay(const char *path)
         return 2;
     }
     const uint64_t count = head[1];
-    PREFIX_init(&state);
+    const uint64_t start[2] = { 0, 0 };
+    INIT(&state, start);
     for (uint64_t number = 0; number < count; ++number) {
         if (!read_words(file, head, 3) || head[0] >= CALLS || !read_words(file, in, input_counts[head[0]])
             || !read_words(file, expected, output_counts[head[0]])) {

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::record::AttitudeEstimate;
 use flexsc_flight::attitude_observation::ObservationKind;
 
 use super::Plan;
@@ -25,14 +26,15 @@ pub fn members(unit: &AttitudeUnit) -> [(&'static str, &'static str, String); 3]
 /// Writes the function that starts the filter with a state, which `init` calls too.
 pub fn start(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     let prefix = plan.prefix;
-    let [noise, reach] = [initialiser(&unit.noise, prefix), initialiser(&unit.reach, prefix)];
+    let (noise, reach) = (initialiser(&unit.noise, prefix), initialiser(&unit.reach, prefix));
+    let gate = initialiser(&unit.gate, prefix);
     let [angle, bias] = unit.deviations.map(|deviation| initialiser(&deviation, prefix));
     let _ = writeln!(
         text,
-        "/* Starts the attitude filter with an attitude and a gyro bias (rad/s). */\nstatic void start_filter({prefix}_state *state, {prefix}_quaternion attitude, {prefix}_vector3 bias)\n{{\n    \
-         const {prefix}_gyro_noise noise = {noise};\n    const {prefix}_ticks reach = {reach};\n    \
+        "/* Starts the attitude filter with an attitude and a gyro bias (rad/s). */\nstatic void start_filter({prefix}_state *state, {prefix}_ticks now, {prefix}_quaternion attitude, {prefix}_vector3 bias)\n{{\n    \
+         const {prefix}_gyro_noise noise = {noise};\n    const {prefix}_ticks reach = {reach};\n    const {prefix}_attitude_gate gate = {gate};\n    \
          const {prefix}_attitude_bias_filter filter = attitude_bias_filter_new(attitude, bias, {angle}, {bias});\n\n    \
-         state->estimator = attitude_estimator_start(filter, noise, reach, state->entries, {});\n}}\n",
+         state->estimator = attitude_estimator_start(now, filter, noise, reach, gate, state->entries, {});\n}}\n",
         unit.entries.len()
     );
 }
@@ -49,7 +51,7 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
                   output->attitude[3] = attitude.z;\n";
     let _ = writeln!(
         text,
-        "{}\n{{\n    start_filter(state, {}, {});\n    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n{output}}}\n",
+        "{}\n{{\n    start_filter(state, now, {}, {});\n    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n{output}}}\n",
         signature(plan, &plan.calls[0]),
         attitude("input->attitude"),
         vector("input->bias"),
@@ -57,8 +59,8 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
     let storage = format!("state->entries, {entries}, state->observations, {}", unit.observations.len());
     let _ = writeln!(
         text,
-        "{}\n{{\n    if (input->gyro_is_valid) {{\n        const {prefix}_ticks latency = {};\n        \
-         attitude_estimator_take_gyro(&state->estimator, now, latency, {}, {storage});\n    }}",
+        "{}\n{{\n    output->gyro_status = 0;\n    if (input->gyro_is_valid) {{\n        const {prefix}_ticks latency = {};\n        \
+         output->gyro_status = (int64_t)attitude_estimator_take_gyro(&state->estimator, now, latency, {}, {storage});\n    }}",
         signature(plan, &plan.calls[1]),
         initialiser(&unit.gyro.1, prefix),
         vector("input->gyro_rate"),
@@ -76,8 +78,8 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         };
         let _ = writeln!(
             text,
-            "    if (input->{name}_is_valid) {{\n        const {prefix}_ticks latency = {};\n        {prefix}_attitude_observation observation = {};\n{numbers}        \
-             attitude_estimator_take_observation(&state->estimator, now, latency, &observation, {storage});\n    }}",
+            "    output->{name}_status = 0;\n    if (input->{name}_is_valid) {{\n        const {prefix}_ticks latency = {};\n        {prefix}_attitude_observation observation = {};\n{numbers}        \
+             output->{name}_status = (int64_t)attitude_estimator_take_observation(&state->estimator, now, latency, &observation, {storage});\n    }}",
             initialiser(&corrector.latency, prefix),
             initialiser(&corrector.observation, prefix),
         );
@@ -86,6 +88,12 @@ pub fn functions(plan: &Plan<'_>, unit: &AttitudeUnit, text: &mut String) {
         text,
         "    const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
          const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});\n{output}    \
-         output->rate[0] = rate.x;\n    output->rate[1] = rate.y;\n    output->rate[2] = rate.z;\n}}\n"
+         output->rate[0] = rate.x;\n    output->rate[1] = rate.y;\n    output->rate[2] = rate.z;\n    \
+         output->refused = (int64_t)state->estimator.history.refused;\n    output->age = attitude_estimator_age(&state->estimator, now);\n    \
+         output->innovation[0] = state->estimator.correction.innovation.x;\n    output->innovation[1] = state->estimator.correction.innovation.y;\n    \
+         output->innovation[2] = state->estimator.correction.innovation.z;\n    output->nis = state->estimator.correction.nis / {measurements};\n    \
+         const {prefix}_vector3 deviation = attitude_estimator_deviation(&state->estimator, state->entries, {entries});\n    \
+         output->deviation[0] = deviation.x;\n    output->deviation[1] = deviation.y;\n    output->deviation[2] = deviation.z;\n}}\n",
+        measurements = crate::translate::float_literal(AttitudeEstimate::MEASUREMENTS),
     );
 }

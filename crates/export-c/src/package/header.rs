@@ -13,9 +13,11 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     let mut text = format!(
         "/* Control system of {}, exported by flexsc {}.\n *\n * The code is translated from the Rust code that flexsc calls in a \
          run, and returns the same bits\n * if it is compiled as the Makefile does: IEEE 754 doubles, no contraction, no fast-math. \
-         Units are SI.\n */\n#ifndef {guard}\n#define {guard}\n\n",
-        plan.origin,
-        env!("CARGO_PKG_VERSION")
+         Units are SI.\n{}\n *\n{}\n */\n#ifndef {guard}\n#define {guard}\n\n",
+        plan.origin.file,
+        env!("CARGO_PKG_VERSION"),
+        left_out(plan),
+        trace(plan)
     );
     text.push_str(translation.includes.trim());
     text.push_str("\n\n");
@@ -30,13 +32,37 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     }
     let _ = writeln!(
         text,
-        "/* Sets the state before the first call. */\nvoid {prefix}_init({prefix}_state *state);\n"
+        "/* Version: the exporter, and the SHA-256 of the scenario in `scenario.toml`. */\nextern const char {prefix}_version[];\n"
+    );
+    let _ = writeln!(
+        text,
+        "/* Sets the state before the first call. */\n{};\n",
+        super::signature::init_signature(plan)
     );
     for call in plan.calls {
         let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::signature::signature(plan, call));
     }
     let _ = writeln!(text, "#endif");
     text
+}
+
+/// Returns the lines of a comment by which the export can be traced.
+fn trace(plan: &Plan<'_>) -> String {
+    let changes: String =
+        plan.origin.changes.iter().map(|change| format!("\n *   changed: {change}")).collect();
+    format!(
+        " * Scenario with all defaults: scenario.toml, SHA-256\n * {}.{changes}\n * The translated functions are part of flexsc: SPDX-License-Identifier: MIT OR Apache-2.0.",
+        plan.digest
+    )
+}
+
+/// Returns the lines of a comment that list the parts of the control loop that are not in the code.
+fn left_out(plan: &Plan<'_>) -> String {
+    if plan.left_out.is_empty() {
+        return " *\n * Every part of the scenario's control loop is in this code.".to_owned();
+    }
+    let parts = plan.left_out.iter().map(|part| format!("\n *   {}: {}", part.key, part.duty));
+    format!(" *\n * Not part of this code; the caller must:{}", parts.collect::<String>())
 }
 
 /// Returns the C struct that holds the state of the control system between its calls.

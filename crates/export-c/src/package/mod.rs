@@ -8,7 +8,9 @@ mod estimator_calls;
 mod guests;
 mod header;
 mod initialiser;
+mod interface;
 mod kalman_calls;
+mod main_loop;
 mod modes;
 mod rate_calls;
 mod signature;
@@ -16,8 +18,9 @@ mod source;
 mod static_files;
 
 use flexsc_core::Scenario;
+use sha2::{Digest, Sha256};
 
-use crate::control_system::{CallLayout, ControlSystem};
+use crate::control_system::{CallLayout, ControlSystem, LeftOut};
 use crate::flight_sources::flight_sources;
 use crate::self_test::self_tests;
 use crate::translate::{TranslationError, translate};
@@ -46,6 +49,8 @@ pub struct Package {
     pub calls: Vec<CallLayout>,
     /// Number of vectors.
     pub vectors: usize,
+    /// Parts of the control loop that are not in the code.
+    pub left_out: Vec<LeftOut>,
 }
 
 /// Reason for which a control system is not exported.
@@ -68,17 +73,35 @@ impl std::fmt::Display for ExportError {
 
 impl std::error::Error for ExportError {}
 
+/// Origin of a control system, by which an export can be traced.
+#[derive(Copy, Clone, Debug)]
+pub struct ExportOrigin<'a> {
+    /// File name of the scenario.
+    pub file: &'a str,
+    /// What was changed of it for the export, such as a key and its value.
+    pub changes: &'a [String],
+}
+
 /// Data from which the files are written.
 struct Plan<'a> {
     /// Prefix of all names in C.
     prefix: &'a str,
-    /// File name of the scenario.
-    origin: &'a str,
+    /// Scenario, and what was changed of it.
+    origin: ExportOrigin<'a>,
+    /// SHA-256 of the scenario with these changes and all defaults.
+    digest: String,
     system: &'a ControlSystem,
     calls: &'a [CallLayout],
+    /// Parts of the control loop that are not in the code.
+    left_out: &'a [LeftOut],
 }
 
 impl Plan<'_> {
+    /// Returns the version of the control system: the program, and the digits of the scenario's hash.
+    fn version(&self) -> String {
+        format!("flexsc {}, scenario {}", env!("CARGO_PKG_VERSION"), self.digest)
+    }
+
     /// Returns the name in C of a type of the flight code.
     fn type_name(&self, name: &str) -> String {
         format!("{}_{}", self.prefix, snake(name))
@@ -92,7 +115,7 @@ impl Plan<'_> {
 /// An [`ExportError`] if a part of the control system has no plain code, or if its run fails.
 pub fn export(
     scenario: &Scenario,
-    origin: &str,
+    origin: ExportOrigin<'_>,
     prefix: &str,
     most: usize,
     guests: &[Guest],
@@ -100,7 +123,10 @@ pub fn export(
     let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
     let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
-    let plan = Plan { prefix, origin, system: &system, calls: &calls };
+    let left_out = system.left_out(scenario);
+    let effective = scenario.to_toml();
+    let digest = Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect();
+    let plan = Plan { prefix, origin, digest, system: &system, calls: &calls, left_out: &left_out };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
         _ => (calls::functions(&plan), header::state(&plan)),
@@ -116,6 +142,9 @@ pub fn export(
         text(format!("{prefix}.h"), header),
         text(format!("{prefix}.c"), source),
         text("driver.c".to_owned(), driver::driver(&plan)),
+        text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
+        text("scenario.toml".to_owned(), effective),
+        text("main_loop.c".to_owned(), main_loop::main_loop(&plan)),
         text("Makefile".to_owned(), static_files::makefile(prefix, &hashes)),
         text("README.md".to_owned(), static_files::readme(&plan, &hashes, vectors.len())),
         PackageFile { path: "vectors.bin".to_owned(), bytes: vectors::to_bytes(&vectors) },
@@ -124,7 +153,7 @@ pub fn export(
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let vectors = vectors.len();
-    Ok(Package { files, calls, vectors })
+    Ok(Package { files, calls, vectors, left_out })
 }
 
 fn text(path: String, content: String) -> PackageFile {

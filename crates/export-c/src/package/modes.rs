@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use flexsc_core::control::flight_quantity::FlightQuantity;
-use flexsc_core::control::operation::ModeFormula;
+use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
 use super::initialiser::initialiser;
-use super::signature::{has_time, signature};
+use super::signature::{has_time, init_signature, signature};
 use super::{Plan, calls, estimator_calls, header};
 use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula};
 
@@ -141,18 +141,17 @@ fn mode_arguments(modes: &ModeSystem) -> String {
 /// Writes the function that sets the state, and the one that starts the laws of the present mode.
 fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut String) {
     let prefix = plan.prefix;
-    let _ =
-        writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{\n    memset(state, 0, sizeof *state);");
+    let _ = writeln!(text, "{}\n{{\n    memset(state, 0, sizeof *state);", init_signature(plan));
     if modes.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
-        let _ = writeln!(text, "    start_filter(state, {identity}, {zero});");
+        let _ = writeln!(text, "    start_filter(state, now, {identity}, {zero});");
     }
     text.push_str("    memcpy(state->modes, mode_list, sizeof state->modes);\n");
     if !modes.tables.exits.is_empty() {
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
     }
-    let _ = writeln!(text, "    state->supervisor = mode_supervisor_start({});", mode_arguments(modes));
+    let _ = writeln!(text, "    state->supervisor = mode_supervisor_start(now, {});", mode_arguments(modes));
     for ModePart { name, .. } in parts {
         let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name});");
     }
@@ -235,6 +234,18 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         let value = match formula {
             ReadingFormula::Input(name) => format!("input->{name}"),
             ReadingFormula::Flag(name) => format!("input->{name} ? 1.0 : 0.0"),
+            ReadingFormula::OfFilter(quantity) => {
+                let entries = entries.unwrap_or(0);
+                match quantity {
+                    ModeQuantity::FilterAge => "attitude_estimator_age(&state->estimator, now)".to_owned(),
+                    ModeQuantity::FilterInnovation => {
+                        "attitude_estimator_innovation_size(&state->estimator)".to_owned()
+                    }
+                    _ => format!(
+                        "attitude_estimator_deviation_size(&state->estimator, state->entries, {entries})"
+                    ),
+                }
+            }
             ReadingFormula::Known(formula) => {
                 let function = match formula {
                     ModeFormula::Single | ModeFormula::Norm(_) => "norm",

@@ -13,6 +13,18 @@ pub fn signature(plan: &Plan<'_>, call: &CallLayout) -> String {
     )
 }
 
+/// Returns the signature of the function that sets the state: modes begin at a time.
+pub fn init_signature(plan: &Plan<'_>) -> String {
+    let prefix = plan.prefix;
+    let now = if inits_at_time(plan) { format!(", {prefix}_ticks now") } else { String::new() };
+    format!("void {prefix}_init({prefix}_state *state{now})")
+}
+
+/// Returns true if the function that sets the state reads the time.
+pub fn inits_at_time(plan: &Plan<'_>) -> bool {
+    matches!(plan.system, ControlSystem::Modes(_))
+}
+
 /// Returns true if the functions read the time.
 pub fn has_time(plan: &Plan<'_>) -> bool {
     match plan.system {

@@ -7,12 +7,14 @@ use crate::control_system::{ControlSystem, LawsOfAxes};
 use crate::translate::Translation;
 
 /// Functions of an attitude filter.
-const ESTIMATOR: [&str; 7] = [
+const ESTIMATOR: [&str; 9] = [
     "attitude_estimator::AttitudeEstimator::start",
     "attitude_estimator::AttitudeEstimator::take_gyro",
     "attitude_estimator::AttitudeEstimator::take_observation",
     "attitude_estimator::AttitudeEstimator::attitude",
     "attitude_estimator::AttitudeEstimator::rate",
+    "attitude_estimator::AttitudeEstimator::age",
+    "attitude_estimator::AttitudeEstimator::deviation",
     "attitude_filter::AttitudeBiasFilter::new",
     "quaternion::Quaternion::rotation_to",
 ];
@@ -26,7 +28,9 @@ const SUPERVISOR: [&str; 4] = [
 ];
 
 /// Functions of the readings of conditions, with their names in C.
-const READINGS: [(&str, &str); 3] = [
+const READINGS: [(&str, &str); 5] = [
+    ("attitude_estimator::AttitudeEstimator::deviation_size", "attitude_estimator_deviation_size"),
+    ("attitude_estimator::AttitudeEstimator::innovation_size", "attitude_estimator_innovation_size"),
     ("mode_readings::norm", "mode_readings_norm"),
     ("mode_readings::distance", "mode_readings_distance"),
     ("mode_readings::largest_size", "mode_readings_largest_size"),
@@ -99,12 +103,13 @@ pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> St
     let _ = writeln!(
         text,
         "/* Control system of {}: see {}.h. */\n\n#include \"{}.h\"\n",
-        plan.origin, plan.prefix, plan.prefix
+        plan.origin.file, plan.prefix, plan.prefix
     );
     text.push_str(translation.guards.trim());
     text.push_str("\n\n");
     text.push_str(translation.definitions.trim());
     text.push_str("\n\n");
+    let _ = writeln!(text, "const char {}_version[] = \"{}\";\n", plan.prefix, plan.version());
     text.push_str(functions);
     text
 }

@@ -30,17 +30,32 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
     let prefix = plan.prefix;
     let mut text = format!(
         "# Control system of {}\n\nExported by flexsc {}. `{prefix}.h` and `{prefix}.c` are the control system: C99, no heap, no library but \
-         `memcpy`. The code is translated from the Rust code that flexsc calls in a run.\n\n```c\n{prefix}_state state;\n{prefix}_init(&state);\n```\n\n\
-         | function | does |\n|---|---|\n",
-        plan.origin,
+         `memcpy`. The code is translated from the Rust code that flexsc calls in a run.\n\n| function | does |\n|---|---|\n",
+        plan.origin.file,
         env!("CARGO_PKG_VERSION")
     );
     for call in plan.calls {
         let _ = writeln!(text, "| `{prefix}_{}` | {} |", call.name, call.about);
     }
+    let changes: String = plan.origin.changes.iter().map(|change| format!(", with `{change}`")).collect();
+    let _ = writeln!(
+        text,
+        "\nScenario: {}{changes}; `scenario.toml` has it with all defaults, SHA-256 `{}`. The text `{prefix}_version` has the hash in flight. \
+         The translated functions are part of flexsc, under MIT or Apache-2.0.",
+        plan.origin.file, plan.digest
+    );
+    if plan.left_out.is_empty() {
+        text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
+    } else {
+        text.push_str("\nNot part of this code:\n\n| part of the scenario | the caller must |\n|---|---|\n");
+        for part in plan.left_out {
+            let _ = writeln!(text, "| `{}` | {} |", part.key, part.duty);
+        }
+    }
     let _ = write!(
         text,
-        "\n`make check` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits; \
+        "\n`{prefix}.icd.json` has the interface: inputs and outputs with unit, frame and range, and the order of calls. `main_loop.c` is a main loop, \
+         which `make main-loop` builds.\n\n`make check` replays the {vectors} calls in `vectors.bin`, recorded in a run of flexsc, and compares every output by bits; \
          then it calls the functions with random and extreme inputs (zeros, subnormals, infinities, NaN) and compares a hash. \
          `make check-all` does the same under emulation on AArch64, RISC-V, Cortex-M4F and Cortex-M7. `make instructions` counts the most instructions of a call on the boards, and \
          `make lint` runs static analysis.\n\n| cycles | hash |\n|---|---|\n"

@@ -71,7 +71,11 @@ fn sample_inputs(unit: &AttitudeUnit, scenario: &Scenario, sample: &SensorSample
             let q = attitude.unwrap_or_default();
             words.extend([q.w, q.i, q.j, q.k].map(f64::to_bits));
         } else {
-            let exposed = Instant::from_ticks(observation_exposure(sample.now.ticks(), corrector.latency));
+            let exposed = Instant::from_ticks(observation_exposure(
+                sample.now.ticks(),
+                corrector.latency,
+                Instant::START.ticks(),
+            ));
             let setup = scenario.study.attitude.as_ref();
             let sight = own.and_then(|reading| reading.sight).zip(setup);
             let measured = sight.map(|(sight, setup)| setup.with_reference(sight, exposed));

@@ -1,6 +1,7 @@
 //! Attitude filter with delayed measurements against a 40-digit reference.
 
 use flexsc_flight::attitude_filter::{AttitudeBiasFilter, GyroNoise};
+use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::{AttitudeObservation, Correction};
 use flexsc_flight::matrix3::Matrix3;
@@ -15,6 +16,13 @@ const READ: &str = include_str!("../../../../tests/golden/attitude-filter-in.csv
 /// Results of the reference filter.
 const GIVEN: &str = include_str!("../../../../tests/golden/attitude-filter-out.csv");
 
+/// Limits that only readings which are not finite exceed.
+pub const GATE: AttitudeGate = AttitudeGate {
+    most_nis: f64::INFINITY,
+    most_refusals: 2,
+    gap: Ticks { whole: 60, part: 0 },
+    most_rate: 1.0,
+};
 pub const NOISE: GyroNoise = GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 };
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
@@ -62,7 +70,7 @@ pub fn fix(read: &[Vec<f64>], k: usize) -> DelayedObservation {
         noise: tracker(),
         ..AttitudeObservation::NONE
     };
-    DelayedObservation { exposed: at(k), observation }
+    DelayedObservation { exposed: at(k), observation, ..DelayedObservation::NONE }
 }
 
 /// Returns the filter after each reading and the corrections, with attitudes that arrive `late` readings after exposure.
@@ -70,13 +78,13 @@ pub fn replay(late: usize, capacity: usize) -> (Vec<AttitudeBiasFilter>, Vec<Cor
     let read = readings();
     let mut entries = vec![AttitudeHistoryEntry::NONE; capacity];
     let mut observations = vec![DelayedObservation::NONE; capacity];
-    let mut history = AttitudeHistory::start(at(0), first(), NOISE, at(2), &mut entries);
+    let mut history = AttitudeHistory::start(at(0), first(), NOISE, at(2), GATE, &mut entries);
     let (mut states, mut corrections) = (vec![first()], Vec::new());
     for k in 1..read.len() {
         history.add_gyro(at(k), vector(&read[k][2..5]), &mut entries, &mut observations);
         if k > late && (k - late).is_multiple_of(4) {
             let correction = history.add_observation(fix(&read, k - late), &mut entries, &mut observations);
-            assert!(correction.is_valid);
+            assert!(correction.status.has_corrected());
             corrections.push(correction);
         }
         states.push(entries[history.latest()].filter);

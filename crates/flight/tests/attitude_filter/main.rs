@@ -2,6 +2,7 @@
 
 mod bits;
 mod forty_digits;
+mod gate;
 mod history;
 mod matrix_filter;
 mod vectors;

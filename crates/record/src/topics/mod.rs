@@ -7,7 +7,7 @@ mod three_axes;
 
 use super::foxglove::{self, LogLevel, Plumes};
 use super::row::{Topic, TopicRow};
-use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Sliding, Trust, Use, Watch};
+use super::states::{Gate, Latch, Light, Lock, Onset, Phase, ReadingOutcome, Sliding, Trust, Use, Watch};
 use crate::enum_label::LoggedEnum;
 
 pub use line_of_sight::*;
@@ -117,7 +117,14 @@ pub(crate) fn label_of(identifier: &str) -> String {
         &Watch::LABELS,
         &Light::LABELS,
     ];
-    let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &LogLevel::LABELS];
+    let others = [
+        &Phase::LABELS,
+        &Trigger::LABELS,
+        &Sliding::LABELS,
+        &ReadingOutcome::LABELS,
+        &Decision::LABELS,
+        &LogLevel::LABELS,
+    ];
     let mut labels = others.iter().chain(&states).flat_map(|field| field.values);
     let label = labels.find(|label| LoggedEnum::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())

@@ -1,7 +1,7 @@
 //! Topics of three-axis bodies.
 
 use crate::row::rows;
-use crate::states::{Latch, Light, Onset, Sliding, Trust, Use, Watch};
+use crate::states::{Latch, Light, Onset, ReadingOutcome, Sliding, Trust, Use, Watch};
 use crate::topics::one_angle::{Estimate, Torque};
 
 rows! {
@@ -70,6 +70,20 @@ rows! {
         measured: Use,
         /// Dimension of the measurement: 2 for a direction, otherwise 3.
         numbers: u64,
+    }
+    /// A reading that an attitude filter has refused, or accepted after refusals.
+    RefusedReading {
+        /// Index of the sensor in the scenario, from 0.
+        sensor: u64,
+        /// Outcome of the reading.
+        outcome: ReadingOutcome,
+        /// Normalised innovation squared, over its dimension, 3; NaN of a gyro.
+        nis: f64,
+    }
+    /// Readings that an attitude filter has refused at a sample, or accepted after refusals.
+    Refusals = "/refusals" at Sample {
+        /// Each reading, the gyro first.
+        readings: Vec<RefusedReading>,
     }
     /// A mode in an attitude filter, after a sample.
     ElasticEstimate {

@@ -175,6 +175,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(!scenario.study.jets_alone || scenario.environment.is_some(), "/torques", Full);
         add(one_axis::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
+        add(scenario.has_false_readings(), "/refusals", Full);
         let elastic =
             estimator.and_then(EstimatorKind::attitude).is_some_and(|filter| filter.elastic.is_some());
         add(elastic, "/attitude_filter_modes", Full);

@@ -2,6 +2,7 @@
 
 use flexsc_flight::attitude_filter::GyroNoise;
 use flexsc_flight::attitude_observation::Correction;
+use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::flight_types::to_vector3;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
@@ -52,7 +53,12 @@ impl ElasticFilter {
         state.attitude = unit(state.attitude * rotation(&angle));
         state.bias += bias;
         let components = measured.dimension();
-        Some(Correction { innovation: to_vector3(&innovation), nis, components, is_valid: true })
+        Some(Correction {
+            innovation: to_vector3(&innovation),
+            nis,
+            components,
+            status: ReadingStatus::Accepted,
+        })
     }
 }
 

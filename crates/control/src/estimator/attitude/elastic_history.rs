@@ -7,6 +7,7 @@
 use std::collections::VecDeque;
 
 use flexsc_flight::attitude_filter::GyroNoise;
+use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_observation::Correction;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
@@ -20,6 +21,10 @@ pub struct ElasticHistory {
     between: Propagation,
     /// Largest delay of a measurement.
     reach: Span,
+    /// Limits of the readings.
+    pub(super) gate: AttitudeGate,
+    /// Exposure of the last measurement that corrected the filter; before the first one, the start.
+    pub(super) corrected: Instant,
     entries: VecDeque<HistoryEntry>,
     /// Measurements whose exposure no gyro reading covers yet.
     early: Vec<DelayedMeasurement>,
@@ -71,10 +76,16 @@ struct HistoryEntry {
 
 impl ElasticHistory {
     /// Creates the history of a filter at its first instant; `reach` is the largest delay of a measurement.
-    pub fn new(time: Instant, filter: ElasticFilter, noise: GyroNoise, reach: Span) -> Self {
+    pub fn new(
+        time: Instant,
+        filter: ElasticFilter,
+        noise: GyroNoise,
+        reach: Span,
+        gate: AttitudeGate,
+    ) -> Self {
         let entry = HistoryEntry { time, reading: Vector::zeros(), fixes: Vec::new(), filter };
         let between = Propagation { noise, torques: VecDeque::new() };
-        Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
+        Self { between, reach, gate, corrected: time, entries: VecDeque::from([entry]), early: Vec::new() }
     }
 
     /// Returns the filter after everything it has received.
@@ -139,6 +150,7 @@ impl ElasticHistory {
         let entry = &mut self.entries[index];
         let correction = entry.filter.correct(fix.sensor, &fix.measured, &fix.noise)?;
         entry.fixes.push(*fix);
+        self.corrected = self.corrected.max(fix.exposed);
         self.again(index + 1);
         Some(correction)
     }

@@ -3,17 +3,22 @@
 use std::mem;
 
 use flexsc_flight::attitude_estimator::{gyro_exposure, observation_exposure};
+use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::flight_types::to_vector3;
 use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Report};
+use flexsc_record::{
+    AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, ReadingOutcome, Refusals,
+    RefusedReading, Report,
+};
 use nalgebra::Quaternion;
 
 use super::elastic_states::ElasticFilterStates;
 use super::spec::{AttitudeFilter, FilterSetup, SensorRole};
 use super::{AttitudeFilterState, AttitudeMeasurement, Correction, DelayedMeasurement, FilterHistory};
 use crate::estimator::kalman::Prior;
-use crate::estimator::{Estimator, SampleContext};
+use crate::estimator::{Estimator, FilterHealth, SampleContext};
 use crate::part::{Occasion, Part, ReportContext};
 use crate::sensor::{Orientation, Reading, VectorMeasurement};
 use crate::state_estimate::StateEstimate;
@@ -38,6 +43,10 @@ pub struct AttitudeFilterRun {
     /// Correction by the last sample, and true if it had any.
     last_correction: Correction,
     used: bool,
+    /// Size of the innovation of the last correction (rad).
+    innovation: f64,
+    /// Readings of the last sample that were refused, or accepted after refusals.
+    refusals: Vec<RefusedReading>,
 }
 
 impl AttitudeFilterRun {
@@ -55,6 +64,8 @@ impl AttitudeFilterRun {
             torque: Vector::zeros(),
             last_correction: Correction::NONE,
             used: false,
+            innovation: 0.0,
+            refusals: Vec::new(),
         }
     }
 
@@ -66,23 +77,33 @@ impl AttitudeFilterRun {
     /// Propagates and corrects the filter with the readings of this sample.
     fn read(&mut self, now: Instant, readings: &[Option<Reading>]) {
         let Some(history) = &mut self.history else { return };
-        let mut last = None;
+        let mut last: Option<Correction> = None;
+        self.refusals.clear();
         // The gyro comes first: then the filter has reached the time of any other measurement of this sample.
-        for (role, (_, reading)) in
+        for (role, (sensor, reading)) in
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Gyro { .. }))
         {
             if let (Some(rate), SensorRole::Gyro { latency }) = (reading.rate, role) {
-                let exposed = Instant::from_ticks(gyro_exposure(now.ticks(), latency.ticks()));
-                self.rate = rate.into();
-                last = history.add_gyro(exposed, self.rate).or(last);
-                self.since = exposed;
+                let exposed =
+                    Instant::from_ticks(gyro_exposure(now.ticks(), latency.ticks(), Instant::START.ticks()));
+                let status = history.judge_gyro(exposed, rate.into());
+                self.refusals.extend(refusal(sensor, status, f64::NAN));
+                if !status.is_refusal() {
+                    self.rate = rate.into();
+                    last = history.add_gyro(exposed, self.rate).filter(corrects).or(last);
+                    self.since = exposed;
+                }
             }
         }
         for (role, (sensor, reading)) in
             self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
-            let exposed = Instant::from_ticks(observation_exposure(now.ticks(), latency.ticks()));
+            let exposed = Instant::from_ticks(observation_exposure(
+                now.ticks(),
+                latency.ticks(),
+                Instant::START.ticks(),
+            ));
             let measured = match (reading.sight, reading.at) {
                 (Some(measurement), _) => {
                     AttitudeMeasurement::Vector(self.setting.with_reference(measurement, exposed))
@@ -92,10 +113,14 @@ impl AttitudeFilterRun {
             };
             let gain = gain.as_deref().copied();
             let measurement = DelayedMeasurement { exposed, measured, noise: *noise, gain, sensor };
-            last = history.add_measurement(&measurement).or(last);
+            let result = history.add_measurement(&measurement);
+            let of = result.unwrap_or(Correction::NONE);
+            self.refusals.extend(refusal(sensor, of.status, of.nis / AttitudeEstimate::MEASUREMENTS));
+            last = result.filter(corrects).or(last);
         }
         self.used = last.is_some();
         self.last_correction = last.unwrap_or(Correction::NONE);
+        self.innovation = last.map_or(self.innovation, |correction| correction.innovation.norm());
     }
 
     /// Returns the attitude at `now`, propagated with the last gyro reading.
@@ -124,6 +149,23 @@ impl AttitudeFilterRun {
             None => hub,
         }
     }
+}
+
+/// Returns true if a measurement corrected the filter.
+fn corrects(correction: &Correction) -> bool {
+    correction.status.has_corrected()
+}
+
+/// Returns the log row of a reading that was refused, or accepted after refusals; `None` of other readings.
+fn refusal(sensor: usize, status: ReadingStatus, nis: f64) -> Option<RefusedReading> {
+    let outcome = match status {
+        ReadingStatus::Unsound => ReadingOutcome::Unsound,
+        ReadingStatus::Improbable => ReadingOutcome::Improbable,
+        ReadingStatus::Untimely => ReadingOutcome::Untimely,
+        ReadingStatus::Reaccepted => ReadingOutcome::Reaccepted,
+        ReadingStatus::None | ReadingStatus::Accepted | ReadingStatus::Waiting => return None,
+    };
+    Some(RefusedReading { sensor: sensor as u64, outcome, nis })
 }
 
 /// Returns the initial state of a filter for the true attitude at the start; `draws` supplies a drawn prior.
@@ -233,6 +275,9 @@ impl Part for AttitudeFilterRun {
         let axes = report.reuse(|row: &mut AttitudeEstimate| mem::take(&mut row.axes));
         if let Some(row) = self.attitude_row(at.now, &orientation, bias, axes) {
             report.add(row);
+            if !self.refusals.is_empty() {
+                report.add(Refusals { readings: self.refusals.clone() });
+            }
             let modes = report.reuse(|row: &mut ElasticEstimates| mem::take(&mut row.modes));
             self.elastic_row(modes).into_iter().for_each(|row| report.add(row));
         }
@@ -256,7 +301,14 @@ impl Estimator for AttitudeFilterRun {
             let state = self.prior(&(origin * rotation(&beyond)));
             let known = self.setting.modes.clone();
             let modes = known.map(|known| ElasticFilterStates::new(known, &state.covariance));
-            let mut history = FilterHistory::new(now, state, modes, self.setting.noise, self.setting.reach);
+            let mut history = FilterHistory::new(
+                now,
+                state,
+                modes,
+                self.setting.noise,
+                self.setting.reach,
+                self.setting.gate,
+            );
             history.set_torque(now, self.torque);
             self.history = Some(history);
         }
@@ -292,6 +344,13 @@ impl Estimator for AttitudeFilterRun {
             .iter_mut()
             .zip(angles)
             .for_each(|(state_estimate, angle)| state_estimate.angle = angle);
+    }
+
+    fn filter_health(&self, now: Instant) -> Option<FilterHealth> {
+        let history = self.history.as_ref()?;
+        let [angle, _] = history.latest().deviations();
+        let age = now.since(history.corrected()).seconds();
+        Some(FilterHealth { age, innovation: self.innovation, deviation: to_vector3(&angle.into()).norm() })
     }
 
     fn copy(&self) -> Box<dyn Estimator> {

@@ -111,7 +111,7 @@ mod tests {
         let still = Quaternion::IDENTITY;
         let mut filter = AttitudeBiasFilter::new(still, Vector3::ZERO, 1e-3, 1e-5);
         for _ in 0..40_000 {
-            filter.correct(&still, &to_matrix3(&covariance));
+            filter.correct(&still, &to_matrix3(&covariance), f64::INFINITY);
             filter.predict(&Vector3::ZERO, period, &noise);
         }
         let before = from_matrix6(&filter.covariance).fixed_columns::<3>(0).into_owned();

@@ -1,8 +1,10 @@
 //! Attitude filter and its recent past: that of flight code, or one with elastic modes.
 
 use flexsc_flight::attitude_filter::GyroNoise;
+use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::Correction;
+use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::flight_types::{from_quaternion, from_vector3, to_vector3};
 use flexsc_numerics::time::{Instant, Span};
@@ -53,26 +55,36 @@ impl RigidHistory {
     }
 }
 
-fn valid(correction: Correction) -> Option<Correction> {
-    correction.is_valid.then_some(correction)
+/// Returns the result of a reading, if it has one now.
+fn with_result(correction: Correction) -> Option<Correction> {
+    (correction.status != ReadingStatus::None && correction.status != ReadingStatus::Waiting)
+        .then_some(correction)
 }
 
 impl FilterHistory {
     /// Creates the history of a filter at its first instant, with its modes if it estimates any; `reach` is the largest
-    /// delay of a measurement.
+    /// delay of a measurement, and `gate` limits the readings.
     pub fn new(
         time: Instant,
         state: AttitudeFilterState,
         modes: Option<ElasticFilterStates>,
         noise: GyroNoise,
         reach: Span,
+        gate: AttitudeGate,
     ) -> Self {
         if let Some(modes) = modes {
-            return Self::Elastic(ElasticHistory::new(time, ElasticFilter { state, modes }, noise, reach));
+            return Self::Elastic(ElasticHistory::new(
+                time,
+                ElasticFilter { state, modes },
+                noise,
+                reach,
+                gate,
+            ));
         }
         let mut entries = vec![AttitudeHistoryEntry::NONE; 4];
         let reach = (Instant::START + reach).ticks();
-        let counts = AttitudeHistory::start(time.ticks(), state.to_flight(), noise, reach, &mut entries);
+        let counts =
+            AttitudeHistory::start(time.ticks(), state.to_flight(), noise, reach, gate, &mut entries);
         Self::Rigid(RigidHistory { counts, entries, observations: Vec::new() })
     }
 
@@ -121,28 +133,52 @@ impl FilterHistory {
         }
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements
-    /// that waited for it.
+    /// Returns the outcome of a gyro reading (rad/s) of an interval that ends at `now`, before it is added.
+    pub fn judge_gyro(&mut self, now: Instant, reading: Vector) -> ReadingStatus {
+        match self {
+            Self::Rigid(RigidHistory { counts, entries, .. }) => {
+                counts.judge_gyro(now.ticks(), &to_vector3(&reading), entries)
+            }
+            Self::Elastic(history) if history.gate.is_sound_rate(&to_vector3(&reading)) => {
+                ReadingStatus::Accepted
+            }
+            Self::Elastic(_) => ReadingStatus::Unsound,
+        }
+    }
+
+    /// Returns the time at which the last measurement that corrected the filter was exposed, or that of the start.
+    pub fn corrected(&self) -> Instant {
+        match self {
+            Self::Rigid(history) => Instant::from_ticks(history.counts.corrected),
+            Self::Elastic(history) => history.corrected,
+        }
+    }
+
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the result of the last measurement that
+    /// waited for it.
     pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Option<Correction> {
         match self {
             Self::Rigid(history) => {
                 history.grow();
                 let RigidHistory { counts, entries, observations } = history;
-                valid(counts.add_gyro(now.ticks(), to_vector3(&reading), entries, observations))
+                with_result(counts.add_gyro(now.ticks(), to_vector3(&reading), entries, observations))
             }
             Self::Elastic(history) => history.add_gyro(now, reading),
         }
     }
 
-    /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.
+    /// Adds a measurement, delayed or not; returns `None` if it waits for a gyro reading.
     pub fn add_measurement(&mut self, measurement: &DelayedMeasurement) -> Option<Correction> {
         match self {
             Self::Rigid(history) => {
                 history.grow();
                 let RigidHistory { counts, entries, observations } = history;
-                valid(counts.add_observation(measurement.to_flight(), entries, observations))
+                with_result(counts.add_observation(measurement.to_flight(), entries, observations))
             }
-            Self::Elastic(history) => history.add_measurement(measurement),
+            Self::Elastic(history) if measurement.to_flight().observation.is_sound() => {
+                history.add_measurement(measurement)
+            }
+            Self::Elastic(_) => Some(Correction::unused(ReadingStatus::Unsound)),
         }
     }
 }

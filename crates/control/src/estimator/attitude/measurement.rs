@@ -46,7 +46,7 @@ impl DelayedMeasurement {
                 observation.inertial = to_vector3(&measurement.inertial);
             }
         }
-        DelayedObservation { exposed: self.exposed.ticks(), observation }
+        DelayedObservation { exposed: self.exposed.ticks(), observation, ..DelayedObservation::NONE }
     }
 }
 

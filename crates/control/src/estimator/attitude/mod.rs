@@ -22,4 +22,4 @@ pub use flexsc_flight::attitude_observation::Correction;
 pub use gains::{Complementary, GainMethod};
 pub use history::FilterHistory;
 pub use measurement::{AttitudeMeasurement, DelayedMeasurement};
-pub use spec::{AttitudeFilter, AttitudeInitialDeviations, FilterSetup, SensorRole};
+pub use spec::{AttitudeFilter, AttitudeInitialDeviations, FilterSetup, ReadingGate, SensorRole};

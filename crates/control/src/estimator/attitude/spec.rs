@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_flight::attitude_gate::AttitudeGate;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Span;
+use flexsc_record::AttitudeEstimate;
 use flexsc_spacecraft::environment::OrbitEnvironment;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
@@ -55,6 +57,9 @@ pub struct AttitudeFilter {
     /// Standard deviation of a measured direction to the planet (rad); default: the Earth sensor's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub earth_noise: Option<Positive>,
+    /// Limits within which it accepts readings.
+    #[serde(default, skip_serializing_if = "ReadingGate::is_default")]
+    pub gate: ReadingGate,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
     pub initial: AttitudeInitialDeviations,
@@ -91,6 +96,55 @@ impl Default for AttitudeInitialDeviations {
     }
 }
 
+/// Limits within which an attitude filter accepts readings. It always refuses those that are not finite, and quaternions and
+/// directions whose length differs from 1 by more than 1e-3.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(rename = "Gate")]
+pub struct ReadingGate {
+    /// Largest innovation in standard deviations, the root of its normalised square over the number of components. A measurement
+    /// above it is refused; with `elastic` none is.
+    pub deviations: Positive,
+    /// Number of refusals in a row after which the next measurement is accepted: the covariance grows by the innovation before
+    /// the correction.
+    pub refusals: u32,
+    /// Time without a correction (s) after which a measurement above the limit is accepted at once, in the same way.
+    pub gap: Positive,
+    /// Largest rate about an axis (rad/s) that it takes from the gyro; default: the gyro's `range`, or 10 rad/s without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rate: Option<Positive>,
+}
+
+/// Largest rate that is taken from a gyro without a range (rad/s).
+const LARGEST_RATE: f64 = 10.0;
+
+impl Default for ReadingGate {
+    /// Returns a limit of 10 standard deviations, 5 refusals and a gap of 300 s.
+    fn default() -> Self {
+        let positive = |value: f64| Positive::new(value).unwrap_or(Positive::ONE);
+        Self { deviations: positive(10.0), refusals: 5, gap: positive(300.0), rate: None }
+    }
+}
+
+impl ReadingGate {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Returns the gate in flight code, for the readings of this gyro.
+    fn to_flight(self, gyro: &Gyro) -> AttitudeGate {
+        let range = |axis: usize| gyro.range.map_or(LARGEST_RATE, |range| range.about(axis).get());
+        let largest = (0..3).map(range).fold(0.0, f64::max);
+        let deviations = self.deviations.get();
+        AttitudeGate {
+            most_nis: AttitudeEstimate::MEASUREMENTS * deviations * deviations,
+            most_refusals: self.refusals,
+            gap: Span::from_seconds(self.gap.get()).ticks(),
+            most_rate: self.rate.map_or(largest, Positive::get),
+        }
+    }
+}
+
 /// Role of a sensor in the filter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SensorRole {
@@ -123,6 +177,8 @@ pub struct FilterSetup {
     pub bias: Vector,
     /// Largest delay of a measurement.
     pub reach: Span,
+    /// Limits of the readings.
+    pub gate: AttitudeGate,
     /// Elastic modes that the filter estimates, if any.
     pub modes: Option<Arc<FilterModes>>,
     /// Environment with the magnetic field of the filter's model; `None` if the model is the true field.
@@ -224,7 +280,8 @@ impl AttitudeFilter {
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
         let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
         let field_model = self.field_model(sensors, sky)?;
-        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, modes, field_model })
+        let gate = self.gate.to_flight(gyro);
+        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, gate, modes, field_model })
     }
 
     /// Returns the environment with the magnetic field of the filter's model, if that is not the true field.

@@ -1,5 +1,8 @@
 //! Tests of the attitude filter and its recent past, with the storage that the engine gives it.
 
+use flexsc_flight::attitude_gate::AttitudeGate;
+use flexsc_flight::reading_status::ReadingStatus;
+use flexsc_flight::ticks::Ticks;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
@@ -9,6 +12,8 @@ use super::{AttitudeFilterState, AttitudeMeasurement, DelayedMeasurement, Filter
 /// Gyro readings, measured attitudes and truth of a made-up run: `tests/golden/attitude_filter_oracle.py`.
 const READ: &str = include_str!("../../../../../tests/golden/attitude-filter-in.csv");
 
+const GATE: AttitudeGate =
+    AttitudeGate { most_nis: 300.0, most_refusals: 5, gap: Ticks { whole: 60, part: 0 }, most_rate: 1.0 };
 const NOISE: GyroNoise = GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 };
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
@@ -54,7 +59,7 @@ fn fix(read: &[Vec<f64>], k: usize) -> DelayedMeasurement {
 /// Returns the filter's history after each reading, with attitudes that arrive `late` readings after exposure.
 fn replay(late: usize) -> Vec<FilterHistory> {
     let read = rows(READ);
-    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5));
+    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE);
     let mut states = vec![history.clone()];
     for k in 1..read.len() {
         history.add_gyro(at(k), Vector::from_column_slice(&read[k][2..5]));
@@ -77,7 +82,7 @@ fn whatever_is_late_comes_to_the_same() {
     }
     let read = rows(READ);
     let build = |order: [usize; 2]| {
-        let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(1.0));
+        let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(1.0), GATE);
         for row in &read[1..6] {
             history.add_gyro(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
         }
@@ -97,10 +102,11 @@ fn whatever_is_late_comes_to_the_same() {
 fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     let read = rows(READ);
     let reading = |k: usize| Vector::from_column_slice(&read[k][2..5]);
-    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5));
+    let mut history = FilterHistory::new(at(0), first(), None, NOISE, Span::from_seconds(0.5), GATE);
     assert!(history.add_measurement(&fix(&read, 4)).is_none());
     for k in 1..12 {
         assert_eq!(history.add_gyro(at(k), reading(k)).is_some(), k == 4);
     }
-    assert!(history.add_measurement(&fix(&read, 8)).is_none(), "0.75 s late");
+    let late = history.add_measurement(&fix(&read, 8)).expect("a result");
+    assert_eq!(late.status, ReadingStatus::Untimely, "0.75 s late");
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::payload::Payload;
 use super::{camel, named};
 use crate::control_system::{CallLayout, Channel, NumberKind};
-use crate::package::signature::has_time;
+use crate::package::signature::{has_time, inits_at_time};
 use crate::package::{PackageFile, Plan, text};
 
 /// Longest name of a pipe: cFS keeps 20 bytes of it.
@@ -188,7 +188,11 @@ fn app_source(plan: &Plan<'_>) -> String {
     }
     let subscribed: Vec<String> =
         names(plan, "INPUT").iter().map(|name| format!("UPPER_APP_{name}_MID")).collect();
+    // The last inputs have the time of a restart; before them it is 0.
+    let input = "UPPER_APP_Data.LAW_Input.Payload";
+    let time = format!(", (LOWER_ticks){{ .whole = {input}.now_whole, .part = {input}.now_part }}");
     include_str!("../files/cfs/app.c")
+        .replace("INIT_TIME", if inits_at_time(plan) { &time } else { "" })
         .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name))
         .replace("LAW", &camel(law(plan).name))
         .replace("MEASURED", &measured)

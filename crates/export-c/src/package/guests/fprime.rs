@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::fprime_ports::{arrays, handled, type_name};
 use super::{camel, fprime_stubs, named};
 use crate::control_system::{CallLayout, Channel};
-use crate::package::signature::has_time;
+use crate::package::signature::{has_time, inits_at_time};
 use crate::package::{PackageFile, Plan, text};
 
 /// Keywords of F Prime's modelling language among the words that a member may have as its name.
@@ -179,6 +179,7 @@ fn implementation(plan: &Plan<'_>) -> String {
     }
     let (initial, given) = if has_time(plan) { ("m_now(), ", "this->m_now, ") } else { ("", "") };
     include_str!("../files/fprime/component.cpp")
+        .replace("INIT_TIME", if inits_at_time(plan) { ", this->m_now" } else { "" })
         .replace("LAW(GIVEN", &format!("{law}({given}"))
         .replace("INITIAL", initial)
         .replace("ZEROS", &zeros)

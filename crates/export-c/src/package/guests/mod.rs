@@ -49,7 +49,7 @@ impl Guest {
 /// Returns a template with the names of the control system in place of `UPPER`, `LOWER`, `ORIGIN` and `VERSION`.
 fn named(template: &str, plan: &Plan<'_>) -> String {
     template
-        .replace("ORIGIN", plan.origin)
+        .replace("ORIGIN", plan.origin.file)
         .replace("VERSION", env!("CARGO_PKG_VERSION"))
         .replace("LOWER", plan.prefix)
         .replace("UPPER", &plan.prefix.to_uppercase())
