@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::answer::{Answer, Observed, RunVerdict};
+use flexsc_core::answer::{Answer, LeastRobust, Observed, RunVerdict};
 use flexsc_core::campaign::{
     Campaign, CampaignRun, CampaignRuns, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows,
     Sampling,
@@ -25,6 +25,7 @@ use flexsc_core::campaign::{
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
+use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::requirement_verdict::{self, RequirementVerdict};
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
@@ -70,6 +71,9 @@ pub const MAIN: [&str; 24] = [
     "energy_below_10pct_at_s",
     "firings",
 ];
+
+/// Name of the file with the least robust run of a campaign over faults.
+const LEAST_ROBUST: &str = "least-robust.toml";
 
 /// Runs of a campaign to make, and their outputs.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of the command")]
@@ -143,8 +147,13 @@ pub fn run(
             }
         }
     } else {
-        let is_sweep = !campaign.design().blocks.is_empty();
+        // A sweep over faults is judged.
+        let judges_faults = campaign.keys().any(|key| key == ACTIVE_FAULT);
+        let is_sweep = !judges_faults && !campaign.design().blocks.is_empty();
         let answer = reported.answer(scenario, job.answer);
+        if let Some((least, table)) = answer.least_robust.as_ref().zip(reported.table.as_deref()) {
+            save_least_robust(campaign, least, table)?;
+        }
         if !job.json {
             reported.say(&answer, Some(took), job.answer);
         } else if !is_sweep {
@@ -159,6 +168,17 @@ pub fn run(
         None => Ok(reported.requirements),
         Some((failed, number, why)) => Err(CliError::Runs { failed, runs, number, why }),
     }
+}
+
+/// Writes the scenario of the least robust run into the directory of a campaign.
+fn save_least_robust(campaign: &Campaign, least: &LeastRobust, table: &Path) -> Result<(), CliError> {
+    if !table.is_dir() {
+        return Ok(());
+    }
+    let run = campaign.run(least.run)?;
+    let repeat = format!("flexsc simulate {LEAST_ROBUST} --runs {0}:{1}", run.noise_run, run.noise_run + 1);
+    let text = format!("# {}\n# {repeat}\n{}", least.text(), run.scenario.self_contained().to_toml());
+    files::write_within(&[(table.join(LEAST_ROBUST), text.into_bytes())])
 }
 
 /// Returns the metrics of the scenario without drawn keys, where a campaign draws keys and has requirements.

@@ -13,6 +13,7 @@ use flexsc_core::campaign::{Campaign, Design, DesignBlock, KeyRange};
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::is_number;
 use flexsc_core::record::Detail;
+use flexsc_core::scenario::{ACTIVE_FAULT, NO_FAULT};
 
 use crate::answer::AnswerArgs;
 use crate::campaign::logs::{self, LogDetail};
@@ -21,7 +22,7 @@ use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::human::UnitsArgs;
 use crate::simulate::{RunRange, runs};
-use crate::{campaign, files, say, scenario};
+use crate::{campaign, files, requirements, say, scenario};
 
 /// Largest number of combinations of a sweep.
 const MOST_VALUES: u32 = 10_000_000;
@@ -88,6 +89,8 @@ enum KeyValues {
     Even { first: String, last: String, count: u32 },
     List(Vec<String>),
     Range { from: String, to: String },
+    /// Names of faults; all of the scenario, and none, if none is given.
+    Faults(Vec<String>),
 }
 
 /// Noise of the points of a sweep.
@@ -103,6 +106,13 @@ fn varied(text: &str) -> Result<VariedKey, String> {
     let form = || {
         format!("`{text}` is not KEY=LO:HI:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=LO:HI")
     };
+    let faults = text.strip_prefix(ACTIVE_FAULT).and_then(|rest| match rest {
+        "" => Some(Vec::new()),
+        rest => Some(rest.strip_prefix('=')?.split(',').map(|name| name.trim().to_owned()).collect()),
+    });
+    if let Some(faults) = faults {
+        return Ok(VariedKey { key: ACTIVE_FAULT.to_owned(), values: KeyValues::Faults(faults) });
+    }
     let (key, values) = text.split_once('=').ok_or_else(form)?;
     let number = |text: &str| Some(text.to_owned()).filter(|text| is_number(text)).ok_or_else(form);
     let values = if values.contains(',') {
@@ -155,6 +165,9 @@ impl SweepArgs {
                 KeyValues::List(values) => {
                     let values = values.iter().map(number).collect::<Result<_, _>>()?;
                     blocks.push(DesignBlock::List { key, values });
+                }
+                KeyValues::Faults(chosen) => {
+                    blocks.push(DesignBlock::texts(&key, fault_names(scenario, chosen)?));
                 }
                 KeyValues::Range { from, to } => {
                     ranges.push(KeyRange { from: number(from)?, to: number(to)?, key });
@@ -244,6 +257,27 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         scheduler,
         plain: detail.is_none(),
     };
-    // A sweep explores: a point that misses a requirement is no failure of it.
-    logs::run(&Arc::new(campaign), &job, detail).map(drop)
+    let judges_faults = campaign.keys().any(|key| key == ACTIVE_FAULT);
+    let name = campaign.scenario().name.clone();
+    let verdicts = logs::run(&Arc::new(campaign), &job, detail)?;
+    // A sweep explores: a point that misses a requirement is no failure of it, but for a fault.
+    if judges_faults { requirements::validate([(name.as_str(), &verdicts[..])]) } else { Ok(()) }
+}
+
+/// Returns the chosen faults of a scenario, or `none` and all of them if none is chosen.
+fn fault_names(scenario: &Scenario, chosen: &[String]) -> Result<Vec<String>, CliError> {
+    let mut known = vec![NO_FAULT.to_owned()];
+    known.extend(scenario.fault.iter().map(|fault| fault.name.clone()));
+    let listed = || format!("`{}`", known.join("`, `"));
+    match chosen.iter().find(|name| !known.contains(name)) {
+        _ if known.len() == 1 => {
+            Err(CliError::Arguments(format!("--vary {ACTIVE_FAULT}: {} has no [[fault]]", scenario.name)))
+        }
+        Some(name) => Err(CliError::Arguments(format!(
+            "--vary {ACTIVE_FAULT}: must name faults of the scenario, {}, got `{name}`",
+            listed()
+        ))),
+        None if chosen.is_empty() => Ok(known),
+        None => Ok(chosen.to_vec()),
+    }
 }

@@ -127,6 +127,19 @@ impl RequirementRuns {
         is_not_exercised(self.values[requirement][row], self.shares[requirement][row])
     }
 
+    /// Returns the runs in some rows.
+    pub fn of_rows(&self, counts: impl Fn(usize) -> bool) -> Self {
+        fn some<T: Copy>(all: &[T], counts: impl Fn(usize) -> bool) -> Vec<T> {
+            all.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, own)| *own).collect()
+        }
+        Self {
+            requirements: self.requirements.clone(),
+            runs: some(&self.runs, &counts),
+            values: self.values.iter().map(|own| some(own, &counts)).collect(),
+            shares: self.shares.iter().map(|own| some(own, &counts)).collect(),
+        }
+    }
+
     /// Returns the numbers of the runs.
     pub fn numbers(&self) -> &[u64] {
         &self.runs

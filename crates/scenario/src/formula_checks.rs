@@ -127,6 +127,7 @@ fn vocabulary(written: &ScenarioSpec) -> Vocabulary<'_> {
         modes: written.mode.iter().map(|mode| mode.name.as_str()).collect(),
         numbers: None,
         requirement: Some(RequirementNames {
+            faults: written.fault.iter().map(|fault| fault.name.as_str()).collect(),
             points: written.line_of_sight.iter().map(|line| line.point.as_str()).collect(),
             metrics: metric_descriptions::ALL.iter().map(|metric| (metric.name, metric.unit)).collect(),
         }),

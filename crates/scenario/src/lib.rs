@@ -17,6 +17,7 @@ mod environment_checks;
 mod epoch;
 mod estimator_context;
 mod failures;
+mod fault;
 mod fast_path;
 mod file_name;
 mod formula_checks;
@@ -67,6 +68,7 @@ pub use cost::{Cost, MOST_RUNS};
 pub use custom_parts::{CustomLaw, CustomParts};
 pub use epoch::date_from_text;
 pub use failures::FailureInterval;
+pub use fault::{ACTIVE_FAULT, Fault, NO_FAULT, PartFailures};
 pub use line_of_sight::LineOfSight;
 pub use log::{LogSpec, SceneSpec};
 pub use reference_values::{Pointing, Reference};
@@ -168,6 +170,7 @@ impl Scenario {
     fn fitted(mut written: ScenarioSpec, model: BodyModel) -> Result<Self, Vec<ConfigError>> {
         let only = |error| vec![error];
         written.adopt_modes().map_err(only)?;
+        written.activate_fault().map_err(only)?;
         let errors = written.conflicts(&model, &written.offers(&model));
         if !errors.is_empty() {
             return Err(errors);

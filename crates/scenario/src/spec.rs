@@ -21,6 +21,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
+use super::fault::{AddedFailures, Fault};
 use super::{BoundSpec, LineOfSight, LogSpec, Reference, Requirement, TitleBlock, epoch};
 use crate::uncertain::{Correlated, Distribution};
 
@@ -110,6 +111,15 @@ pub struct ScenarioSpec {
     /// Requirements, each a limit on a pointing index or on a metric.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub requirement: Vec<Requirement>,
+    /// Faults, of which a run has the `active_fault`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fault: Vec<Fault>,
+    /// Name of the fault that occurs, or `none`, the default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub active_fault: Option<String>,
+    /// Failures of the active fault among those of the parts.
+    #[serde(skip)]
+    pub(super) added_failures: Vec<AddedFailures>,
     /// Distributions of keys from which a campaign draws a value for each run.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub uncertain: BTreeMap<String, Distribution>,
@@ -206,7 +216,7 @@ impl ScenarioSpec {
     /// Returns the scenario with all its defaults, as a table.
     pub fn to_table(&self) -> Table {
         // Every scenario can be expressed in TOML.
-        let mut table = Table::try_from(self).unwrap_or_default();
+        let mut table = self.without_added_failures(Table::try_from(self).unwrap_or_default());
         // serde knows no dates: `toml` makes a marked table of one.
         if let Some(epoch) = self.epoch {
             table.insert("epoch".to_owned(), Value::Datetime(epoch));

@@ -29,7 +29,17 @@ pub enum Distribution {
     /// The scenario's own value times a normal factor with mean 1 and this standard deviation.
     RelativeNormal(Positive),
     /// One of these values, with equal probability.
-    Choice(Vec<Finite>),
+    Choice(Vec<ChoiceValue>),
+}
+
+/// A value of a choice.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ChoiceValue {
+    /// Number.
+    Number(Finite),
+    /// Text, for a key that holds one.
+    Text(String),
 }
 
 /// A normal distribution.
@@ -55,6 +65,11 @@ impl Distribution {
             Self::Choice(values) if values.is_empty() => {
                 Some("needs at least one value to choose from".to_owned())
             }
+            Self::Choice(values) if self.has_texts() => match nominal {
+                Some(Value::String(_)) if values.iter().all(ChoiceValue::is_text) => None,
+                Some(other) => Some(format!("has a text among its values, and that key holds a {}", other.type_str())),
+                None => Some("names no key of this scenario".to_owned()),
+            },
             _ => match nominal {
                 Some(Value::Integer(0) | Value::Float(0.0)) if self.is_relative() => {
                     Some("varies the key's own value by a factor, but that is 0".to_owned())
@@ -64,6 +79,11 @@ impl Distribution {
                 None => Some("names no key of this scenario".to_owned()),
             },
         }
+    }
+
+    /// Returns true for a choice with a text.
+    pub fn has_texts(&self) -> bool {
+        matches!(self, Self::Choice(values) if values.iter().any(ChoiceValue::is_text))
     }
 
     fn is_relative(&self) -> bool {
@@ -82,7 +102,7 @@ impl Distribution {
             Self::Normal(Normal { mean, sd }) => mean.get() + sd.get() * stream.normal(),
             Self::RelativeUniform(part) => own * between(1.0 - part.get(), 1.0 + part.get(), stream),
             Self::RelativeNormal(sd) => own * (1.0 + sd.get() * stream.normal()),
-            Self::Choice(values) => values[stream.index(values.len())].get(),
+            Self::Choice(values) => return values[stream.index(values.len())].like(nominal),
         };
         like(nominal, drawn)
     }
@@ -97,7 +117,7 @@ impl Distribution {
             Self::LogUniform([low, high]) => libm::exp(between(libm::log(low.get()), libm::log(high.get()))),
             Self::RelativeUniform(part) => own * between(1.0 - part.get(), 1.0 + part.get()),
             Self::Choice(values) => {
-                values[((probability * values.len() as f64) as usize).min(values.len() - 1)].get()
+                return values[((probability * values.len() as f64) as usize).min(values.len() - 1)].like(nominal);
             }
             Self::Normal(_) | Self::RelativeNormal(_) => {
                 return self.value_at_deviation(nominal, normal::quantile(probability));
@@ -119,6 +139,20 @@ impl Distribution {
     /// Returns true if the distribution can be drawn together with others: its values have an order.
     pub fn is_continuous(&self) -> bool {
         !matches!(self, Self::Choice(_))
+    }
+}
+
+impl ChoiceValue {
+    fn is_text(&self) -> bool {
+        matches!(self, Self::Text(_))
+    }
+
+    /// Returns the value, a number in the type of the key's nominal value.
+    fn like(&self, nominal: &Value) -> Value {
+        match self {
+            Self::Number(number) => like(nominal, number.get()),
+            Self::Text(text) => Value::String(text.clone()),
+        }
     }
 }
 

@@ -1,5 +1,7 @@
-//! Sky of the modes of operation: quantities that orbit and Sun determine, and the instants at which they pass numbers.
+//! Sky of the modes of operation: quantities that are known before a run, by orbit, Sun and faults, and the instants at which
+//! they pass numbers.
 
+use flexsc_control::interval::Interval;
 use flexsc_control::operation::{ModeQuantity, ModeTarget};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::environment::{GroundSite, OrbitEnvironment, OrbitPath};
@@ -14,6 +16,10 @@ const SHORTEST: f64 = 1e-4;
 pub struct ModeSky {
     sky: OrbitEnvironment,
     sites: Vec<Option<GroundSite>>,
+    /// Fault of the run by its index, with the intervals of its failures.
+    fault: Option<(usize, Vec<Interval>)>,
+    /// Times (s), in order, at which a shadow or a failure of the fault begins or ends.
+    edges: Vec<f64>,
 }
 
 impl ModeSky {
@@ -23,20 +29,34 @@ impl ModeSky {
             return Self::default();
         }
         let site = |target: &Option<ModeTarget>| target.as_ref().and_then(ModeTarget::site);
+        let sky = scenario.orbit_environment();
+        let fault = scenario.fault_of_run().map(|(index, fault)| (index, fault.intervals().collect()));
+        let intervals = fault.iter().flat_map(|(_, intervals): &(usize, Vec<Interval>)| intervals);
+        let of_fault = intervals.flat_map(|own| [Some(own.start()), own.end()]).flatten();
+        let mut edges: Vec<f64> = sky.shadow_edges().chain(of_fault).map(Instant::seconds).collect();
+        edges.sort_by(f64::total_cmp);
         Self {
-            sky: scenario.orbit_environment(),
+            sky,
+            edges,
+            fault,
             sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect(),
         }
     }
 
-    /// Iterates over the instants at which a shadow begins or ends.
-    pub fn edges(&self) -> impl Iterator<Item = Instant> {
-        self.sky.shadow_edges()
+    /// Returns the times (s) between two others at which a shadow or a failure of the fault begins or ends.
+    pub fn edges(&self, from: f64, to: f64) -> &[f64] {
+        let first = self.edges.partition_point(|edge| *edge <= from);
+        let count = self.edges[first..].partition_point(|edge| *edge < to);
+        &self.edges[first..first + count]
     }
 
-    /// Returns true if a quantity stays as it is at a time (s) until the next edge of a shadow.
+    /// Returns true if a quantity stays as it is at a time (s) until the next edge.
     pub fn is_steady(&self, quantity: ModeQuantity, t: f64) -> bool {
-        quantity == ModeQuantity::TrueSunlight && self.sky.light_rate(t) == 0.0
+        match quantity {
+            ModeQuantity::Fault(_) => true,
+            ModeQuantity::TrueSunlight => self.sky.light_rate(t) == 0.0,
+            _ => false,
+        }
     }
 
     /// Returns a quantity of the sky in its unit at a time since the start (s); NaN of any other quantity.
@@ -45,6 +65,13 @@ impl ModeSky {
             ModeQuantity::Sunlight | ModeQuantity::TrueSunlight => self.sky.part_in_view(t),
             ModeQuantity::Elevation(mode) | ModeQuantity::TrueElevation(mode) => {
                 self.elevation(mode, t).unwrap_or(f64::NAN)
+            }
+            ModeQuantity::Fault(index) => {
+                let now = Instant::START + Span::from_seconds(t);
+                let acts = |(own, intervals): &(usize, Vec<Interval>)| {
+                    *own == index && intervals.iter().any(|interval| interval.contains(now))
+                };
+                f64::from(u8::from(self.fault.as_ref().is_some_and(acts)))
             }
             _ => f64::NAN,
         }

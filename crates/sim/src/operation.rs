@@ -178,7 +178,8 @@ impl ModeReadings for RunView<'_> {
             ModeQuantity::Sunlight
             | ModeQuantity::Elevation(_)
             | ModeQuantity::TrueSunlight
-            | ModeQuantity::TrueElevation(_) => self.sky.value(quantity, self.now.seconds()),
+            | ModeQuantity::TrueElevation(_)
+            | ModeQuantity::Fault(_) => self.sky.value(quantity, self.now.seconds()),
             clock => self.clock(clock).seconds(),
         }
     }

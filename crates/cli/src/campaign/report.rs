@@ -71,7 +71,7 @@ impl CampaignReport {
     pub fn say(&self, answer: &CampaignAnswer, took: Option<f64>, args: AnswerArgs) {
         let (name, runs) = (&answer.scenario, counted(self.runs, "run"));
         let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
-        if let (Some(points), true) = (&self.points, self.runs > 0) {
+        if let (Some(points), true, true) = (&self.points, self.runs > 0, answer.by_fault.is_empty()) {
             let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
             say!("{name}   {runs}{took}\n{}", points.text().trim_end());
             if let Some(table) = table {

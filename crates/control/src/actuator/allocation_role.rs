@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flexsc_formats::document::ConfigError;
 
 use super::{
-    ActuatorKind, AssignedActuator, ControlMomentGyros, Jets, Magnetorquers, Share, Thrusters, UnloadingTask,
+    ActuatorKind, AssignedActuator, ControlMomentGyros, Failure, Jets, Magnetorquers, Share, Thrusters, UnloadingTask,
     Wheel, Wheels,
 };
 use crate::one_or_many::OneOrMany;
@@ -58,10 +58,17 @@ impl AssignedMember<'_> {
     /// Checks the failures of an actuator on a body with `axes` axes; returns the first inconsistent key and the
     /// reason.
     pub fn failure_fault(&self, axes: usize) -> Option<ConfigError> {
-        let (components, sines) = (self.kind.failing_components(axes), !self.kind.offers().turns_with_field);
-        let mut failures = self.kind.failures().iter().enumerate();
+        Some(self.kind.validate_failures(self.kind.failures(), axes)?.within(&self.key))
+    }
+}
+
+impl ActuatorKind {
+    /// Checks failures of the actuator on a body with `axes` axes; returns the first inconsistent key and the reason.
+    pub fn validate_failures(&self, failures: &[Failure], axes: usize) -> Option<ConfigError> {
+        let (components, sines) = (self.failing_components(axes), !self.offers().turns_with_field);
+        let mut failures = failures.iter().enumerate();
         failures.find_map(|(index, failure)| {
-            Some(failure.validate(&components, sines)?.within(&format!("{}.faults[{index}]", self.key)))
+            Some(failure.validate(&components, sines)?.within(&format!("faults[{index}]")))
         })
     }
 }

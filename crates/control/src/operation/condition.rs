@@ -35,6 +35,8 @@ pub struct Vocabulary<'a> {
 pub struct RequirementNames<'a> {
     /// Points of the lines of sight, in their order.
     pub points: Vec<&'a str>,
+    /// Names of the faults, in their order.
+    pub faults: Vec<&'a str>,
     /// Names and units of the metrics.
     pub metrics: Vec<(&'a str, &'a str)>,
 }

@@ -14,6 +14,6 @@ pub use condition::{
 pub use mode_condition::ModeCondition;
 pub use mode_tables::{ModeReading, ModeTables, WrittenExit};
 pub use operating_mode::{ModeExit, ModeTarget, OperatingMode, SlewStart};
-pub use parser::{parse_instant, parse_trigger};
+pub use parser::{index_of_kind, parse_instant, parse_trigger};
 pub use quantity::{ModeFormula, ModeQuantity};
 pub use sequence::{ModeChange, ModeSequence};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::condition::{ConditionFault, Expression, Vocabulary};
 use super::mode_condition::ModeCondition;
-use super::parser::{listed, sensor_index};
+use super::parser::{index_of_kind, listed};
 use crate::actuator::ActuatorName;
 use crate::law::{AttitudeProfile, AttitudeTarget, Frame, LawKind, PointedAxis, SkyDirection, Stage};
 
@@ -179,7 +179,7 @@ impl OperatingMode {
             let of_kind = kinds.iter().enumerate().filter(|(_, kind)| **kind == name.as_str());
             let mut named: Vec<usize> = of_kind.map(|(index, _)| index).collect();
             if named.is_empty() {
-                named.extend(sensor_index(name, kinds));
+                named.extend(index_of_kind(name, kinds));
             }
             if named.is_empty() {
                 return Err((place, format!("must be one of the sensors, {}, got `{name}`", listed(kinds))));

@@ -271,7 +271,7 @@ impl<'a> Parser<'a> {
             Some(ModeWord::Plain(quantity)) => Ok(quantity),
             Some(ModeWord::OfSensor(quantity)) => {
                 let (part, name) = self.argument(word, "sensor")?;
-                let index = sensor_index(name, &self.known.sensors);
+                let index = index_of_kind(name, &self.known.sensors);
                 index.map(quantity).ok_or_else(|| {
                     let listed = listed(&self.known.sensors);
                     fault(part, format!("must name one of the sensors, {listed}, got `{name}`"))
@@ -285,6 +285,11 @@ impl<'a> Parser<'a> {
                 let (part, name) = self.argument(word, "point")?;
                 let points = self.known.requirement.as_ref().map_or(&[][..], |names| &names.points);
                 index_of(part, name, points, "points of the lines of sight").map(quantity)
+            }
+            Some(ModeWord::OfFault(quantity)) => {
+                let (part, name) = self.argument(word, "fault")?;
+                let faults = self.known.requirement.as_ref().map_or(&[][..], |names| &names.faults);
+                index_of(part, name, faults, "faults").map(quantity)
             }
             None => {
                 if let Some(metric) = self.read_metric(written) {
@@ -372,8 +377,8 @@ fn word_length(text: &str) -> usize {
     text.find(|c: char| !(c.is_alphanumeric() || "_.-".contains(c))).unwrap_or(text.len())
 }
 
-/// Returns the index of a sensor by its kind, or by kind and index among those of the kind: `star_tracker[1]`.
-pub(super) fn sensor_index(name: &str, kinds: &[&str]) -> Option<usize> {
+/// Returns the index of a part by its kind, or by kind and index among those of the kind: `star_tracker[1]`.
+pub fn index_of_kind(name: &str, kinds: &[&str]) -> Option<usize> {
     let (kind, place) = match name.strip_suffix(']').and_then(|name| name.split_once('[')) {
         Some((kind, place)) => (kind, place.parse().ok()?),
         None => (name, 0),

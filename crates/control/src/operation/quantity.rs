@@ -61,6 +61,8 @@ pub enum ModeQuantity {
     Mode(usize),
     /// Flag that a bright body blinds a sensor.
     Blinded(usize),
+    /// Flag that a failure of a fault acts.
+    Fault(usize),
     /// Metric by its index among the names of the metrics, or an element of it.
     Metric(usize, Option<usize>),
 }
@@ -101,6 +103,8 @@ pub(super) enum ModeWord {
     OfMode(fn(usize) -> ModeQuantity),
     /// Quantity of a line of sight.
     OfLine(fn(usize) -> ModeQuantity),
+    /// Quantity of a fault.
+    OfFault(fn(usize) -> ModeQuantity),
 }
 
 impl ModeWord {
@@ -108,17 +112,17 @@ impl ModeWord {
     pub(super) fn is_for(self, is_requirement: bool) -> bool {
         let quantity = match self {
             Plain(quantity) => quantity,
-            OfSensor(of) | OfMode(of) | OfLine(of) => of(0),
+            OfSensor(of) | OfMode(of) | OfLine(of) | OfFault(of) => of(0),
         };
         is_requirement || !quantity.is_of_requirements()
     }
 }
 
 use ModeFormula::{Distance, LargestSize, Norm, Single};
-use ModeWord::{OfLine, OfMode, OfSensor, Plain};
+use ModeWord::{OfFault, OfLine, OfMode, OfSensor, Plain};
 
 /// Words of the quantities, with their units and formulas.
-const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 27] = [
+const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 28] = [
     ("time", Plain(ModeQuantity::Time), "s", Single),
     ("run_time", Plain(ModeQuantity::RunTime), "s", Single),
     ("rate", Plain(ModeQuantity::Rate), "rad/s", Norm(Rate)),
@@ -146,6 +150,7 @@ const QUANTITIES: [(&str, ModeWord, &str, ModeFormula); 27] = [
     ("line_of_sight", OfLine(ModeQuantity::LineOfSight), "rad", Single),
     ("mode", OfMode(ModeQuantity::Mode), "", Single),
     ("blinded", OfSensor(ModeQuantity::Blinded), "", Single),
+    ("fault", OfFault(ModeQuantity::Fault), "", Single),
 ];
 
 impl ModeQuantity {
@@ -177,12 +182,13 @@ impl ModeQuantity {
             | Self::TrueElevation(index)
             | Self::LineOfSight(index)
             | Self::Mode(index)
-            | Self::Blinded(index) => index,
+            | Self::Blinded(index)
+            | Self::Fault(index) => index,
             _ => 0,
         };
         let is_own = |word: ModeWord| match word {
             Plain(quantity) => quantity == self,
-            OfSensor(of) | OfMode(of) | OfLine(of) => of(argument) == self,
+            OfSensor(of) | OfMode(of) | OfLine(of) | OfFault(of) => of(argument) == self,
         };
         let found = QUANTITIES.iter().find(|(_, word, ..)| is_own(*word));
         found.map_or(("", Single), |(.., unit, formula)| (*unit, *formula))
@@ -200,12 +206,12 @@ impl ModeQuantity {
 
     /// Returns true if the quantity is a boolean.
     pub fn is_boolean(self) -> bool {
-        matches!(self, Self::LockLost | Self::Mode(_) | Self::Blinded(_))
+        matches!(self, Self::LockLost | Self::Mode(_) | Self::Blinded(_) | Self::Fault(_))
     }
 
     /// Returns true for a quantity that is not available on board, and that only requirements compare.
     pub fn is_of_requirements(self) -> bool {
-        self.is_of_motion() || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Metric(..))
+        self.is_of_motion() || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Fault(_) | Self::Metric(..))
     }
 
     /// Returns true for a quantity of the true motion.
@@ -229,9 +235,9 @@ impl ModeQuantity {
         matches!(self, Self::TrueTime | Self::TrueRunTime) || self.is_of_sky()
     }
 
-    /// Returns true for a quantity of the truth that the orbit and the Sun determine before the run.
+    /// Returns true for a quantity of the truth that is known at all times before the run.
     pub fn is_of_sky(self) -> bool {
-        matches!(self, Self::TrueSunlight | Self::TrueElevation(_))
+        matches!(self, Self::TrueSunlight | Self::TrueElevation(_) | Self::Fault(_))
     }
 
     /// Returns true for times that are compared exactly.

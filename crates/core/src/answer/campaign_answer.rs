@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::campaign_mode::{CampaignMode, campaign_modes};
 use super::campaign_warning::{CampaignWarning, campaign_warnings};
 use super::driving_key::{DrivingKey, driving_keys};
+use super::fault_answer::{FaultAnswer, LeastRobust};
 use super::requirement_answer::{margin_text, requirement_id};
 use super::{Answer, RunVerdict, SCHEMA};
 use crate::campaign::CampaignRuns;
@@ -49,6 +50,12 @@ pub struct CampaignAnswer {
     /// Modes of operation, in the order of the scenario.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub by_mode: Vec<CampaignMode>,
+    /// Faults, each with the requirements in its runs, of a campaign that varies `active_fault`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_fault: Vec<FaultAnswer>,
+    /// Run with the least margin of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_robust: Option<LeastRobust>,
     /// Command that repeats the worst run of the first requirement; absent without a directory of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeat: Option<String>,
@@ -217,8 +224,10 @@ impl CampaignAnswer {
         let warnings = campaign_warnings(scenario, runs, units);
         let but = warnings.iter().find_map(|own| own.reason.as_deref());
         let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs, but);
-        let repeat = directory.zip(requirements.first()).map(|(directory, first)| {
-            let run = first.worst.run;
+        let by_fault = runs.faults(scenario);
+        let least_robust = LeastRobust::among(&by_fault);
+        let worst = least_robust.as_ref().map(|own| own.run).or(requirements.first().map(|own| own.worst.run));
+        let repeat = directory.zip(worst).map(|(directory, run)| {
             format!("flexsc simulate --from {directory} --row {run} -o run-{run}")
         });
         Self {
@@ -233,6 +242,8 @@ impl CampaignAnswer {
             requirements,
             by_mode: campaign_modes(scenario, runs, &warnings),
             warnings,
+            by_fault,
+            least_robust,
             repeat,
         }
     }

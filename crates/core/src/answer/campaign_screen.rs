@@ -6,6 +6,7 @@ use flexsc_formats::text_columns::columns;
 
 use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
 use super::campaign_mode::RunSpread;
+use super::fault_answer::fault_table;
 use super::screen::{ScreenOptions, indented, warning_lines, wrapped};
 
 /// Largest number of requirements, and of keys that drive one, on a first screen.
@@ -36,7 +37,7 @@ impl CampaignAnswer {
             warnings.truncate(room - 1);
             warnings.push("    more: --all".to_owned());
         }
-        blocks.extend([table, warnings]);
+        blocks.extend([table, fault_table(&self.by_fault, options), warnings]);
         if options.all && self.runs > 0 {
             blocks.push(self.mode_table());
         }
@@ -107,6 +108,7 @@ impl CampaignAnswer {
                 heads.push([std::mem::take(&mut head), format!("{name}{}", key.text)]);
             }
         }
+        heads.extend(self.least_robust.iter().map(|own| ["weakest".to_owned(), own.text()]));
         heads.extend(self.repeat.iter().map(|command| ["repeat".to_owned(), command.clone()]));
         let line = |[head, text]: [String; 2]| wrapped(&format!("  {head:<12}{text}"), options.width, 14);
         heads.into_iter().flat_map(line).collect()

@@ -4,6 +4,8 @@ use toml::Value;
 
 use super::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
 use crate::metrics::{MetricDescription, Metrics, Selection, goal, meaning};
+use flexsc_scenario::ACTIVE_FAULT;
+
 use crate::requirement_verdict::{RequirementRuns, RequirementVerdict};
 
 /// Name of the metric that says whether a run meets its goal.
@@ -51,6 +53,10 @@ pub struct CampaignRuns {
     pub(crate) failed: u64,
     /// Metrics from which warnings and modes of operation follow, each with a cell for every run.
     answer_metrics: Vec<(&'static MetricDescription, ColumnCells)>,
+    /// Name of the active fault in each run, if that varies.
+    pub(crate) faults: Option<Vec<String>>,
+    /// Place of the active fault among the keys that vary.
+    fault_place: Option<usize>,
     /// Number of varied keys before the uncertain ones.
     designed: usize,
 }
@@ -88,6 +94,8 @@ impl CampaignRuns {
             requirements: RequirementRuns::new(scenario),
             designed: campaign.keys().count() - keys.len(),
             keys,
+            faults: campaign.keys().any(|key| key == ACTIVE_FAULT).then(Vec::new),
+            fault_place: campaign.keys().position(|key| key == ACTIVE_FAULT),
             goals: [0; 2],
             runs: 0,
             failed: 0,
@@ -104,6 +112,9 @@ impl CampaignRuns {
         self.requirements.add(run, metrics);
         for (own, value) in self.keys.iter_mut().zip(drawn.iter().skip(self.designed)) {
             own.values.push(number(value));
+        }
+        if let Some((faults, place)) = self.faults.as_mut().zip(self.fault_place) {
+            faults.push(drawn.get(place).and_then(Value::as_str).unwrap_or_default().to_owned());
         }
         for (meaning, cells) in &mut self.answer_metrics {
             cells.push_metric(metrics.and_then(|metrics| metrics.get(meaning.name)));
@@ -153,16 +164,20 @@ impl RowMaker {
         let mut all = CampaignRuns::new(&self.campaign);
         let keys: Vec<String> = all.keys.iter().map(|own| own.key.clone()).collect();
         let mut names: Vec<&str> = COLUMNS.to_vec();
+        names.push(ACTIVE_FAULT);
         names.extend(keys.iter().map(String::as_str));
         names.extend(all.answer_metrics.iter().map(|(meaning, _)| meaning.name));
         let mut found = columns(&names)?;
-        let metrics = found.drain(COLUMNS.len() + keys.len()..);
+        let metrics = found.drain(COLUMNS.len() + 1 + keys.len()..);
         for ((_, own), cells) in all.answer_metrics.iter_mut().zip(metrics) {
             // A table may have only some of the metrics.
             *own = cells.unwrap_or_else(|| ColumnCells::Numbers(Vec::new()));
         }
-        for (own, cells) in all.keys.iter_mut().zip(found.drain(COLUMNS.len()..)) {
+        for (own, cells) in all.keys.iter_mut().zip(found.drain(COLUMNS.len() + 1..)) {
             own.values = cells.map_or_else(Vec::new, |cells| cells.numbers());
+        }
+        if let (Some(faults), Some(ColumnCells::Text(cells))) = (&mut all.faults, found[COLUMNS.len()].take()) {
+            *faults = cells.into_iter().map(Option::unwrap_or_default).collect();
         }
         let [runs, errors, goals, values, shares] = [0, 1, 2, 3, 4].map(|place| found[place].take());
         let Some(ColumnCells::Integers(runs)) = runs else { return Ok(all) };

@@ -118,6 +118,12 @@ pub(super) fn linspace(first: f64, last: f64, count: u32, index: u32) -> f64 {
 }
 
 impl DesignBlock {
+    /// Creates the points of a key that holds a text.
+    pub fn texts(key: &str, texts: impl IntoIterator<Item = String>) -> Self {
+        let points = texts.into_iter().map(|text| vec![Value::String(text)]).collect();
+        Self::Values { keys: vec![key.to_owned()], points }
+    }
+
     /// Returns the number of points.
     pub fn count(&self) -> u64 {
         match self {

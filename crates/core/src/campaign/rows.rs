@@ -111,6 +111,9 @@ impl Campaign {
     fn kind_of_key(&self, key: &str) -> ColumnKind {
         let is_number = |value: &Drawn| value.is_float() || value.is_integer();
         let is_list = |value: &Drawn| value.as_array().is_some_and(|list| list.iter().all(is_number));
+        if let Some(Drawn::String(_)) = self.scenario().uncertain.get(key).map(|_| self.nominal(key)) {
+            return ColumnKind::Text;
+        }
         let is_all = |is_kind: &dyn Fn(&Drawn) -> bool| {
             self.design().values_of(key).is_none_or(|mut values| values.all(is_kind))
         };

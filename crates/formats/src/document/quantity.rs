@@ -47,6 +47,9 @@ fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<ConfigEr
         // Of a key that there is not, that is the mistake.
         let mut unreported = Vec::new();
         let is_number = ends.iter().any(|node| has_type(node.schema, "number"));
+        if !is_number && ends.iter().any(|node| has_type(node.schema, "string")) {
+            continue;
+        }
         let faults = if is_number { &mut *faults } else { &mut unreported };
         for (kind, numbers) in kinds.iter_mut() {
             let path = format!("{UNCERTAIN}.{}.{}", bare_or_quoted(key), bare_or_quoted(kind));

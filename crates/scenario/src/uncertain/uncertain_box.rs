@@ -18,7 +18,7 @@ pub struct UncertainKey {
 }
 
 /// Ranges of all uncertain keys of a scenario, independent of each other: the limits of uniform distributions, three
-/// standard deviations of normal ones, and the values of a choice. Correlations are left out.
+/// standard deviations of normal ones, and the values of a choice. Correlations are left out, and keys that hold a text.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UncertainBox {
     /// Keys, in the order of the scenario.
@@ -42,10 +42,10 @@ impl UncertainKey {
             Distribution::RelativeUniform(half) => around(own, half.get() * own),
             Distribution::RelativeNormal(sd) => around(own, DEVIATIONS * sd.get() * own),
             Distribution::Choice(values) => {
-                let mut sorted: Vec<f64> = values.iter().map(|value| value.get()).collect();
-                sorted.sort_by(f64::total_cmp);
+                let mut sorted: Vec<Value> = values.iter().map(|value| value.like(&self.nominal)).collect();
+                sorted.sort_by(|a, b| number(a).total_cmp(&number(b)));
                 let last = sorted.len().saturating_sub(1);
-                sorted.get(libm::round(part * last as f64) as usize).copied().unwrap_or(own)
+                return sorted.swap_remove(libm::round(part * last as f64) as usize);
             }
         };
         like(&self.nominal, value)
@@ -89,7 +89,8 @@ impl UncertainBox {
             distribution: distribution.clone(),
             nominal: key::get(table, name).cloned().unwrap_or(Value::Float(f64::NAN)),
         };
-        Self { keys: uncertain.into_iter().map(range).collect() }
+        let keys = uncertain.into_iter().filter(|(_, distribution)| !distribution.has_texts()).map(range);
+        Self { keys: keys.collect() }
     }
 }
 

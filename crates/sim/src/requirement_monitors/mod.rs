@@ -142,20 +142,22 @@ impl RequirementMonitors {
             return;
         }
         let mut pieces: Vec<Vec<SignalPiece>> = vec![Vec::new(); self.quantities.len()];
-        let has_sky = self.quantities.iter().any(|observed| observed.quantity.is_of_sky());
-        let edges = self.sky.edges().filter(|_| has_sky).map(Instant::seconds);
-        let edges: Vec<f64> = edges.filter(|edge| *edge > from && *edge < to).collect();
+        let edges = self.sky.edges(from, to);
         for (observed, into) in self.quantities.iter_mut().zip(&mut pieces) {
             let Observed { quantity, tolerance, values } = observed;
             if quantity.is_of_sky() {
                 let sky = &self.sky;
-                if edges.is_empty() && sky.is_steady(*quantity, from) {
-                    into.push(SignalPiece::constant(from, to, sky.value(*quantity, from), 0));
-                    continue;
-                }
                 let mut evaluate =
                     |times: &[f64]| Some(times.iter().map(|t| vec![sky.value(*quantity, *t)]).collect());
-                for part in parts([from, to], SKY_REACH, &edges) {
+                let is_flag = quantity.is_boolean();
+                if is_flag || edges.is_empty() && sky.is_steady(*quantity, from) {
+                    let constant = |[from, to]: [f64; 2]| {
+                        SignalPiece::constant(from, to, sky.value(*quantity, from), 0)
+                    };
+                    into.extend(parts([from, to], f64::INFINITY, edges).into_iter().map(constant));
+                    continue;
+                }
+                for part in parts([from, to], SKY_REACH, edges) {
                     let mut take = |begin, length, all: &[Polynomial]| {
                         into.extend(curve(begin, length, all[0]));
                     };
