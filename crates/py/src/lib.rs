@@ -91,8 +91,9 @@ mod _native {
     use super::mcap_log::to_mcap;
     #[pymodule_export]
     use super::parts::{
-        Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
-        ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts, with_parts,
+        Aim, Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Load, Reading, Setting, Sky,
+        Stream, Taken, ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts,
+        with_parts,
     };
     #[pymodule_export]
     use super::stepping::Simulator;

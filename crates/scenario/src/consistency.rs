@@ -150,7 +150,8 @@ impl ScenarioSpec {
             errors.push(ConfigError::new("disturbance.points", why));
         }
         if !self.own_guidance.is_empty() {
-            let why = "gives attitudes of a body with three axes, and the body has one angle: use a `[manoeuvre]`";
+            let why =
+                "gives attitudes of a body with three axes, and the body has one angle: use a `[manoeuvre]`";
             errors.push(ConfigError::new("guidance", why));
         }
     }

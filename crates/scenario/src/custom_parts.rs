@@ -346,8 +346,16 @@ impl ScenarioSpec {
 
     /// Sets the custom parts for roles that the document leaves out, and for sensors and actuators with a placeholder.
     pub(super) fn inherit_custom_parts(&mut self, own: &CustomParts, document: &Document) {
-        let CustomParts { law, stage_laws, sensors, estimator, adaptation, actuators, disturbances, guidance } =
-            own;
+        let CustomParts {
+            law,
+            stage_laws,
+            sensors,
+            estimator,
+            adaptation,
+            actuators,
+            disturbances,
+            guidance,
+        } = own;
         self.own_disturbances.clone_from(disturbances);
         let targeted = |mode: &str| match self.mode.iter().find(|own| own.name == mode) {
             Some(own) => own.target.is_some(),

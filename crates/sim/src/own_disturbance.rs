@@ -45,7 +45,8 @@ impl PointEffects {
         let torque = |axis: usize| ForceEffect {
             torque: unit(axis),
             forces: shapes.iter().map(|(_, rotation)| rotation[axis]).collect(),
-            ..ForceEffect::default()
+            levers: vec![Vector::zeros(); shapes.len()],
+            force: Vector::zeros(),
         };
         let torques = if has_torque { (0..3).map(torque).collect() } else { Vec::new() };
         Self { torques, forces: (0..3).map(force).collect() }

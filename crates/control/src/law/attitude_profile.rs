@@ -167,7 +167,9 @@ impl AttitudeProfile {
     pub fn at(&self, now: Instant) -> AttitudeMotion {
         self.leg(now).map_or_else(
             || AttitudeMotion::at_rest(AttitudeTarget::INERTIAL.attitude()),
-            |leg| self.to_inertial(leg.frame, now, leg.path.at(now, now.since(leg.begins).seconds(), &self.sky)),
+            |leg| {
+                self.to_inertial(leg.frame, now, leg.path.at(now, now.since(leg.begins).seconds(), &self.sky))
+            },
         )
     }
 

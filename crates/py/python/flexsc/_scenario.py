@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Break, Linear
     from flexsc._part import Part
-    from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
+    from flexsc.parts import Actuator, Adaptation, Disturbance, Estimator, Guidance, Law, Sensor, ThreeAxisLaw
     from flexsc.results import (
         NoiseSpectrum,
         OutputBound,
@@ -339,6 +339,8 @@ class Scenario:
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
         actuator: Actuator | Mapping[int, Actuator] | None = None,
+        disturbance: Disturbance | Mapping[int, Disturbance] | None = None,
+        guidance: Guidance | Mapping[str, Guidance] | None = None,
     ) -> Scenario:
         """Return a scenario with your own parts in place of its parts, as `flexsc.parts` describes them.
 
@@ -346,7 +348,9 @@ class Scenario:
         of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
         actuator of a list keeps its `axes` and its `share`. In a scenario with modes of operation give laws
         by the names of their modes, `law={"point": MyLaw()}`, and in one with stages by the numbers of their
-        stages; the other modes and stages keep their laws.
+        stages; the other modes and stages keep their laws. A disturbance is added to those of the scenario,
+        several with numbers of their own, `disturbance={0: Slosh(), 1: Cooler()}`. A guidance replaces all
+        targets, or that of a mode, `guidance={"point": MyGuidance()}`.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
         repeated without the objects, and campaigns are not written to directories.
 
@@ -367,13 +371,14 @@ class Scenario:
         from flexsc._roles import by_role
 
         return self._of(
-            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor))
+            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor, disturbance, guidance))
         )
 
     @property
     def parts(self) -> dict[str, object]:
         """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of
-        modes as `law point`, and those of stages as `law 1`.
+        modes as `law point`, and those of stages as `law 1`; disturbances as `disturbance 0`, guidance of
+        modes as `guidance point`.
 
         >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
         {}
