@@ -18,6 +18,7 @@ use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{HubRotor, Translation};
 use flexsc_spacecraft::body::{BodyAxes, BodyModel};
+use flexsc_spacecraft::disturbance::Disturbance;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
@@ -179,7 +180,7 @@ impl ResolvedScenario {
         }
         self.surroundings = surroundings(written, model, body)?;
         self.drives = written.drives(model)?;
-        let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
+        let pushed = self.fires() || written.disturbance.iter().any(Disturbance::is_force);
         let pushed = pushed || !written.own_disturbances.is_empty();
         let craft = model.spacecraft().filter(|_| pushed);
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));

@@ -1,6 +1,7 @@
 //! Scenario as written in a file.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use flexsc_control::actuator::AssignedActuator;
 use flexsc_control::adaptation::AdaptationKind;
@@ -13,6 +14,7 @@ use flexsc_control::one_or_many::OneOrMany;
 use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::load_table::LoadTable;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
@@ -234,12 +236,13 @@ impl ScenarioSpec {
         self.log.period_for(self.duration)
     }
 
-    /// Replaces references to files of modes, orbits, fields and densities by what was read from them.
+    /// Replaces references to files of modes, orbits, fields, densities and disturbances by what was read from them.
     pub fn inline_files(&mut self) {
         if let Some(Body::Spatial(spatial)) = &mut self.body {
             spatial.modes.inline();
         }
         self.appendage.iter_mut().for_each(Appendage::inline_modes);
+        self.disturbance.iter_mut().filter_map(|own| own.table.as_mut()).for_each(LoadTable::inline);
         let date = self.date_ns();
         if let Some(around) = &mut self.environment {
             around.inline_files(date);
@@ -254,6 +257,14 @@ impl ScenarioSpec {
     /// The instant in nanoseconds since 1970 UTC from which a log counts: the date of the start, 0 without one.
     pub fn epoch_ns(&self) -> u64 {
         self.date_ns().unwrap_or(0)
+    }
+
+    /// Reads the files of the tables of disturbances.
+    pub(super) fn read_disturbances(&mut self, directory: &Path) -> Option<ConfigError> {
+        let disturbances = self.disturbance.iter_mut().enumerate();
+        let mut faults = disturbances
+            .filter_map(|(index, own)| Some(own.read(directory)?.within(&format!("disturbance[{index}]"))));
+        faults.next()
     }
 
     /// Returns true if the scenario has disturbances.

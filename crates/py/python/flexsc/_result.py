@@ -14,9 +14,9 @@ from flexsc._columns import Lookup, read_only
 from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
+from flexsc._sample_times import SampleTimes
 from flexsc._topic import Topic
 from flexsc._units import Metrics
-from flexsc._values import arrays
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, SubFigure
@@ -177,6 +177,13 @@ class Result(Topics, Exportable):
     >>> run.run
     0
     """
+    samples: Samples | None
+    """The motion at the times `at` of `Scenario.simulate`; None without them.
+
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0)
+    >>> scenario.simulate(at=[12.5, 50.0]).samples["attitude"]["angle_rad"].round(9).tolist()
+    [9.298e-06, -4.32e-06]
+    """
     metrics: Metrics
     """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
     `metrics.unit(name)` returns their units.
@@ -209,6 +216,7 @@ class Result(Topics, Exportable):
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
         self._motion: engine.MotionSampler | None = None
+        self.samples = None
 
     @property
     def answer(self) -> Answer:
@@ -281,28 +289,15 @@ class Result(Topics, Exportable):
         Raises:
             ValueError: A time is not within the run.
         """
-        asked = np.asarray(times, dtype=np.float64)
-        if asked.ndim != 1:
-            raise ValueError(f"times must be of shape (times,), got {asked.shape}")
         end = self._until
-        within = (asked >= 0.0) & (asked <= end)
-        if not within.all():
-            wrong = asked[~within][0].item()
-            what = "duration" if end == self.scenario.duration else "time of the run"
-            raise ValueError(f"times must be from 0 to the {what}, {end:g} s, got {wrong:g}")
-        order = np.argsort(asked, kind="stable")
-        back = np.empty_like(order)
-        back[order] = np.arange(len(order))
+        what = "duration" if end == self.scenario.duration else "time of the run"
+        asked = SampleTimes(times, end, what)
         if self._motion is None:
             self._motion = engine.MotionSampler(self.scenario._native, self.run, self._stepped)
-        topics = self._motion.sample(asked[order].tolist())
-        seen = {
-            name: {column: values[back] for column, values in arrays(columns).items()}
-            for name, columns in topics.items()
-        }
-        for columns in seen.values():
-            columns["time_s"] = asked.copy()
-        return Samples(asked.copy(), self._named(seen))
+        return self._sampled(asked, self._motion.sample(asked.grown))
+
+    def _sampled(self, times: SampleTimes, topics: dict[str, dict[str, Any]]) -> Samples:
+        return Samples(times.asked.copy(), self._named(times.rows(topics)))
 
     def at(self, time: float) -> dict[str, dict[str, Any]]:
         """Return the exact motion at a time (s): the row of each topic of `sample`, as plain numbers.

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Break, Linear
     from flexsc._part import Part
+    from flexsc._sample_times import SampleTimes
     from flexsc.parts import Actuator, Adaptation, Disturbance, Estimator, Guidance, Law, Sensor, ThreeAxisLaw
     from flexsc.results import (
         NoiseSpectrum,
@@ -475,6 +476,8 @@ class Scenario:
         run: int = 0,
         log: Detail = "events",
         yes: bool = False,
+        *,
+        at: npt.ArrayLike | None = None,
     ) -> Result:
         """Simulate the scenario. Other Python threads continue meanwhile.
 
@@ -485,6 +488,7 @@ class Scenario:
                 each period of the scenario's log and at every switching. `none` records the metrics only.
                 `scene` has the columns of `full`; a file written from it also has the scene for viewers.
             yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+            at: Times (s) at which the exact motion is kept as `samples`, in the same run.
 
         >>> import flexsc
         >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate(log="full")
@@ -495,7 +499,11 @@ class Scenario:
             SimulationError: The state is no longer finite, or the law switches without end.
             ValueError: The estimate exceeds these limits, and `yes` is not given.
         """
-        return self._simulate(run_number(run), log, yes)
+        if at is None:
+            return self._simulate(run_number(run), log, yes)
+        from flexsc._sample_times import SampleTimes
+
+        return self._simulate(run_number(run), log, yes, times=SampleTimes(at, self.duration))
 
     def linearise(
         self,
@@ -821,14 +829,24 @@ class Scenario:
         return engine.export_fmu(self._native, path, fmi, part, library or fmi_library())
 
     def _simulate(
-        self, run: int, log: Detail, yes: bool, stepped: engine.Commands | None = None, until: float = inf
+        self,
+        run: int,
+        log: Detail,
+        yes: bool,
+        stepped: engine.Commands | None = None,
+        until: float = inf,
+        times: SampleTimes | None = None,
     ) -> Result:
         """Simulate a run, or repeat one that was stepped."""
         began = time.perf_counter()
-        metrics, topics, answer = engine.simulate(self._native, run, log, yes, stepped)
+        at = None if times is None else times.grown
+        metrics, topics, answer, seen = engine.simulate(self._native, run, log, yes, stepped, at)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
+        result = Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
+        if times is not None and seen is not None:
+            result.samples = result._sampled(times, seen)
+        return result
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -19,6 +19,7 @@ from flexsc._scenario import Scenario
 from flexsc._values import counted, objects
 
 if TYPE_CHECKING:
+    from flexsc._ensemble import Ensemble
     from matplotlib.figure import Figure, SubFigure
 
 
@@ -51,6 +52,13 @@ class Table(Columns):
     'body.planar.angle'
     """
 
+    samples: Ensemble | None
+    """The motion of all runs at the times `at` of `flexsc.campaign`; None without them.
+
+    >>> table.samples is None
+    True
+    """
+
     def __init__(
         self,
         work: engine.Work,
@@ -67,6 +75,7 @@ class Table(Columns):
         self._statistics: dict[str, dict[str, Any]] | None = None
         self._kept: object = None
         self._work: engine.Work | None = work
+        self.samples = None
         self._manifest: str | None = None
         self._design: str | None = None
 
