@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from typing import TYPE_CHECKING, Any
 
 from flexsc._columns import read_only, rectangular
@@ -145,6 +146,16 @@ class Ensemble(Topics):
                 ]
             )
         return stacked
+
+    def _taken(self, places: npt.NDArray[Any]) -> Ensemble:
+        """Return the ensemble of the runs at some places."""
+        taken = copy(self)
+        taken.runs = self.runs[places]
+        taken._topics = {
+            name: EnsembleTopic(name, {c: v[places] for c, v in topic.items()}, topic._scenario, topic._metadata)
+            for name, topic in self._topics.items()
+        }
+        return taken
 
     @property
     def topics(self) -> list[str]:

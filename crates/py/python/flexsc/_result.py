@@ -11,6 +11,7 @@ from flexsc import _native as engine
 from flexsc._analysis import analysis
 from flexsc._answer import Answer
 from flexsc._columns import Lookup, read_only
+from flexsc._drawable import Drawable
 from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
@@ -19,8 +20,6 @@ from flexsc._topic import Topic
 from flexsc._units import Metrics
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure, SubFigure
-
     from flexsc._scenario import Scenario
 
 Logged = Literal["events", "full", "scene"]
@@ -154,7 +153,7 @@ class Samples(Topics):
         return f"<flexsc.Samples at {len(self.times)} times: {', '.join(self.topics)}>"
 
 
-class Result(Topics, Exportable):
+class Result(Topics, Exportable, Drawable):
     """The result of a run: its metrics, and a mapping of its topics as columns, which are read-only.
 
     >>> import flexsc
@@ -321,29 +320,6 @@ class Result(Topics, Exportable):
         return Named.of(
             {name: Named.of(row, f"topic {name!r} has no column") for name, row in rows.items()}, "no topic"
         )
-
-    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
-        """Draw a figure of the run with Matplotlib (`pip install flexsc[plot]`).
-
-        Args:
-            name: One of `flexsc.plot.figures(run)`, such as `angle`; if omitted, the one that shows the
-                motion at a glance.
-            on: An empty figure or subfigure; if omitted, a new one.
-
-        Returns:
-            The figure, in SI units; its `axes` are the panels, from the top.
-
-        >>> import flexsc
-        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
-        >>> figure = run.plot("angle")                                  # doctest: +SKIP
-
-        Raises:
-            ValueError: There is no such figure.
-            ImportError: Matplotlib is not installed.
-        """
-        from flexsc import plot
-
-        return plot.at_a_glance(self, name, on)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Result):

@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Mapping, Sequence
 from math import inf, nan
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, overload
 
 from flexsc import _keys
 from flexsc import _native as engine
@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     )
     from flexsc.scenario import Keys
 
+# The value that `with_` was not given.
+_NOT_GIVEN: Final = object()
 P = TypeVar("P", bound="Part")
 # Name of a stability margin.
 Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
@@ -223,6 +225,29 @@ class Scenario:
         """
         return self._native.to_toml()
 
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Save the scenario as a file, which `Scenario.load` and the command read; it has all defaults.
+
+        Paths of files that the scenario names, such as those of modes, are absolute.
+
+        >>> import flexsc, pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     scenario.save(pathlib.Path(out) / "study.toml")
+        ...     flexsc.Scenario.load(pathlib.Path(out) / "study.toml") == scenario
+        True
+
+        Raises:
+            ValueError: The scenario has parts written in Python, which no file can hold.
+            FileExistsError: The file is there, and `force` is not given.
+            OSError: The file cannot be written.
+        """
+        if self.parts:
+            raise ValueError(f"no file can hold parts written in Python: {', '.join(self.parts)}")
+        if not force and os.path.lexists(path):
+            raise FileExistsError(f"{os.fspath(path)} is there: give force=True to replace it")
+        engine.write(path, self.to_toml().encode())
+
     def get(self, key: str) -> Any:
         """Return the value of a key, as in `to_dict`: its default if it is not set, and None without one.
 
@@ -293,11 +318,12 @@ class Scenario:
     def with_(self, key: str, value: object, /) -> Scenario: ...
     @overload
     def with_(self, keys: Mapping[str, object], /) -> Scenario: ...
-    def with_(self, key: str | Mapping[str, object], value: object = None, /) -> Scenario:
+    def with_(self, key: str | Mapping[str, object], value: object = _NOT_GIVEN, /) -> Scenario:
         """Return a scenario with new values: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
 
         Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several keys are set together:
-        only the result has to be valid. A quantity may be a text with a unit, such as `"0.02 Hz"`.
+        only the result has to be valid. A quantity may be a text with a unit, such as `"0.02 Hz"`. None
+        removes a key, as `without` does.
 
         >>> import flexsc
         >>> scenario = flexsc.Scenario.example("relay-fixed")
@@ -307,9 +333,16 @@ class Scenario:
         <flexsc.Scenario relay-fixed: 600 s, 2 modes, seed 3>
 
         Raises:
+            KeyError: A key that is to be removed is not set.
             ScenarioError: A key or a value is not accepted.
         """
+        if isinstance(key, str) and value is _NOT_GIVEN:
+            raise TypeError(f"with_ needs the value of {key!r}")
         keys = {key: value} if isinstance(key, str) else key
+        removed = [name for name, value in keys.items() if value is None]
+        if removed:
+            changes = {name: value for name, value in keys.items() if value is not None}
+            return _keys.without(self, removed, changes)
         return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
 
     def in_mode(self, name: str, /) -> Scenario:
