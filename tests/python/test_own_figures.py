@@ -49,7 +49,7 @@ def test_a_full_log_is_drawn_as_its_run(tmp_path: Path, command: Command) -> Non
         log = flexsc.read_log(path)
         assert flexsc.plot.figures(log) == names
         for name in names:
-            assert svg(log, name) == flexsc.plot._figure(run, name).svg()
+            assert svg(log, name) == flexsc.plot.drawn(run, name).svg()
         assert flexsc.plot.figure(log, names[0]).axes
         assert "<svg" in run._repr_html_()
         log.export(tmp_path / f"own{number}.glb")
@@ -60,11 +60,11 @@ def test_a_full_log_is_drawn_as_its_run(tmp_path: Path, command: Command) -> Non
 def test_a_run_of_events_is_repeated_with_its_parts(tmp_path: Path, command: Command) -> None:
     for scenario, name in ((pointing(), "pointing"), (seeking(), "envelope")):
         run = scenario.simulate()
-        assert flexsc.plot._figure(run, name).svg()
+        assert flexsc.plot.drawn(run, name).svg()
         assert "<svg" in run._repr_html_()
         path = tmp_path / f"{name}.mcap"
         run.to_mcap(path)
         with pytest.raises(ValueError, match="only the program of its parts"):
-            flexsc.plot._figure(flexsc.read_log(path), name)
+            flexsc.plot.drawn(flexsc.read_log(path), name)
         done = command("plot", path, "--what", name, exits=2)
         assert b"only the program of its parts" in done.stderr

@@ -342,3 +342,31 @@ def test_an_example_that_does_not_exist_suggests_one() -> None:
 def test_a_path_that_is_nearly_a_key_is_suggested() -> None:
     with pytest.raises(ScenarioError, match=r"did you mean `law\.attitude\.bandwidth`"):
         shipped("earth-observer").with_("law.atitude.bandwidth", 0.2)
+
+
+def test_a_scenario_is_saved_and_none_removes(tmp_path: Path) -> None:
+    scenario = shipped("earth-observer")
+    scenario.save(tmp_path / "study.toml")
+    assert Scenario.load(tmp_path / "study.toml") == scenario
+    with pytest.raises(FileExistsError, match="give force=True"):
+        scenario.save(tmp_path / "study.toml")
+    scenario.save(tmp_path / "study.toml", force=True)
+    changed = scenario.with_({"sensor": {"sampled": {"period": 0.25}}, "estimator": None})
+    assert "estimator" not in changed.to_dict()
+    assert changed.get("sensor[0].sampled.period") == 0.25
+    assert scenario.with_("target", None) == scenario.without("target")
+    with pytest.raises(TypeError, match="with_ needs the value of 'duration'"):
+        scenario.with_("duration")  # type: ignore[call-overload]
+
+
+def test_own_disturbances_stay_when_keys_are_removed() -> None:
+    class Nothing(flexsc.Disturbance):
+        period = 1.0
+
+        def act(self, truth: flexsc.parts.Truth) -> list[float]:
+            return [0.0, 0.0, 0.0]
+
+    own = shipped("earth-observer").with_parts(disturbance=Nothing())
+    assert list(own.without("target", "reference").parts) == ["disturbance 0"]
+    with pytest.raises(ValueError, match="no file can hold parts written in Python: disturbance 0"):
+        own.save("never.toml")

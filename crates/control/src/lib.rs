@@ -8,9 +8,11 @@
 pub mod actuator;
 pub mod adaptation;
 pub mod custom;
+pub mod disturbance;
 pub mod drive_profile;
 pub mod estimator;
 pub mod flight_quantity;
+pub mod guidance;
 pub mod interval;
 mod kinds;
 pub mod law;

@@ -295,6 +295,24 @@ impl Campaign {
         Ok(selection.select(both.0.finish(&run.scenario)))
     }
 
+    /// Simulates a run as [`Campaign::simulate_metrics`] does, and records its motion at increasing times (s) in `samples`.
+    pub fn simulate_at(
+        run: &CampaignRun,
+        selection: &Selection,
+        times: &[f64],
+        mut record: impl Record,
+        samples: &mut impl Record,
+    ) -> Result<Metrics, SimulationError> {
+        let mut both = (MetricsCollector::for_selection(&run.scenario, selection), &mut record);
+        let mut simulation = Simulation::new(&run.scenario, run.noise_run);
+        for time in times {
+            simulation.run_to(*time, &mut both)?;
+            simulation.record_now(samples)?;
+        }
+        simulation.run(&mut both)?;
+        Ok(selection.select(both.0.finish(&run.scenario)))
+    }
+
     /// Returns the outcome of a run; `work` simulates it.
     pub(crate) fn run_outcome(
         &self,

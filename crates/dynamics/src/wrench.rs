@@ -62,9 +62,9 @@ impl Wrench {
     pub fn add_force_effect(&mut self, push: &ForceEffect) {
         self.torque += push.torque;
         self.force += push.force;
-        self.forces.resize(push.forces.len(), 0.0);
+        self.forces.resize(push.forces.len().max(self.forces.len()), 0.0);
         self.forces.iter_mut().zip(&push.forces).for_each(|(sum, force)| *sum += force);
-        self.levers.resize(push.levers.len(), Vector::zeros());
+        self.levers.resize(push.levers.len().max(self.levers.len()), Vector::zeros());
         self.levers.iter_mut().zip(&push.levers).for_each(|(sum, lever)| *sum += lever);
     }
 }
@@ -94,6 +94,16 @@ impl AddAssign<&Self> for ForceEffect {
 }
 
 impl ForceEffect {
+    /// Adds another effect, multiplied by a number.
+    pub fn add_scaled(&mut self, other: &Self, by: f64) {
+        self.torque += other.torque * by;
+        self.force += other.force * by;
+        self.forces.resize(other.forces.len().max(self.forces.len()), 0.0);
+        self.forces.iter_mut().zip(&other.forces).for_each(|(sum, force)| *sum += force * by);
+        self.levers.resize(other.levers.len().max(self.levers.len()), Vector::zeros());
+        self.levers.iter_mut().zip(&other.levers).for_each(|(sum, lever)| *sum += lever * by);
+    }
+
     /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
     pub fn add(&mut self, body: &ThreeAxisModel, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);

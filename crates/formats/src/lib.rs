@@ -4,12 +4,14 @@
 pub mod calendar_date;
 pub mod celestial_frame;
 pub mod count;
+pub mod csv_table;
 pub mod density_table;
 pub mod document;
 pub mod element_message;
 pub mod ephemeris;
 pub mod foreign_file;
 pub mod harmonic_table;
+pub mod load_table;
 pub mod number;
 pub mod read_files;
 pub mod reader_units;

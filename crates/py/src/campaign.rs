@@ -1,10 +1,10 @@
 //! Campaigns for Python: their work as whole parts, on threads here or in other processes, and their directories.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use flexsc_core::answer::CampaignAnswer;
 use flexsc_core::campaign::{
@@ -13,7 +13,7 @@ use flexsc_core::campaign::{
 };
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
-use flexsc_core::record::StopFlag;
+use flexsc_core::record::{Detail, StopFlag, Trace};
 use flexsc_core::statistics::{QUANTILES, Statistics};
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyValueError};
@@ -22,6 +22,7 @@ use pyo3::types::{PyBytes, PyDict, PyList};
 
 use super::answer::RunAnswer;
 use super::aside::aside;
+use super::columns::topics_to_dict;
 use super::design::Design;
 use super::error::{allowed, no_file, scenario_error};
 use super::parts::known_thread;
@@ -240,21 +241,44 @@ impl Work {
         jobs: usize,
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>)> {
         let work = self.0.clone();
+        let (rows, statistics) =
+            aside(py, move |stop| made(&work, rows(&work, runs, jobs, stop)?))?.map_err(failed)?;
+        Ok((columns_to_dict(py, rows)?, statistics.into_iter().map(summary).collect()))
+    }
+
+    /// Makes runs one by one with their motion at increasing times (s): columns by name, statistics, and for each run that did
+    /// not fail its number with its topics, all of them or some.
+    fn make_at<'py>(
+        &self,
+        py: Python<'py>,
+        runs: Span,
+        jobs: usize,
+        times: Vec<f64>,
+        topics: Option<Vec<String>>,
+    ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>, Vec<(u64, Bound<'py, PyDict>)>)> {
+        let (work, traces) = (self.0.clone(), Arc::new(Mutex::new(BTreeMap::new())));
+        let kept = Arc::clone(&traces);
         let (rows, statistics) = aside(py, move |stop| {
-            let rows = rows(&work, runs, jobs, stop)?;
-            let columns = |names: &[&str]| -> Result<_, DirectoryError> {
-                Ok(names.iter().map(|name| rows.column(name).map(Cow::into_owned)).collect())
+            let is_own = work.campaign.scenario().has_custom_parts();
+            let simulate = move |run: &CampaignRun, stop| {
+                let mut samples = Trace::new(Detail::Full);
+                let metrics = known_thread(is_own, || {
+                    Campaign::simulate_at(run, &Selection::ALL, &times, stop, &mut samples)
+                })?;
+                let columns: Vec<_> = samples
+                    .into_columns()
+                    .filter(|(name, _)| topics.as_ref().is_none_or(|topics| topics.contains(name)))
+                    .collect();
+                kept.lock().unwrap_or_else(PoisonError::into_inner).insert(run.number, columns);
+                Ok(metrics)
             };
-            let statistics = work.statistics(rows.len(), columns)?;
-            Ok((rows, statistics))
+            made(&work, work.make_rows_singly(runs.0..runs.1, jobs, stop, simulate)?)
         })?
         .map_err(failed)?;
-        let RunRows { fields, columns } = rows;
-        let reported = PyDict::new(py);
-        for (field, column) in fields.iter().zip(columns) {
-            reported.set_item(&field.name, array(py, column)?)?;
-        }
-        Ok((reported, statistics.into_iter().map(summary).collect()))
+        let traces = std::mem::take(&mut *traces.lock().unwrap_or_else(PoisonError::into_inner));
+        let topics = traces.into_iter().map(|(run, columns)| Ok((run, topics_to_dict(py, columns)?)));
+        let topics = topics.collect::<PyResult<_>>()?;
+        Ok((columns_to_dict(py, rows)?, statistics.into_iter().map(summary).collect(), topics))
     }
 
     /// Makes runs: metrics as numbers, of shape (runs, metrics), and the first error.
@@ -290,6 +314,25 @@ impl Work {
         let (name, bytes) = aside(py, move |stop| work.part(runs.0..runs.1, jobs, stop))?.map_err(failed)?;
         Ok((name, PyBytes::new(py, &bytes)))
     }
+}
+
+/// Returns rows with their statistics.
+fn made(work: &Whole, rows: RunRows) -> Result<(RunRows, Vec<Statistics>), DirectoryError> {
+    let columns = |names: &[&str]| -> Result<_, DirectoryError> {
+        Ok(names.iter().map(|name| rows.column(name).map(Cow::into_owned)).collect())
+    };
+    let statistics = work.statistics(rows.len(), columns)?;
+    Ok((rows, statistics))
+}
+
+/// Returns rows as arrays by the names of their columns.
+fn columns_to_dict(py: Python<'_>, rows: RunRows) -> PyResult<Bound<'_, PyDict>> {
+    let RunRows { fields, columns } = rows;
+    let reported = PyDict::new(py);
+    for (field, column) in fields.iter().zip(columns) {
+        reported.set_item(&field.name, array(py, column)?)?;
+    }
+    Ok(reported)
 }
 
 /// Simulates runs, on threads that Python knows if parts are written in it.

@@ -33,6 +33,18 @@ pub fn rows_to_dict(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>
     Ok(columns)
 }
 
+/// The columns of topics, by their names.
+pub fn topics_to_dict(
+    py: Python<'_>,
+    topics: impl IntoIterator<Item = (String, Columns)>,
+) -> PyResult<Bound<'_, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, rows) in topics {
+        dict.set_item(name, rows_to_dict(py, rows)?)?;
+    }
+    Ok(dict)
+}
+
 /// The metrics of a run; `None` where there is no number.
 pub fn metrics_to_dict<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);

@@ -1,6 +1,7 @@
 //! The figures of the command, as SVG and as what they consist of.
 
 use std::collections::HashMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -10,15 +11,16 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::campaign::ColumnCells;
 use flexsc_core::record::Detail;
 use flexsc_core::spacecraft::body::BodyAxes;
-use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale, Strip};
+use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Renderer, Scale, Strip, Style};
 use numpy::PyArray2;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyFileExistsError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use super::aside::aside;
 use super::campaign::Work;
 use super::commands::Commands;
+use super::files::write;
 use super::log::Log;
 use super::parts;
 use super::table::column;
@@ -54,6 +56,39 @@ impl Figure {
 
     fn svg(&self) -> PyResult<String> {
         self.0.svg().map_err(PyValueError::new_err)
+    }
+
+    /// Writes the figure as a file: `svg`, `png` or `pdf` by its ending, of a width (mm) and letters of a size (pt) if given. A
+    /// file that is no figure of flexsc stays unless `force` is set.
+    fn save(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        width: Option<f64>,
+        font: Option<f64>,
+        force: bool,
+    ) -> PyResult<()> {
+        let style = Style::new(width, font).map_err(PyValueError::new_err)?;
+        let figure = Arc::clone(&self.0);
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let kept = fs::read(&path).is_ok_and(|bytes| !flexsc_figure::is_figure(&bytes));
+        if kept && !force {
+            let why = format!(
+                "{} is there and is no figure of flexsc: give force=True to replace it",
+                path.display()
+            );
+            return Err(PyFileExistsError::new_err(why));
+        }
+        let bytes = aside(py, move |_| {
+            let drawn = figure.laid_out(&style)?;
+            match ending.as_deref() {
+                Some("svg") => Ok(style.sized(&drawn).into_bytes()),
+                Some("png") => Renderer::default().png(&drawn, &style),
+                Some("pdf") => Renderer::default().pdf(&style.sized(&drawn)),
+                _ => Err("path must end in .svg, .png or .pdf".to_owned()),
+            }
+        })?;
+        write(path, &bytes.map_err(PyValueError::new_err)?)
     }
 
     /// The panels, from top to bottom.

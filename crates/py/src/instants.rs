@@ -40,10 +40,6 @@ impl MotionSampler {
             Ok(trace)
         })?;
         let trace = trace.map_err(|error| simulation_error(&self.name, error))?;
-        let topics = PyDict::new(py);
-        for (name, rows) in trace.into_columns() {
-            topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
-        }
-        Ok(topics)
+        columns::topics_to_dict(py, trace.into_columns())
     }
 }

@@ -38,6 +38,7 @@ use flexsc_core::answer::RunObserver;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::formats::reader_units::ReaderUnits;
+use flexsc_core::metrics::Selection;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::requirement_verdict::validate_metrics;
@@ -91,8 +92,9 @@ mod _native {
     use super::mcap_log::to_mcap;
     #[pymodule_export]
     use super::parts::{
-        Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
-        ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts, with_parts,
+        Aim, Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Load, Reading, Setting, Sky,
+        Stream, Taken, ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts,
+        with_parts,
     };
     #[pymodule_export]
     use super::stepping::Simulator;
@@ -269,22 +271,25 @@ fn simulate<'py>(
     log: &str,
     yes: bool,
     stepped: Option<&Commands>,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, RunAnswer)> {
+    at: Option<Vec<f64>>,
+) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, RunAnswer, Option<Bound<'py, PyDict>>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
     let Commands { commands, until } = Commands::from_stepped(stepped);
     let is_own = scenario.inner.has_custom_parts();
     let (mut observer, began) = (RunObserver::new(&scenario.inner), std::time::Instant::now());
-    let (metrics, trace, observed) = aside(py, move |stop| {
+    let (metrics, trace, observed, samples) = aside(py, move |stop| {
         let record = (&mut observer, (&mut trace, stop));
-        let metrics = parts::known_thread(is_own, || commands.simulate(&run, until, record));
-        (metrics, trace, Some(observer.finish()).filter(|_| until == Instant::END))
+        let mut samples = at.as_ref().map(|_| Trace::new(Detail::Full));
+        let metrics = parts::known_thread(is_own, || match (&at, &mut samples) {
+            (Some(at), Some(samples)) => Campaign::simulate_at(&run, &Selection::ALL, at, record, samples),
+            _ => commands.simulate(&run, until, record),
+        });
+        (metrics, trace, Some(observer.finish()).filter(|_| until == Instant::END), samples)
     })?;
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
-    let topics = PyDict::new(py);
-    for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
-        topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
-    }
+    let topics = columns::topics_to_dict(py, trace.into_iter().flat_map(Trace::into_columns))?;
+    let samples = samples.map(|trace| columns::topics_to_dict(py, trace.into_columns())).transpose()?;
     let answer = flexsc_core::answer::Answer::new(
         &scenario.inner,
         &metrics,
@@ -295,6 +300,7 @@ fn simulate<'py>(
         columns::metrics_to_dict(py, &metrics)?,
         topics,
         RunAnswer::for_run(answer, Some(began.elapsed().as_secs_f64())),
+        samples,
     ))
 }
 

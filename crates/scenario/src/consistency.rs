@@ -94,10 +94,24 @@ impl ScenarioSpec {
     ) {
         self.validate_points(body, offers, errors);
         errors.extend(errors_in("disturbance", &self.disturbance, Disturbance::validate_three_axis));
+        errors.extend(self.guidance_conflict());
         errors.extend(errors_in("line_of_sight", &self.line_of_sight, |line| line.validate(body, offers)));
         if body.small_angles.is_some() {
             self.require_small_angles(model, body, errors);
         }
+    }
+
+    /// Checks that no targets are beside a guidance of a program.
+    fn guidance_conflict(&self) -> Option<ConfigError> {
+        self.first_guidance()?;
+        let why = if !self.law.own_targets().is_empty() {
+            "gives the target, and so do the `targets` of the law: leave them out"
+        } else if self.guidance("").is_some() && self.has_mode_targets() {
+            "gives the target of the whole run, and a mode has a `target`: give the guidance to modes by their names"
+        } else {
+            return None;
+        };
+        Some(ConfigError::new("guidance", why))
     }
 
     /// Checks the points at which sensors are mounted and forces act.
@@ -106,7 +120,11 @@ impl ScenarioSpec {
         let sensors = sensors.map(|(index, sensor)| (self.sensor_key(index), sensor.point()));
         let forces = self.disturbance.iter().enumerate();
         let forces = forces.map(|(index, force)| (format!("disturbance[{index}]"), force.point.as_deref()));
-        for (key, point) in sensors.chain(forces).filter_map(|(key, point)| Some((key, point?))) {
+        let listed = self.disturbance.len();
+        let own = self.own_disturbances.iter().zip(listed..).flat_map(|((_, own), index)| {
+            own.points().iter().map(move |point| (format!("disturbance[{index}]"), Some(&**point)))
+        });
+        for (key, point) in sensors.chain(forces).chain(own).filter_map(|(key, point)| Some((key, point?))) {
             let why = if body.point(point).is_none() {
                 format!("must be one of the body's points, {}, got `{point}`", body.point_names())
             } else if key.starts_with("disturbance") && !offers.body.has_motion_at(point) {
@@ -126,6 +144,16 @@ impl ScenarioSpec {
             self.require_given_motion(offers, errors);
         }
         self.require_hub_torque(body, errors);
+        let pointed = self.own_disturbances.iter().any(|(_, own)| !own.points().is_empty());
+        if pointed {
+            let why = "names points of a body with three axes, and the body has one angle";
+            errors.push(ConfigError::new("disturbance.points", why));
+        }
+        if !self.own_guidance.is_empty() {
+            let why =
+                "gives attitudes of a body with three axes, and the body has one angle: use a `[manoeuvre]`";
+            errors.push(ConfigError::new("guidance", why));
+        }
     }
 
     /// Adds the requirements of manoeuvre and drift on a damping matrix.
@@ -167,7 +195,7 @@ impl ScenarioSpec {
 
     /// Adds the requirement that no torque acts on a hub that follows a given motion.
     fn require_given_motion(&self, offers: &Offers, errors: &mut Vec<ConfigError>) {
-        let disturbances = (0..self.disturbance.len()).map(|index| format!("disturbance[{index}]"));
+        let disturbances = self.disturbance_keys();
         let pulses = offers.actuators.iter().filter(|member| member.offers.pulses);
         let law = offers.laws.iter().any(|law| !law.offers.is_open).then(|| "law".to_owned());
         let torques = disturbances.chain(pulses.map(|member| member.key.clone())).chain(law);
@@ -184,8 +212,7 @@ impl ScenarioSpec {
         if body.modes.iter().all(|mode| mode.gain == mode.hub_gain) {
             return;
         }
-        let disturbances = (0..self.disturbance.len()).map(|index| format!("disturbance[{index}]"));
-        let disturbances = disturbances.map(|key| (key, "is a torque that"));
+        let disturbances = self.disturbance_keys().map(|key| (key, "is a torque that"));
         let wheel = self.actuator.flywheel().map(|(_, key)| (key, "is a wheel that"));
         for (key, what) in disturbances.chain(wheel) {
             let why = format!(

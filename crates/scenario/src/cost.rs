@@ -252,6 +252,14 @@ impl Scenario {
         }
         for (index, disturbance) in self.disturbance.iter().enumerate() {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
+            let rows = disturbance.rows().len();
+            if rows > 0 {
+                each(
+                    format!("disturbance[{index}].table"),
+                    duration,
+                    Span::from_seconds(duration / rows as f64),
+                );
+            }
             if let Some(pulse) = disturbance.pulse {
                 each(
                     format!("disturbance[{index}].pulse.period"),

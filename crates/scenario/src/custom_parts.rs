@@ -5,7 +5,9 @@ use std::sync::Arc;
 use flexsc_control::actuator::{ActuatorSpec, AssignedActuator};
 use flexsc_control::adaptation::AdaptationSpec;
 use flexsc_control::custom::Custom;
+use flexsc_control::disturbance::DisturbanceSpec;
 use flexsc_control::estimator::EstimatorSpec;
+use flexsc_control::guidance::GuidanceSpec;
 use flexsc_control::law::{LawKind, LawSpec, Stage};
 use flexsc_control::sensor::{SensorKind, SensorSpec};
 use flexsc_formats::document::{ConfigError, Document, ScenarioError, nearest};
@@ -23,8 +25,8 @@ const STAGE_LAW: &str = "open";
 /// Law of another crate.
 pub type CustomLaw = Custom<dyn LawSpec>;
 
-/// Custom parts of a scenario: at most one estimator and adaptation, one law or several of modes or stages, and any number
-/// of sensors and actuators.
+/// Custom parts of a scenario: at most one estimator and adaptation, one law or several of modes or stages, the same of
+/// guidance, and any number of sensors, actuators and disturbances.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CustomParts {
     /// Custom law that acts throughout.
@@ -39,6 +41,10 @@ pub struct CustomParts {
     pub adaptation: Option<Custom<dyn AdaptationSpec>>,
     /// Custom actuators, each with its index among the actuators of the scenario.
     pub actuators: Vec<(usize, Custom<dyn ActuatorSpec>)>,
+    /// Custom disturbances in addition to those of the scenario, each with its index among them.
+    pub disturbances: Vec<(usize, Custom<dyn DisturbanceSpec>)>,
+    /// Custom guidance, each with the name of its mode of operation; empty for the whole run.
+    pub guidance: Vec<(String, Custom<dyn GuidanceSpec>)>,
 }
 
 impl Scenario {
@@ -69,17 +75,17 @@ impl Scenario {
     /// Fails if the parts are inconsistent with the others.
     pub fn with_custom_parts(&self, own: CustomParts) -> Result<Self, ScenarioError> {
         let mut all = self.custom_parts();
-        all.sensors.retain(|(place, _)| own.sensors.iter().all(|(other, _)| other != place));
-        all.sensors.extend(own.sensors);
-        all.actuators.retain(|(place, _)| own.actuators.iter().all(|(other, _)| other != place));
-        all.actuators.extend(own.actuators);
+        replace(&mut all.sensors, own.sensors);
+        replace(&mut all.actuators, own.actuators);
+        replace(&mut all.disturbances, own.disturbances);
+        all.disturbances.sort_by_key(|(place, _)| *place);
+        replace(&mut all.guidance, own.guidance);
         if own.law.is_some()
             && let Some(why) = self.stage_choice()
         {
             return Err(self.law_fault(why));
         }
-        all.stage_laws.retain(|(stage, _)| own.stage_laws.iter().all(|(other, _)| other != stage));
-        all.stage_laws.extend(own.stage_laws);
+        replace(&mut all.stage_laws, own.stage_laws);
         all.law = own.law.or(all.law);
         all.estimator = own.estimator.or(all.estimator);
         all.adaptation = own.adaptation.or(all.adaptation);
@@ -88,6 +94,7 @@ impl Scenario {
             ("law", all.law.is_some()),
             ("estimator", all.estimator.is_some()),
             ("adaptation", all.adaptation.is_some()),
+            ("target", !all.guidance.is_empty()),
         ];
         for (role, _) in replaced.into_iter().filter(|(_, is_own)| *is_own) {
             table.remove(role);
@@ -99,6 +106,9 @@ impl Scenario {
                 *law = open_law();
             }
         }
+        for (mode, _) in all.guidance.iter().filter(|(mode, _)| !mode.is_empty()) {
+            self.remove_mode_target(&mut table, mode)?;
+        }
         for (place, _) in &all.sensors {
             self.write_placeholder(&mut table, ("sensor", self.sensor.len()), *place, SENSOR)?;
         }
@@ -108,6 +118,12 @@ impl Scenario {
         let document = Document::from_table(&self.name, table);
         Self::solved(&document, Some(self), &all)
     }
+}
+
+/// Puts custom parts in the place of those with the same key, and after the others.
+fn replace<K: PartialEq, T>(all: &mut Vec<(K, T)>, own: Vec<(K, T)>) {
+    all.retain(|(key, _)| own.iter().all(|(other, _)| other != key));
+    all.extend(own);
 }
 
 /// Returns the laws of the modes in a table, or of the stages of its law; empty without any.
@@ -187,6 +203,21 @@ impl ScenarioSpec {
         })
     }
 
+    /// Removes the target of a mode of operation, which has custom guidance.
+    fn remove_mode_target(&self, table: &mut Table, mode: &str) -> Result<(), ScenarioError> {
+        let fault = |why| ScenarioError::Key { origin: self.name.clone(), key: "guidance".to_owned(), why };
+        if self.mode.is_empty() {
+            return Err(fault(format!("has no modes of operation, got `{mode}`")));
+        }
+        let index = self.stage_index(mode).map_err(fault)?;
+        if let Some(Value::Array(modes)) = table.get_mut("mode")
+            && let Some(Value::Table(there)) = modes.get_mut(index)
+        {
+            there.remove("target");
+        }
+        Ok(())
+    }
+
     /// Returns the law of a mode of operation or of a stage.
     fn stage_law_mut(&mut self, name: &str) -> Option<&mut LawKind> {
         let index = self.stage_index(name).ok()?;
@@ -257,6 +288,8 @@ impl ScenarioSpec {
             estimator: self.estimator.as_ref().and_then(|estimator| estimator.custom().cloned()),
             adaptation: self.adaptation.as_ref().and_then(|adaptation| adaptation.custom().cloned()),
             actuators: self.actuator.iter().enumerate().filter_map(actuator).collect(),
+            disturbances: self.own_disturbances.clone(),
+            guidance: self.own_guidance.clone(),
         }
     }
 
@@ -277,16 +310,21 @@ impl ScenarioSpec {
 
     /// Returns the topics that the parts declare beyond those of the engine, each with the role of the part.
     fn declared_topics(&self) -> Vec<(&'static str, Arc<CustomTopic>)> {
-        let CustomParts { sensors, estimator, adaptation, actuators, .. } = self.custom_parts();
+        let CustomParts { sensors, estimator, adaptation, actuators, disturbances, guidance, .. } =
+            self.custom_parts();
         let sensors = sensors.iter().flat_map(|(_, sensor)| sensor.topics().to_vec());
         let estimator = estimator.iter().flat_map(|estimator| estimator.topics().to_vec());
         let adaptation = adaptation.iter().flat_map(|adaptation| adaptation.topics().to_vec());
         let actuators = actuators.iter().flat_map(|(_, actuator)| actuator.topics().to_vec());
+        let disturbances = disturbances.iter().flat_map(|(_, own)| own.topics().to_vec());
+        let guidance = guidance.iter().flat_map(|(_, own)| own.topics().to_vec());
         let law = self.law.custom_topics().into_iter().map(|topic| ("law", topic));
         law.chain(sensors.map(|topic| ("sensor", topic)))
             .chain(estimator.map(|topic| ("estimator", topic)))
             .chain(adaptation.map(|topic| ("adaptation", topic)))
             .chain(actuators.map(|topic| ("actuator", topic)))
+            .chain(disturbances.map(|topic| ("disturbance", topic)))
+            .chain(guidance.map(|topic| ("guidance", topic)))
             .collect()
     }
 
@@ -308,7 +346,22 @@ impl ScenarioSpec {
 
     /// Sets the custom parts for roles that the document leaves out, and for sensors and actuators with a placeholder.
     pub(super) fn inherit_custom_parts(&mut self, own: &CustomParts, document: &Document) {
-        let CustomParts { law, stage_laws, sensors, estimator, adaptation, actuators } = own;
+        let CustomParts {
+            law,
+            stage_laws,
+            sensors,
+            estimator,
+            adaptation,
+            actuators,
+            disturbances,
+            guidance,
+        } = own;
+        self.own_disturbances.clone_from(disturbances);
+        let targeted = |mode: &str| match self.mode.iter().find(|own| own.name == mode) {
+            Some(own) => own.target.is_some(),
+            None => !self.target.is_empty(),
+        };
+        self.own_guidance = guidance.iter().filter(|(mode, _)| !targeted(mode)).cloned().collect();
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
             self.law = law.clone().into();
         }
@@ -345,6 +398,8 @@ impl CustomParts {
             ("estimator", self.estimator.is_some()),
             ("adaptation", self.adaptation.is_some()),
             ("actuator", !self.actuators.is_empty()),
+            ("disturbance", !self.disturbances.is_empty()),
+            ("guidance", !self.guidance.is_empty()),
         ];
         all.into_iter().filter_map(|(role, is_own)| is_own.then_some(role)).collect()
     }

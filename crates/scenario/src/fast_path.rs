@@ -11,7 +11,7 @@ impl Scenario {
             && self.linear.is_none()
             && self.drift.is_none()
             && self.plan.is_none()
-            && self.disturbance.is_empty()
+            && !self.is_disturbed()
             && self.environment.is_none()
             && self.study.sample_period.is_none()
             && self.actuator.is_ideal()

@@ -148,6 +148,7 @@ impl Scenario {
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let fault =
             epoch::validate(written.epoch.as_ref()).or_else(|| written.read_environment(parent, directory));
+        let fault = fault.or_else(|| written.read_disturbances(directory));
         if let Some(fault) = fault {
             return Err(document.at_key(&fault));
         }

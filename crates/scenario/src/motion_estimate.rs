@@ -29,7 +29,7 @@ impl Scenario {
     /// Returns the time in which forces act at points of the body (s).
     pub(super) fn forced_time(&self) -> f64 {
         let duration = self.duration.seconds();
-        let forces = self.disturbance.iter().filter(|disturbance| disturbance.force.is_some());
+        let forces = self.disturbance.iter().filter(|disturbance| disturbance.is_force());
         let times = forces.map(|disturbance| {
             let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
             let part = disturbance.pulse.map_or(1.0, |pulse| pulse.on.seconds() / pulse.period.seconds());

@@ -18,6 +18,7 @@ use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{HubRotor, Translation};
 use flexsc_spacecraft::body::{BodyAxes, BodyModel};
+use flexsc_spacecraft::disturbance::Disturbance;
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
@@ -100,11 +101,7 @@ impl ResolvedScenario {
             drift: written.drift.as_ref().map(Into::into),
             sample_period: written.sample_period(),
             assessment_period: written.assessment_period(),
-            profile: AttitudeProfile::new(
-                written.targets(),
-                &written.orbit_environment(),
-                &model.free_modes(),
-            ),
+            profile: profile(written, model),
             back_emf: written.actuator.flywheel().map_or((0.0, true), |(wheel, _)| {
                 (wheel.back_emf.get(), wheel.opposes == BackEmfRate::BodyRate)
             }),
@@ -183,7 +180,8 @@ impl ResolvedScenario {
         }
         self.surroundings = surroundings(written, model, body)?;
         self.drives = written.drives(model)?;
-        let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
+        let pushed = self.fires() || written.disturbance.iter().any(Disturbance::is_force);
+        let pushed = pushed || !written.own_disturbances.is_empty();
         let craft = model.spacecraft().filter(|_| pushed);
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));
         let measured = self.measured_rates(body);
@@ -295,6 +293,16 @@ impl ResolvedScenario {
             several.in_stages(stages)
         })
     }
+}
+
+/// Creates the profile of the targets, or of the guidance of a program.
+fn profile(written: &ScenarioSpec, model: &BodyModel) -> AttitudeProfile {
+    let sky = written.orbit_environment();
+    let mut profile = AttitudeProfile::new(written.targets(), &sky, &model.free_modes());
+    if let Some(guidance) = written.first_guidance() {
+        profile.follow(guidance.start(Seed { scenario: written.seed, run: 0 }), Instant::START);
+    }
+    profile
 }
 
 /// Creates the environment of a three-axis body, including the wheels' inertia that the body's tensor excludes.

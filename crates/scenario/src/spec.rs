@@ -1,15 +1,20 @@
 //! Scenario as written in a file.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use flexsc_control::actuator::AssignedActuator;
 use flexsc_control::adaptation::AdaptationKind;
+use flexsc_control::custom::Custom;
+use flexsc_control::disturbance::DisturbanceSpec;
 use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::guidance::GuidanceSpec;
 use flexsc_control::law::{AttitudeTarget, LawKind, Stages};
 use flexsc_control::one_or_many::OneOrMany;
 use flexsc_control::operation::{ModeTarget, OperatingMode};
 use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::load_table::LoadTable;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
@@ -89,6 +94,13 @@ pub struct ScenarioSpec {
     /// Disturbance torques and forces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub disturbance: Vec<Disturbance>,
+    /// Disturbances that a program provides, in addition to those above, each with its index among them.
+    #[serde(skip)]
+    pub own_disturbances: Vec<(usize, Custom<dyn DisturbanceSpec>)>,
+    /// Guidance that a program provides in place of targets: with the name of its mode of operation, or with an empty name
+    /// for the whole run.
+    #[serde(skip)]
+    pub own_guidance: Vec<(String, Custom<dyn GuidanceSpec>)>,
     /// Environment of a body with three axes; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub environment: Option<Environment>,
@@ -234,12 +246,13 @@ impl ScenarioSpec {
         self.log.period_for(self.duration)
     }
 
-    /// Replaces references to files of modes, orbits, fields and densities by what was read from them.
+    /// Replaces references to files of modes, orbits, fields, densities and disturbances by what was read from them.
     pub fn inline_files(&mut self) {
         if let Some(Body::Spatial(spatial)) = &mut self.body {
             spatial.modes.inline();
         }
         self.appendage.iter_mut().for_each(Appendage::inline_modes);
+        self.disturbance.iter_mut().filter_map(|own| own.table.as_mut()).for_each(LoadTable::inline);
         let date = self.date_ns();
         if let Some(around) = &mut self.environment {
             around.inline_files(date);
@@ -256,8 +269,37 @@ impl ScenarioSpec {
         self.date_ns().unwrap_or(0)
     }
 
+    /// Reads the files of the tables of disturbances.
+    pub(super) fn read_disturbances(&mut self, directory: &Path) -> Option<ConfigError> {
+        let disturbances = self.disturbance.iter_mut().enumerate();
+        let mut faults = disturbances
+            .filter_map(|(index, own)| Some(own.read(directory)?.within(&format!("disturbance[{index}]"))));
+        faults.next()
+    }
+
+    /// Returns true if the scenario has disturbances.
+    pub fn is_disturbed(&self) -> bool {
+        !self.disturbance.is_empty() || !self.own_disturbances.is_empty()
+    }
+
+    /// Iterates over the keys of the disturbances, `disturbance[0]` first; those of a program follow.
+    pub(super) fn disturbance_keys(&self) -> impl Iterator<Item = String> {
+        let count = self.disturbance.len() + self.own_disturbances.len();
+        (0..count).map(|index| format!("disturbance[{index}]"))
+    }
+
+    /// Returns the guidance that a program provides for a mode of operation, or for the whole run, whose name is empty.
+    pub fn guidance(&self, mode: &str) -> Option<&Custom<dyn GuidanceSpec>> {
+        self.own_guidance.iter().find(|(name, _)| name == mode).map(|(_, guidance)| guidance)
+    }
+
+    /// Returns the guidance that a program provides for the start of a run.
+    pub fn first_guidance(&self) -> Option<&Custom<dyn GuidanceSpec>> {
+        self.guidance(self.mode.first().map_or("", |mode| &mode.name)).or_else(|| self.guidance(""))
+    }
+
     /// Returns true if the torque consists of more than the switchings of a law.
     pub fn has_torque_rows(&self) -> bool {
-        !self.law.is_switching() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
+        !self.law.is_switching() || self.is_disturbed() || !self.actuator.is_ideal()
     }
 }

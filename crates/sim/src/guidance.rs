@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use flexsc_control::guidance::{GuidanceRun, OwnGuidance};
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget, ReferenceNeeds, Setpoint, TargetFrame};
 use flexsc_control::operation::{ModeTarget, OperatingMode, SlewStart};
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::TargetVisit;
 use flexsc_spacecraft::manoeuvre::AttitudeMotion;
@@ -37,12 +39,13 @@ pub struct Guidance {
     mode: (usize, u64),
 }
 
-/// Target of a mode of operation, and the start of a slew to it.
+/// Reference of a mode of operation.
 #[derive(Clone, Debug)]
-struct ModeReference {
-    target: AttitudeTarget,
-    /// For each mode before, true if a slew starts at the estimated attitude, and not at the reference.
-    from_estimate: Vec<bool>,
+enum ModeReference {
+    /// Target; and for each mode before, true if a slew to it starts at the estimated attitude, and not at the reference.
+    Target(AttitudeTarget, Vec<bool>),
+    /// Guidance of a program.
+    Own(OwnGuidance),
 }
 
 /// Manoeuvre as a rigid body executes it.
@@ -56,7 +59,15 @@ struct PlannedManoeuvre {
 }
 
 impl ModeReference {
-    /// Creates the reference of a mode; a mode before whose law does not read the motion leaves the attitude anywhere.
+    /// Creates the reference of a mode of operation; `None` if the reference stays.
+    fn of_mode(mode: &OperatingMode, scenario: &Scenario, seed: Seed) -> Option<Self> {
+        match scenario.guidance(&mode.name) {
+            Some(own) => Some(Self::Own(OwnGuidance(own.start(seed)))),
+            None => mode.target.as_ref().map(|target| Self::new(target, scenario)),
+        }
+    }
+
+    /// Creates the reference with a target; a mode before whose law does not read the motion leaves the attitude anywhere.
     fn new(target: &ModeTarget, scenario: &Scenario) -> Self {
         let is_loose = |mode: &OperatingMode| !mode.law.offers().reads_motion();
         let starts = |mode: &OperatingMode| match target.slew_from {
@@ -64,10 +75,8 @@ impl ModeReference {
             None => is_loose(mode),
         };
         let slews = target.acceleration.is_some();
-        Self {
-            target: target.at_start(),
-            from_estimate: scenario.mode.iter().map(|mode| slews && starts(mode)).collect(),
-        }
+        let from_estimate = scenario.mode.iter().map(|mode| slews && starts(mode)).collect();
+        Self::Target(target.at_start(), from_estimate)
     }
 }
 
@@ -86,16 +95,20 @@ impl PlannedManoeuvre {
 
 impl Guidance {
     /// Creates the reference of a scenario.
-    pub fn new(scenario: &Scenario) -> Self {
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
+        let mut profile = scenario.model.three_axis().map(|_| scenario.study.profile.clone());
+        if let (Some(profile), Some(own)) = (&mut profile, scenario.first_guidance()) {
+            profile.follow(own.start(seed), Instant::START);
+        }
         Self {
             setpoint: scenario.goal(),
             planned: PlannedManoeuvre::new(scenario),
-            profile: scenario.model.three_axis().map(|_| scenario.study.profile.clone()),
+            profile,
             computed: None,
             mode_targets: scenario
                 .mode
                 .iter()
-                .map(|mode| mode.target.as_ref().map(|target| ModeReference::new(target, scenario)))
+                .map(|mode| ModeReference::of_mode(mode, scenario, seed))
                 .collect(),
             pursuing: scenario.mode.iter().map(|mode| mode.law.offers().reads_motion()).collect(),
             mode: (0, 0),
@@ -108,11 +121,16 @@ impl Guidance {
         self.mode = (mode, self.mode.1 + 1);
         let reference = self.mode_targets.get(mode).and_then(Option::as_ref);
         let (Some(reference), Some(profile)) = (reference, self.profile.as_mut()) else { return false };
-        let from_estimate = reference.from_estimate.get(before) == Some(&true);
-        if let Some(attitude) = estimated.attitude().filter(|_| from_estimate) {
-            profile.hold(attitude, now);
+        match reference {
+            ModeReference::Own(guidance) => profile.follow(guidance.0.copy(), now),
+            ModeReference::Target(target, from_estimate) => {
+                let from_estimate = from_estimate.get(before) == Some(&true);
+                if let Some(attitude) = estimated.attitude().filter(|_| from_estimate) {
+                    profile.hold(attitude, now);
+                }
+                profile.enter(target, now);
+            }
         }
-        profile.enter(&reference.target, now);
         self.computed = None;
         true
     }
@@ -215,6 +233,11 @@ impl Guidance {
     /// Returns the rate of the reference attitude (rad/s) in the axes of a body that is `error` (rad) away from it.
     pub fn reference_rate(&self, now: Instant, error: &Vector) -> Vector {
         self.reference(now).map_or_else(Vector::zeros, |motion| motion.in_body_axes(error)[0])
+    }
+
+    /// Returns the guidance of a program, if it gives the reference at an instant.
+    pub fn own(&self, now: Instant) -> Option<&dyn GuidanceRun> {
+        self.profile.as_ref()?.guidance(now)
     }
 
     /// Returns the start of the next target of three axes.

@@ -18,6 +18,7 @@ mod mode_sky;
 mod motion_limits;
 mod objective;
 mod operation;
+mod own_disturbance;
 mod plant;
 mod quantities;
 mod quantity_reader;
@@ -85,7 +86,7 @@ impl Simulation {
     /// Creates the run number `run` of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
-        let (guidance, operation) = (Guidance::new(scenario), Operation::new(scenario));
+        let (guidance, operation) = (Guidance::new(scenario, seed), Operation::new(scenario));
         let requirements = RequirementMonitors::new(scenario, operation.sky());
         Self {
             clock: Clock::new(scenario),
@@ -205,7 +206,7 @@ impl Simulation {
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
             self.end_requirement_segment();
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
-            self.loads.apply_due_changes(now, self.plant.truth().rigid_rate);
+            self.loads.apply_due_changes(now, self.plant.truth());
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
@@ -332,7 +333,10 @@ impl Simulation {
             ("law", Some(&self.laws)),
             ("actuator", Some(&*self.loads.actuator)),
         ];
-        let failed = all.into_iter().find_map(|(role, part)| Some((role, part?.failure()?)));
+        let disturbances = self.loads.own.iter().map(|own| ("disturbance", Some(&*own.run as &dyn Part)));
+        let guidance = self.guidance.own(self.clock.now()).map(|own| own as &dyn Part);
+        let mut all = all.into_iter().chain(disturbances).chain([("guidance", guidance)]);
+        let failed = all.find_map(|(role, part)| Some((role, part?.failure()?)));
         match failed {
             Some((role, source)) => Err(SimulationError::Own { at: self.clock.now(), role, source }),
             None => Ok(()),

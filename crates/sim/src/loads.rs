@@ -2,6 +2,7 @@
 
 use flexsc_control::actuator::{Actuator, ActuatorEvent, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
+use flexsc_control::sensor::Truth;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::wrench::Wrench;
@@ -11,6 +12,7 @@ use flexsc_numerics::time::{Instant, Span, earlier};
 use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
 use flexsc_spacecraft::environment::SurroundingsState;
 
+use super::own_disturbance::OwnDisturbance;
 use super::plant::{AppliedTorque, Plant};
 use flexsc_scenario::Scenario;
 
@@ -21,6 +23,8 @@ pub struct Loads {
     pub actuator: Box<dyn Actuator>,
     distribution: TorqueDistribution,
     disturbances: Vec<DisturbanceState>,
+    /// Disturbances of a program.
+    pub own: Vec<OwnDisturbance>,
     /// Instants, latest first, at which the waveform has a break, a disturbance or the environment changes, the
     /// frequency drift has a kink, or the appendage drives reach the angles at which the modes are replaced.
     scheduled_changes: Vec<Instant>,
@@ -59,6 +63,11 @@ impl Loads {
             disturbances: disturbances
                 .map(|(index, of)| DisturbanceState::new(of, scenario.model.three_axis(), stream(index)))
                 .collect(),
+            own: scenario
+                .own_disturbances
+                .iter()
+                .map(|(_, spec)| OwnDisturbance::new(&**spec, scenario, seed))
+                .collect(),
             scheduled_changes: edges,
             next_change: None,
             due: None,
@@ -80,7 +89,8 @@ impl Loads {
     /// Finds the next instant at which a load changes without a command.
     fn find_next_change(&mut self) {
         let drawn = self.disturbances.iter().filter_map(DisturbanceState::due).min();
-        self.next_change = earlier(self.scheduled_changes.last().copied(), drawn);
+        let own = self.own.iter().filter_map(|own| own.run.due()).min();
+        self.next_change = earlier(earlier(self.scheduled_changes.last().copied(), drawn), own);
         self.due = earlier(self.next_change, self.actuator.due());
     }
 
@@ -100,13 +110,14 @@ impl Loads {
         self.due = earlier(self.next_change, actuator.due());
     }
 
-    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the rigid rates (rad/s).
-    pub fn apply_due_changes(&mut self, now: Instant, rigid: [f64; 3]) {
+    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the true state.
+    pub fn apply_due_changes(&mut self, now: Instant, truth: &Truth) {
         while self.scheduled_changes.last().is_some_and(|edge| *edge <= now) {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
-        self.actuator.update(now, ActuatorEvent::Due(rigid));
+        self.own.iter_mut().for_each(|own| own.update(now, truth));
+        self.actuator.update(now, ActuatorEvent::Due(truth.rigid_rate));
         self.find_next_change();
     }
 
@@ -160,6 +171,7 @@ impl Loads {
                 disturbance.force_effect(now, &mut self.wrench);
             }
         }
+        self.own.iter().for_each(|own| own.apply(&mut self.wrench));
         &self.wrench
     }
 
@@ -183,6 +195,7 @@ impl Loads {
     /// Returns the torque of all disturbances about an axis (N m), the external one included.
     pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
         let own = self.sum_disturbances(|disturbance| disturbance.torque(now, axis));
+        let own = self.own.iter().fold(own, |sum, disturbance| sum + disturbance.torque(axis));
         if self.external_torque[axis] == 0.0 { own } else { own + self.external_torque[axis] }
     }
 

@@ -1,9 +1,13 @@
-//! Disturbances from one time to another: torques, constant and random, and forces at a point, steady or in pulses.
+//! Disturbances from one time to another: torques, constant, random and over time, and forces at a point, steady, in pulses
+//! or over time.
+
+use std::path::Path;
 
 use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_dynamics::wrench::{ForceEffect, Wrench};
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::load_table::LoadTable;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Time};
 use flexsc_numerics::random::Stream;
@@ -43,6 +47,10 @@ pub struct Disturbance {
     /// Time for which a draw of the noise is held (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<Span>,
+    /// Torques (s, N m) or forces in the body's axes (s, N, N, N) over time, or the path of a .csv file, in place of
+    /// constant ones; times are from the start of the run. Each is held until the next, the last until `to`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<LoadTable>,
     /// Start time (s).
     #[serde(default)]
     pub from: Time,
@@ -67,20 +75,48 @@ impl Disturbance {
         [Some(self.from), self.to].into_iter().flatten().map(at)
     }
 
-    /// Returns the effect of the force on a body; `None` for a torque.
+    /// Returns the effect of the force on a body, of a table of forces that of the row that is largest; `None` for a torque.
     pub fn force_effect(&self, body: &ThreeAxisModel) -> Option<ForceEffect> {
-        let force = vector(self.force.as_ref()?);
+        let largest = || {
+            let forces = self.rows().iter().filter(|row| row.len() == 4).map(|row| force(row));
+            forces.max_by(|one, other| one.norm().total_cmp(&other.norm()))
+        };
+        let force = self.force.as_ref().map(vector).or_else(largest)?;
+        Some(self.effect(body, &force))
+    }
+
+    /// Returns the effect of a force (N) at the point of the disturbance.
+    fn effect(&self, body: &ThreeAxisModel, force: &Vector) -> ForceEffect {
         let first = body.points.first().map_or("", |point| &point.name);
         let mut push = ForceEffect::default();
-        push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), &force);
-        Some(push)
+        push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), force);
+        push
+    }
+
+    /// Returns the rows of the table; empty without one.
+    pub fn rows(&self) -> &[Vec<f64>] {
+        self.table.as_ref().map_or(&[], |table| table.rows())
+    }
+
+    /// Returns true if the disturbance is a force.
+    pub fn is_force(&self) -> bool {
+        self.force.is_some() || self.rows().first().is_some_and(|row| row.len() == 4)
+    }
+
+    /// Reads the file of the table relative to `directory`; returns a key within the disturbance and the reason.
+    pub fn read(&mut self, directory: &Path) -> Option<ConfigError> {
+        let why = self.table.as_mut()?.read(directory).err()?;
+        Some(ConfigError::new("table", why))
     }
 
     /// Returns a key that is inconsistent on a three-axis body, with the reason.
     pub fn validate_three_axis(&self) -> Option<ConfigError> {
         let refused = |key: &str, why: &str| Some(ConfigError::new(key, why));
         let noisy = self.noise.get() > 0.0;
-        match (&self.force, self.about) {
+        if self.table.is_some() && self.force.is_some() {
+            return refused("table", "takes the place of a constant `force`: give one of them");
+        }
+        match (self.is_force().then_some(()), self.about) {
             (None, None) => refused(
                 "about",
                 "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`",
@@ -104,9 +140,9 @@ impl Disturbance {
 
     /// Checks that the disturbance of a one-axis body is a torque without an axis; returns the inconsistent key and the reason.
     pub fn validate_one_axis(&self) -> Option<ConfigError> {
-        if self.force.is_some() || self.point.is_some() {
+        if self.is_force() || self.point.is_some() {
             let why = "acts on a body with three axes: use a `torque` for a body with one angle";
-            return Some(ConfigError::new("force", why));
+            return Some(ConfigError::new(if self.force.is_some() { "force" } else { "table" }, why));
         }
         let why = "names one of three axes, and the body has one angle";
         self.about.map(|_| ConfigError::new("about", why))
@@ -114,6 +150,13 @@ impl Disturbance {
 
     /// Checks that the times are in order, and within their periods; returns the inconsistent key and the reason.
     pub fn validate_times(&self) -> Option<ConfigError> {
+        if let Some(why) = self.table.as_ref().and_then(LoadTable::fault) {
+            return Some(ConfigError::new("table", why));
+        }
+        if self.table.is_some() && self.pulse.is_some() {
+            let why = "applies to a constant torque or force: leave the `table` out";
+            return Some(ConfigError::new("pulse", why));
+        }
         if let Some(to) = self.to.filter(|to| self.from >= *to) {
             let why = format!("must be later than `from`, {} s, got {}", self.from.get(), to.get());
             return Some(ConfigError::new("to", why));
@@ -140,6 +183,10 @@ pub struct DisturbanceState {
     disturbance: Disturbance,
     sines: Vec<SineTorque>,
     push: Option<ForceEffect>,
+    /// Effects of unit forces along the axes, for a table of forces; otherwise empty.
+    units: Vec<ForceEffect>,
+    /// Number of rows of the table whose times have come.
+    row: usize,
     /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
     draws: Stream,
@@ -156,6 +203,11 @@ impl DisturbanceState {
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
             push: body.and_then(|body| disturbance.force_effect(body)),
+            units: match body.filter(|_| disturbance.table.is_some() && disturbance.is_force()) {
+                Some(body) => (0..3).map(|axis| disturbance.effect(body, &unit(axis))).collect(),
+                None => Vec::new(),
+            },
+            row: 0,
             sines: disturbance.sines.iter().map(Into::into).collect(),
             disturbance: disturbance.clone(),
             draws,
@@ -167,12 +219,14 @@ impl DisturbanceState {
     pub fn due(&self) -> Option<Instant> {
         let ends = |next: &Instant| self.disturbance.to.is_none_or(|to| *next < at(to));
         let beat = self.beat.map(|(_, _, next)| next).filter(ends);
-        [self.next, beat].into_iter().flatten().min()
+        let row = self.disturbance.rows().get(self.row).map(|row| instant(row[0])).filter(ends);
+        [self.next, beat, row].into_iter().flatten().min()
     }
 
     /// Returns true if the disturbance acts at `now`, within a pulse if it is pulsed.
     fn acts(&self, now: Instant) -> bool {
-        self.disturbance.acts(now) && self.beat.is_none_or(|(_, on, _)| on)
+        let is_before = self.disturbance.table.is_some() && self.row == 0 && self.push.is_some();
+        self.disturbance.acts(now) && !is_before && self.beat.is_none_or(|(_, on, _)| on)
     }
 
     /// Draws the noise anew and starts or ends pulses, if that is due by `now`.
@@ -185,6 +239,15 @@ impl DisturbanceState {
                 } else {
                     *next = *began + pulses.period;
                 }
+            }
+        }
+        let rows = self.disturbance.rows();
+        let past = rows[self.row..].iter().take_while(|row| instant(row[0]) <= now).count();
+        if past > 0 {
+            self.row += past;
+            if let (Some(push), Some(row)) = (&mut self.push, rows.get(self.row - 1)) {
+                *push = ForceEffect::default();
+                self.units.iter().zip(&row[1..]).for_each(|(unit, size)| push.add_scaled(unit, *size));
             }
         }
         let Some(period) = self.disturbance.period else { return };
@@ -200,7 +263,14 @@ impl DisturbanceState {
     pub fn torque_on_hub(&self, now: Instant, axis: usize) -> f64 {
         let body_axis = self.disturbance.about.map_or(0, Axis::index);
         let acts = self.push.is_none() && body_axis == axis && self.acts(now);
-        if acts { self.disturbance.torque.get() + self.drawn } else { 0.0 }
+        if !acts {
+            return 0.0;
+        }
+        let constant = self.disturbance.torque.get() + self.drawn;
+        match self.row.checked_sub(1).and_then(|row| self.disturbance.rows().get(row)) {
+            Some(row) => constant + row[1],
+            None => constant,
+        }
     }
 
     /// Returns the torque of the sine terms about an axis at an instant (N m).
@@ -222,7 +292,7 @@ impl DisturbanceState {
     pub fn force_effect(&self, now: Instant, onto: &mut Wrench) {
         if !self.sines.is_empty() && self.acts(now) {
             let axis = self.disturbance.about.map_or(0, Axis::index);
-            let direction = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+            let direction = unit(axis);
             onto.sines.extend(self.sines.iter().map(|sine| (direction, *sine)));
         }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
@@ -232,5 +302,20 @@ impl DisturbanceState {
 }
 
 fn at(time: Time) -> Instant {
-    Instant::START + Span::from_seconds(time.get())
+    instant(time.get())
+}
+
+/// Returns the instant at a time (s) from the start of a run.
+fn instant(time: f64) -> Instant {
+    Instant::START + Span::from_seconds(time)
+}
+
+/// Returns the unit vector along an axis.
+fn unit(axis: usize) -> Vector {
+    Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 })
+}
+
+/// Returns the force (N) in a row of a table.
+fn force(row: &[f64]) -> Vector {
+    Vector::from_column_slice(&row[1..4])
 }

@@ -92,7 +92,7 @@ pub fn linear_sources(
 
 /// Returns the torques among a scenario's disturbances, each with the index of its axis, without pulses.
 fn torques(scenario: &Scenario) -> impl Iterator<Item = (usize, &Disturbance)> {
-    let torques = scenario.disturbance.iter().filter(|own| own.force.is_none() && own.pulse.is_none());
+    let torques = scenario.disturbance.iter().filter(|own| !own.is_force() && own.pulse.is_none());
     torques.map(|own| (own.about.map_or(0, Axis::index), own))
 }
 

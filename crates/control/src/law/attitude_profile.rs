@@ -9,6 +9,7 @@ use flexsc_spacecraft::manoeuvre::{AttitudeMotion, AttitudeTable, PlannedSlew, R
 use nalgebra::Quaternion;
 
 use super::{AttitudeTarget, TargetFrame};
+use crate::guidance::{GuidanceRun, OwnGuidance};
 
 /// Attitude profile through targets, in the order of their times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -35,11 +36,15 @@ enum SegmentPath {
     /// Decay of the rate, if there is one, and turn, which leave modes at rest.
     Shaped(Option<PlannedSlew>, PlannedSlew),
     Table(AttitudeTable),
+    /// Motion of a guidance that another crate provides.
+    Own(OwnGuidance),
 }
 
 impl SegmentPath {
-    fn at(&self, t: f64) -> AttitudeMotion {
+    /// Returns the motion at `now`, `t` (s) after the start of the segment.
+    fn at(&self, now: Instant, t: f64, sky: &OrbitEnvironment) -> AttitudeMotion {
         match self {
+            Self::Own(guidance) => guidance.0.aim(now, &sky.observation(now.seconds())),
             Self::Turn(slew) => slew.at(t),
             Self::Moving(decay, slew) if t >= decay.duration() => slew.at(t - decay.duration()),
             Self::Moving(decay, _) => decay.at(t.max(0.0)),
@@ -56,11 +61,14 @@ impl SegmentPath {
             Self::Moving(decay, slew) => decay.duration() + slew.duration(),
             Self::Shaped(decay, turn) => decay.as_ref().map_or(0.0, PlannedSlew::duration) + turn.duration(),
             Self::Table(table) => table.duration(),
+            Self::Own(_) => 0.0,
         }
     }
 
-    fn to(&self) -> Quaternion<f64> {
+    /// Returns the attitude at the end; of a guidance, at `now`.
+    fn to(&self, now: Instant, sky: &OrbitEnvironment) -> Quaternion<f64> {
         match self {
+            Self::Own(_) => self.at(now, 0.0, sky).attitude,
             Self::Turn(slew) | Self::Moving(_, slew) => slew.final_attitude(),
             Self::Shaped(_, turn) => turn.to(),
             Self::Table(table) => table.final_attitude(),
@@ -114,6 +122,21 @@ impl AttitudeProfile {
         self.legs.push(ProfileSegment { begins: now, frame: TargetFrame::INERTIAL, path });
     }
 
+    /// Adds a guidance from `now` on, later than all targets.
+    pub fn follow(&mut self, guidance: Box<dyn GuidanceRun>, now: Instant) {
+        let path = SegmentPath::Own(OwnGuidance(guidance));
+        self.legs.retain(|leg| leg.begins < now);
+        self.legs.push(ProfileSegment { begins: now, frame: TargetFrame::INERTIAL, path });
+    }
+
+    /// Returns the guidance that another crate provides, if it gives the reference at an instant.
+    pub fn guidance(&self, now: Instant) -> Option<&dyn GuidanceRun> {
+        match &self.leg(now)?.path {
+            SegmentPath::Own(guidance) => Some(&*guidance.0),
+            _ => None,
+        }
+    }
+
     /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
     pub fn fastest(&self, target: usize) -> Option<f64> {
         match &self.legs.get(target)?.path {
@@ -144,7 +167,9 @@ impl AttitudeProfile {
     pub fn at(&self, now: Instant) -> AttitudeMotion {
         self.leg(now).map_or_else(
             || AttitudeMotion::at_rest(AttitudeTarget::INERTIAL.attitude()),
-            |leg| self.to_inertial(leg.frame, now, leg.path.at(now.since(leg.begins).seconds())),
+            |leg| {
+                self.to_inertial(leg.frame, now, leg.path.at(now, now.since(leg.begins).seconds(), &self.sky))
+            },
         )
     }
 
@@ -159,7 +184,7 @@ impl AttitudeProfile {
     /// Returns the attitude of the current target at an instant.
     pub fn target(&self, now: Instant) -> Quaternion<f64> {
         let frame_motion = |leg: &ProfileSegment| {
-            self.to_inertial(leg.frame, now, AttitudeMotion::at_rest(leg.path.to())).attitude
+            self.to_inertial(leg.frame, now, AttitudeMotion::at_rest(leg.path.to(now, &self.sky))).attitude
         };
         self.leg(now).map_or_else(|| AttitudeTarget::INERTIAL.attitude(), frame_motion)
     }
@@ -174,7 +199,7 @@ impl AttitudeProfile {
         let leg = self.leg(now);
         leg.map_or_else(
             || (TargetFrame::INERTIAL, AttitudeTarget::INERTIAL.attitude()),
-            |leg| (leg.frame, leg.path.to()),
+            |leg| (leg.frame, leg.path.to(now, &self.sky)),
         )
     }
 
@@ -186,7 +211,8 @@ impl AttitudeProfile {
     /// Returns true if the reference moves at an instant.
     pub fn is_moving(&self, now: Instant) -> bool {
         self.leg(now).is_some_and(|leg| {
-            leg.frame.rotates(&self.sky) || now.since(leg.begins).seconds() < leg.path.duration()
+            let is_guided = matches!(leg.path, SegmentPath::Own(_));
+            is_guided || leg.frame.rotates(&self.sky) || now.since(leg.begins).seconds() < leg.path.duration()
         })
     }
 

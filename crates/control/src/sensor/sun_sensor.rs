@@ -49,7 +49,8 @@ mod tests {
     use flexsc_numerics::time::{Instant, Span};
 
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
-        let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun, nadir: None };
+        let field = Some(Vector::new(2e-5, -1e-5, 3e-5));
+        let sky = EnvironmentObservation { field, sun, ..EnvironmentObservation::default() };
         let [elastic, rate] = [[0.0; 3]; 2];
         Truth {
             orientation: Orientation::Attitude(attitude),

@@ -26,9 +26,37 @@ def need_matplotlib() -> None:
         raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'") from error
 
 
-def frame(ax: Axes) -> None:
-    """Set grid, ticks and frame of axes."""
-    ax.tick_params(labelsize=11 * POINT, length=0, pad=4)
+class Look:
+    """Sizes of a panel: those of the command, or on axes that are given those of `rcParams` and of the axes."""
+
+    def __init__(self, ax: Axes | None = None) -> None:
+        self.width = self.height = None
+        if ax is not None:
+            figure: Any = ax.figure
+            box = ax.get_window_extent()
+            self.width, self.height = box.width / figure.dpi, box.height / figure.dpi
+
+    def size(self, pixels: float) -> float | None:
+        """Return the size of letters (pt); None for that of `rcParams`."""
+        return pixels * POINT if self.width is None else None
+
+    def ticks(self, most: int, is_upright: bool = False) -> int:
+        """Return how many ticks fit along an axis."""
+        length = self.height if is_upright else self.width
+        return most if length is None else max(2, min(most, int(length / (0.3 if is_upright else 0.65))))
+
+    def columns(self, names: list[str]) -> int:
+        """Return how many names of a legend fit beside each other."""
+        longest = max(map(len, names), default=1)
+        most = len(names)
+        return most if self.width is None else max(1, min(most, int(self.width / (0.35 + 0.08 * longest))))
+
+
+def frame(ax: Axes, size: float | None = 11 * POINT) -> None:
+    """Set grid, ticks and frame of axes, with numbers of a size (pt), or of that of `rcParams`."""
+    ax.tick_params(length=0, pad=4)
+    if size is not None:
+        ax.tick_params(labelsize=size)
     ax.grid(color=GRID, linewidth=0.6 * POINT)
     ax.set_axisbelow(True)
     for spine in ax.spines.values():

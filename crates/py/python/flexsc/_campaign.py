@@ -8,8 +8,10 @@ from operator import index
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._design import Noise, Points, Sample, design
 from flexsc._missing import reading
+from flexsc._named import no_such
 from flexsc._numpy import npt
 from flexsc._progress import Progress, callback
 from flexsc._result import Detail
@@ -38,6 +40,8 @@ def campaign(
     task_s: float = 1.0,
     force: bool = False,
     progress: Progress = None,
+    at: npt.ArrayLike | None = None,
+    topics: Sequence[str] | None = None,
 ) -> Table:
     """Simulate many runs of a scenario, with new noise and newly drawn `[uncertain]` keys for each.
 
@@ -71,6 +75,9 @@ def campaign(
         force: Replace another campaign in `out`, one with more runs, a file, and logs of other runs.
         progress: True to print a line with the finished runs and the remaining time to standard error, or a
             function that is called after each task with the number of finished runs and the total number.
+        at: Times (s) at which the exact motion of each run is kept, as `Table.samples`, in the same run. It
+            stays in memory: without `out`, `executor` and `progress`.
+        topics: The topics of the motion that are kept, such as `["pointing"]`; if omitted, all.
 
     Raises:
         ScenarioError: The scenario does not allow this variation.
@@ -98,7 +105,7 @@ def campaign(
     drawn.repeat(replicas)
     part = isinstance(runs, range)
     return _Study(scenario, span, drawn, metrics, seed, yes, True, log, part).table(
-        jobs, out, executor, task_s, force, progress
+        jobs, out, executor, task_s, force, progress, at, topics
     )
 
 
@@ -248,6 +255,8 @@ class _Study(NamedTuple):
         task_s: float,
         force: bool,
         progress: Progress,
+        at: npt.ArrayLike | None = None,
+        topics: Sequence[str] | None = None,
     ) -> Table:
         """Simulate the runs: on threads here, on an executor, or into a directory."""
         if not task_s > 0.0:
@@ -269,6 +278,12 @@ class _Study(NamedTuple):
         # A task of an executor has one thread unless it is to have more.
         threads = threads_of(1 if jobs is None and executor is not None else jobs, scenario)
         report = callback(progress)
+        if at is not None:
+            if not (out is None and executor is None and report is None):
+                raise ValueError("at keeps the motion in memory: leave out `out`, `executor` and `progress`")
+            return _sampled(scenario, work, threads, at, topics)
+        if topics is not None:
+            raise ValueError("topics needs `at`, the times at which they are kept")
         if out is None and executor is None and report is None:
             columns, summaries = work.make(work.runs, threads)
             return _checked(Table(work, columns.__getitem__, lambda: summaries))
@@ -280,6 +295,28 @@ class _Study(NamedTuple):
         from flexsc._executor import run
 
         return _checked(run(work, out, executor, threads, task_s, force, report, self.log, self.part))
+
+
+def _sampled(
+    scenario: Scenario,
+    work: engine.Work,
+    threads: int,
+    at: npt.ArrayLike,
+    topics: Sequence[str] | None,
+) -> Table:
+    """Simulate runs on threads here, with their motion at some times."""
+    from flexsc._ensemble import Ensemble
+    from flexsc._sample_times import SampleTimes
+
+    times = SampleTimes(at, scenario.duration)
+    names = None if topics is None else [name.removeprefix("/") for name in topics]
+    columns, summaries, seen = work.make_at(work.runs, threads, times.grown, names)
+    for name in names or ():
+        if seen and name not in seen[0][1]:
+            raise no_such("no topic", name, analysis("topics"))
+    table = _checked(Table(work, columns.__getitem__, lambda: summaries))
+    table.samples = Ensemble(scenario, table["run"], times, seen)
+    return table
 
 
 def _is_same_file(one: str | os.PathLike[str], other: str | os.PathLike[str]) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
@@ -13,6 +14,8 @@ from flexsc._values import document
 if TYPE_CHECKING:
     from flexsc._scenario import Scenario
 
+# Roles of parts in Python that no key has a place for.
+BESIDE = ("disturbance", "guidance")
 _STEP = re.compile(r'\.?(?:"((?:[^"\\]|\\.)*)"|([\w-]+))|\[(\d+)\]')
 
 
@@ -37,19 +40,24 @@ def is_known(scenario: Scenario, key: str) -> bool:
     return isinstance(above, list) and isinstance(last, int) and last < len(above)
 
 
-def without(scenario: Scenario, keys: Sequence[str]) -> Scenario:
-    """Return a scenario without some keys: see `Scenario.without`."""
+def without(
+    scenario: Scenario, keys: Sequence[str], changes: Mapping[str, object] = MappingProxyType({})
+) -> Scenario:
+    """Return a scenario without some keys, and with changes of others: see `Scenario.without`."""
     values = scenario.to_dict()
+    for key, value in changes.items():
+        *above, last = steps(key)
+        value_at(values, above)[last] = value
     tables: dict[str, list[str | int]] = {}
     # From the last element of an array to the first, so that the others keep their positions.
     for path in sorted(map(steps, keys), key=_order, reverse=True):
         value_at(values, path)
         del value_at(values, path[:-1])[path[-1]]
         tables[written(path[:-1])] = path[:-1]
-    if "" not in tables:
+    if "" not in tables and not changes:
         return scenario.with_({above: value_at(values, path) for above, path in tables.items()})
     text, name = document(scenario.name, _beside_parts(values)), scenario.name
-    parts = [(role, part) for role, part in scenario.parts.items() if role.split()[0] in values]
+    parts = [(role, part) for role, part in scenario.parts.items() if role.split()[0] in values or role.split()[0] in BESIDE]
     if parts:
         return type(scenario)._of(engine.beside_parts(text, name, parts))
     return type(scenario)._of(engine.Scenario.from_values(text, name))

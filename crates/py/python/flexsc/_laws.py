@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from flexsc._compiled import Compiled
 from flexsc._numpy import np, npt
 from flexsc._own_part import OwnPart
 
@@ -202,7 +202,7 @@ class ThreeAxisLaw(OwnPart):
         """
 
 
-class CompiledLaw(Law):
+class CompiledLaw(Compiled, Law):
     """A law given by a compiled function, such as a `cfunc` of numba or a C function, called without Python.
 
     The function takes nine arguments and returns nothing; all numbers are doubles:
@@ -234,19 +234,6 @@ class CompiledLaw(Law):
         switches: Whether its torque changes only together with its state, as for a relay.
     """
 
-    address: int
-    """The address of the function.
-
-    >>> CompiledLaw(damper).address > 0
-    True
-    """
-    states: tuple[float, ...]
-    """Its states at the start of a run.
-
-    >>> CompiledLaw(damper, period=0.25, states=(0.0, 1.0)).states
-    (0.0, 1.0)
-    """
-
     def __init__(
         self,
         function: object,
@@ -256,14 +243,8 @@ class CompiledLaw(Law):
         promise: float | None = None,
         switches: bool = False,
     ) -> None:
-        self._function = function
-        if isinstance(function, int):
-            self.address = function
-        elif isinstance(address := getattr(function, "address", None), int):
-            self.address = address
-        else:
-            self.address = ctypes.cast(function, ctypes.c_void_p).value or 0  # type: ignore[arg-type]
-        self.period, self.states = period, tuple(float(state) for state in states)
+        self._keep(function, states)
+        self.period = period
         self.promise, self.switches = promise, switches
 
     def decide(self, event: Event) -> Hold:
@@ -274,16 +255,68 @@ class CompiledLaw(Law):
         >>> scenario.simulate().metrics["peak_torque_nm"] > 0.0
         True
         """
-        raise NotImplementedError("a compiled law is called by its address")
+        return self._never(event)
 
-    def copy(self) -> CompiledLaw:
-        """Return the law itself: its states are copied for each run.
 
-        >>> law = CompiledLaw(damper, period=0.25)
-        >>> law.copy() is law
-        True
+class CompiledThreeAxisLaw(Compiled, ThreeAxisLaw):
+    """A law about three axes together, given by a compiled function, such as a `cfunc` of numba or a C
+    function.
+
+    The function takes five arguments and returns nothing; all numbers are doubles:
+
+        void law(double now, double since, const double *input, double *states, double *hold);
+
+    `now` is the time (s), and `since` the time since the last call. `input` has 18 numbers, three for each:
+    angles (rad) and rates (rad/s) from the target to the estimate, the goals of the angles, of the rates and
+    of the accelerations (rad/s²), and the rates of change of the magnetic field (T/s). `states` are its own
+    values, kept from call to call. The function writes to `hold`: three commands, the time until the next
+    call (s), and its state for the log, as `CompiledLaw`; the last two are NaN at the call, and an entry
+    left at NaN is not set.
+
+    >>> import ctypes
+    >>> array = ctypes.POINTER(ctypes.c_double)
+    >>> kind = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_double, array, array, array)
+    >>> @kind
+    ... def coupled(now, since, motion, states, hold):
+    ...     for axis in range(3):
+    ...         hold[axis] = -0.01 * motion[axis] - 0.1 * (motion[3 + axis] - motion[9 + axis])
+    >>> law = CompiledThreeAxisLaw(coupled, period=0.25, command="acceleration")
+    >>> scenario = flexsc.Scenario.example("attitude-hold").with_("duration", 1.0)
+    >>> run = scenario.with_parts(law=law).simulate()
+
+    Args:
+        function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
+            process.
+        period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
+        command: Whether its commands are torques (N m), accelerations (rad/s²) or magnetic moments (A m²).
+        states: Its states at the start of a run.
+        promise: The distance from the goal (rad) within which it keeps each angle; None without a promise.
+    """
+
+    command: Literal["torque", "acceleration", "moment"]
+    """The quantity that it commands.
+
+    >>> CompiledThreeAxisLaw(coupled, period=0.25).command
+    'torque'
+    """
+
+    def __init__(
+        self,
+        function: object,
+        *,
+        period: float | None = None,
+        command: Literal["torque", "acceleration", "moment"] = "torque",
+        states: Sequence[float] = (),
+        promise: float | None = None,
+    ) -> None:
+        self._keep(function, states)
+        self.period, self.command, self.promise = period, command, promise
+
+    def decide(self, event: ThreeAxisEvent) -> ThreeAxisHold:
+        """Never called: the engine calls the compiled function instead.
+
+        >>> CompiledThreeAxisLaw(coupled, period=0.25).decide(None)
+        Traceback (most recent call last):
+        NotImplementedError: a compiled part is called by its address
         """
-        return self
-
-    def __reduce__(self) -> tuple[object, ...]:
-        raise TypeError("a compiled law is an address in this process and cannot be pickled")
+        return self._never(event)

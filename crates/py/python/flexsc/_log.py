@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._answer import Answer
+from flexsc._drawable import Drawable
 from flexsc._handover import Exportable
 from flexsc._result import Topics
 from flexsc._topic import Topic
@@ -16,12 +17,10 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
-    from matplotlib.figure import Figure, SubFigure
-
     from flexsc._scenario import Scenario
 
 
-class Log(Topics, Exportable):
+class Log(Topics, Exportable, Drawable):
     """A log file in memory.
 
     >>> import flexsc, pathlib, tempfile
@@ -79,20 +78,6 @@ class Log(Topics, Exportable):
         'not_asked'
         """
         return Answer(engine.log_answer(self._native)[1])
-
-    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
-        """Draw a figure of the run in the log with Matplotlib: see `Result.plot`.
-
-        >>> import flexsc
-        >>> figure = flexsc.read_log("run.mcap").plot("angle")          # doctest: +SKIP
-
-        Raises:
-            ValueError: There is no such figure.
-            ImportError: Matplotlib is not installed.
-        """
-        from flexsc import plot
-
-        return plot.at_a_glance(self, name, on)
 
     def _export(self, options: engine.ExportOptions, path: str | os.PathLike[str]) -> int:
         return engine.export_log(self._native, options, path)

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Aim",
     "Authority",
     "Commands",
     "Demanded",
@@ -25,6 +26,7 @@ __all__ = [
     "Hold",
     "Instant",
     "Known",
+    "Load",
     "Log",
     "LogError",
     "MotionSampler",
@@ -36,6 +38,7 @@ __all__ = [
     "SimulationError",
     "Simulator",
     "Simulators",
+    "Sky",
     "Stream",
     "Taken",
     "ThreeAxisEvent",
@@ -707,7 +710,7 @@ class ThreeAxisHold:
 
 @final
 class Truth:
-    """The true quantities that a sensor can measure at an instant.
+    """The true motion and sky at an instant, which sensors measure and disturbances depend on.
 
     >>> class Tracker(flexsc.Sensor):
     ...     period = 0.5
@@ -778,6 +781,20 @@ class Truth:
         >>> swept = numpy.subtract(truth.turned, truths[-2].turned)         # rad, in 0.5 s
         >>> [round(float(angle), 3) for angle in swept]
         [-0.012, -0.015, 0.013]
+        """
+    @property
+    def position(self) -> _Three | None:
+        """The position from the planet's centre in the inertial frame (m), on an orbit.
+
+        >>> truth.position is None                                          # no orbit
+        True
+        """
+    @property
+    def velocity(self) -> _Three | None:
+        """The velocity in the inertial frame (m/s), on an orbit.
+
+        >>> truth.velocity is None                                          # no orbit
+        True
         """
     @property
     def field(self) -> _Three | None:
@@ -1150,6 +1167,146 @@ class Effort:
         """
 
 @final
+class Load:
+    """Torque (N m) and force (N) in body axes, constant until the next call of the disturbance.
+
+    Both have the shape (3,), or (points, 3) for a disturbance with several `points`. The torque on a body
+    with one angle is a number. The next call follows `after` a time (s); if no time is given, after the
+    disturbance's `period`.
+
+    >>> import flexsc
+    >>> flexsc.Load([0.0, 1e-3, 0.0], after=0.1).torque
+    [[0.0, 0.001, 0.0]]
+    """
+
+    def __new__(
+        cls,
+        torque: float | Sequence[float] | Sequence[Sequence[float]] | npt.NDArray[np.float64] | None = None,
+        force: Sequence[float] | Sequence[Sequence[float]] | npt.NDArray[np.float64] | None = None,
+        *,
+        after: float | None = None,
+    ) -> Load: ...
+    @property
+    def torque(self) -> list[list[float]]:
+        """Torque at each point (N m).
+
+        >>> flexsc.Load([0.01, 0.0, 0.0]).torque
+        [[0.01, 0.0, 0.0]]
+        """
+    @property
+    def force(self) -> list[list[float]]:
+        """Force at each point (N).
+
+        >>> flexsc.Load(force=[[0.0, 0.0, 0.1], [0.0, 0.0, -0.1]]).force
+        [[0.0, 0.0, 0.1], [0.0, 0.0, -0.1]]
+        """
+    @property
+    def after(self) -> float | None:
+        """Time to the next call (s), if it is given.
+
+        >>> flexsc.Load([0.01, 0.0, 0.0], after=0.05).after
+        0.05
+        """
+    def __deepcopy__(self, _memo: object) -> Load: ...
+
+@final
+class Aim:
+    """The attitude (w, x, y, z) of a target, its rate (rad/s) and its acceleration (rad/s²), both in the axes
+    of that attitude.
+
+    >>> import flexsc
+    >>> flexsc.Aim((1.0, 0.0, 0.0, 0.0), rate=(0.0, 1e-3, 0.0)).rate
+    (0.0, 0.001, 0.0)
+    """
+
+    def __new__(
+        cls,
+        attitude: Sequence[float] | npt.NDArray[np.float64],
+        rate: Sequence[float] | npt.NDArray[np.float64],
+        acceleration: Sequence[float] | npt.NDArray[np.float64] | None = None,
+    ) -> Aim: ...
+    @property
+    def attitude(self) -> _Four:
+        """Attitude (w, x, y, z), which rotates vectors from the axes of the target to the inertial frame.
+
+        >>> flexsc.Aim((0.0, 0.0, 0.0, 1.0), rate=(0.0, 0.0, 0.0)).attitude
+        (0.0, 0.0, 0.0, 1.0)
+        """
+    @property
+    def rate(self) -> _Three:
+        """Rate in the axes of the target (rad/s).
+
+        >>> flexsc.Aim((1.0, 0.0, 0.0, 0.0), rate=(1e-3, 0.0, 0.0)).rate
+        (0.001, 0.0, 0.0)
+        """
+    @property
+    def acceleration(self) -> _Three:
+        """Acceleration in the axes of the target (rad/s²).
+
+        >>> flexsc.Aim((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 1e-4, 0.0)).acceleration
+        (0.0, 0.0001, 0.0)
+        """
+    def __eq__(self, other: object, /) -> bool: ...
+    def __deepcopy__(self, _memo: object) -> Aim: ...
+
+@final
+class Sky:
+    """The sky at an instant, in inertial axes.
+
+    >>> class Nadir(flexsc.Guidance):
+    ...     def aim(self, sky):
+    ...         skies.append(sky)
+    ...         return flexsc.Aim((1.0, 0.0, 0.0, 0.0), rate=(0.0, 0.0, 0.0))
+    >>> skies = []
+    >>> scenario = flexsc.Scenario.example("eclipse-snap").with_("duration", 2.0)
+    >>> run = scenario.with_parts(guidance=Nadir()).simulate()
+    >>> sky = skies[-1]
+    """
+
+    @property
+    def now(self) -> Instant:
+        """The instant: `sky.now - earlier` is the time between (s), without rounding before the difference.
+
+        >>> sky.now.seconds
+        2.0
+        """
+    @property
+    def time(self) -> float:
+        """The instant (s).
+
+        >>> sky.time
+        2.0
+        """
+    @property
+    def position(self) -> _Three | None:
+        """The position from the planet's centre (m), on an orbit.
+
+        >>> 6.5e6 < float(numpy.linalg.norm(sky.position)) < 8e6
+        True
+        """
+    @property
+    def velocity(self) -> _Three | None:
+        """The velocity (m/s), on an orbit.
+
+        >>> 7e3 < float(numpy.linalg.norm(sky.velocity)) < 8e3
+        True
+        """
+    @property
+    def sun(self) -> _Three | None:
+        """The direction to the Sun, when in sunlight.
+
+        >>> sky.sun is None or round(float(numpy.linalg.norm(sky.sun)), 9) == 1.0
+        True
+        """
+    @property
+    def field(self) -> _Three | None:
+        """The magnetic field (T), if there is one.
+
+        >>> sky.field is None
+        True
+        """
+
+@final
 class Design:
     def __new__(cls) -> Design: ...
     @staticmethod
@@ -1204,6 +1361,9 @@ class Work:
     def run(self, number: int) -> tuple[Scenario, int]: ...
     def missing(self, files: list[str]) -> list[tuple[int, int]]: ...
     def make(self, runs: tuple[int, int], jobs: int) -> tuple[dict[str, Any], list[_Summary]]: ...
+    def make_at(
+        self, runs: tuple[int, int], jobs: int, times: list[float], topics: list[str] | None
+    ) -> tuple[dict[str, Any], list[_Summary], list[tuple[int, dict[str, dict[str, _Column]]]]]: ...
     def numbers(
         self, runs: tuple[int, int], jobs: int, metrics: list[str]
     ) -> tuple[npt.NDArray[np.float64], str | None]: ...
@@ -1230,6 +1390,9 @@ class Figure:
     @property
     def panel_height(self) -> int: ...
     def svg(self) -> str: ...
+    def save(
+        self, path: str | os.PathLike[str], width: float | None, font: float | None, force: bool
+    ) -> None: ...
     def panels(self) -> list[dict[str, Any]]: ...
 
 @final
@@ -1382,8 +1545,10 @@ def log_figures(log: Log, scenario: Scenario | None) -> list[str]: ...
 def log_of(scenario: Scenario, run: int, log: str, stepped: Commands | None) -> Log: ...
 def modes_figure(scenario: Scenario) -> Figure | None: ...
 def simulate(
-    scenario: Scenario, run: int, log: str, yes: bool, stepped: Commands | None
-) -> tuple[dict[str, Any], dict[str, dict[str, _Column]], RunAnswer]: ...
+    scenario: Scenario, run: int, log: str, yes: bool, stepped: Commands | None, at: list[float] | None
+) -> tuple[
+    dict[str, Any], dict[str, dict[str, _Column]], RunAnswer, dict[str, dict[str, _Column]] | None
+]: ...
 def to_mcap(
     scenario: Scenario, run: int, log: str, path: str | os.PathLike[str], stepped: Commands | None
 ) -> int: ...

@@ -11,16 +11,15 @@ from flexsc import _native as engine
 from flexsc._analysis import analysis
 from flexsc._answer import Answer
 from flexsc._columns import Lookup, read_only
+from flexsc._drawable import Drawable
 from flexsc._handover import Exportable
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
+from flexsc._sample_times import SampleTimes
 from flexsc._topic import Topic
 from flexsc._units import Metrics
-from flexsc._values import arrays
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure, SubFigure
-
     from flexsc._scenario import Scenario
 
 Logged = Literal["events", "full", "scene"]
@@ -154,7 +153,7 @@ class Samples(Topics):
         return f"<flexsc.Samples at {len(self.times)} times: {', '.join(self.topics)}>"
 
 
-class Result(Topics, Exportable):
+class Result(Topics, Exportable, Drawable):
     """The result of a run: its metrics, and a mapping of its topics as columns, which are read-only.
 
     >>> import flexsc
@@ -176,6 +175,13 @@ class Result(Topics, Exportable):
 
     >>> run.run
     0
+    """
+    samples: Samples | None
+    """The motion at the times `at` of `Scenario.simulate`; None without them.
+
+    >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0)
+    >>> scenario.simulate(at=[12.5, 50.0]).samples["attitude"]["angle_rad"].round(9).tolist()
+    [9.298e-06, -4.32e-06]
     """
     metrics: Metrics
     """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.
@@ -209,6 +215,7 @@ class Result(Topics, Exportable):
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
         self._motion: engine.MotionSampler | None = None
+        self.samples = None
 
     @property
     def answer(self) -> Answer:
@@ -281,28 +288,15 @@ class Result(Topics, Exportable):
         Raises:
             ValueError: A time is not within the run.
         """
-        asked = np.asarray(times, dtype=np.float64)
-        if asked.ndim != 1:
-            raise ValueError(f"times must be of shape (times,), got {asked.shape}")
         end = self._until
-        within = (asked >= 0.0) & (asked <= end)
-        if not within.all():
-            wrong = asked[~within][0].item()
-            what = "duration" if end == self.scenario.duration else "time of the run"
-            raise ValueError(f"times must be from 0 to the {what}, {end:g} s, got {wrong:g}")
-        order = np.argsort(asked, kind="stable")
-        back = np.empty_like(order)
-        back[order] = np.arange(len(order))
+        what = "duration" if end == self.scenario.duration else "time of the run"
+        asked = SampleTimes(times, end, what)
         if self._motion is None:
             self._motion = engine.MotionSampler(self.scenario._native, self.run, self._stepped)
-        topics = self._motion.sample(asked[order].tolist())
-        seen = {
-            name: {column: values[back] for column, values in arrays(columns).items()}
-            for name, columns in topics.items()
-        }
-        for columns in seen.values():
-            columns["time_s"] = asked.copy()
-        return Samples(asked.copy(), self._named(seen))
+        return self._sampled(asked, self._motion.sample(asked.grown))
+
+    def _sampled(self, times: SampleTimes, topics: dict[str, dict[str, Any]]) -> Samples:
+        return Samples(times.asked.copy(), self._named(times.rows(topics)))
 
     def at(self, time: float) -> dict[str, dict[str, Any]]:
         """Return the exact motion at a time (s): the row of each topic of `sample`, as plain numbers.
@@ -326,29 +320,6 @@ class Result(Topics, Exportable):
         return Named.of(
             {name: Named.of(row, f"topic {name!r} has no column") for name, row in rows.items()}, "no topic"
         )
-
-    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
-        """Draw a figure of the run with Matplotlib (`pip install flexsc[plot]`).
-
-        Args:
-            name: One of `flexsc.plot.figures(run)`, such as `angle`; if omitted, the one that shows the
-                motion at a glance.
-            on: An empty figure or subfigure; if omitted, a new one.
-
-        Returns:
-            The figure, in SI units; its `axes` are the panels, from the top.
-
-        >>> import flexsc
-        >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 3000.0).simulate()
-        >>> figure = run.plot("angle")                                  # doctest: +SKIP
-
-        Raises:
-            ValueError: There is no such figure.
-            ImportError: Matplotlib is not installed.
-        """
-        from flexsc import plot
-
-        return plot.at_a_glance(self, name, on)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Result):

@@ -20,15 +20,24 @@ def by_role(
     adaptation: parts.Adaptation | None,
     actuator: parts.Actuator | Mapping[int, parts.Actuator] | None,
     sensor: parts.Sensor | Mapping[int, parts.Sensor] | None,
+    disturbance: parts.Disturbance | Mapping[int, parts.Disturbance] | None,
+    guidance: parts.Guidance | Mapping[str, parts.Guidance] | None,
 ) -> list[tuple[str, object]]:
     """Return the parts that are given, each with its role, such as `sensor 0` or `law point`.
 
     Raises:
         TypeError: An object is not of the class of its role.
     """
-    sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
-    actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
+    sensors, actuators, disturbances = (
+        each if isinstance(each, Mapping) else {} if each is None else {0: each}
+        for each in (sensor, actuator, disturbance)
+    )
     laws = {f"law {name}": each for name, each in law.items()} if isinstance(law, Mapping) else {"law": law}
+    guides = (
+        {f"guidance {name}": each for name, each in guidance.items()}
+        if isinstance(guidance, Mapping)
+        else {"guidance": guidance}
+    )
     given: list[tuple[str, type[Any], object]] = [
         *(
             (role, parts.ThreeAxisLaw if isinstance(each, parts.ThreeAxisLaw) else parts.Law, each)
@@ -38,6 +47,8 @@ def by_role(
         ("adaptation", parts.Adaptation, adaptation),
         *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
         *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
+        *((f"disturbance {index(place)}", parts.Disturbance, each) for place, each in disturbances.items()),
+        *((role, parts.Guidance, each) for role, each in guides.items()),
     ]
     brought = []
     for role, kind, part in given:

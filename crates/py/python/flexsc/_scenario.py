@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Mapping, Sequence
 from math import inf, nan
-from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeVar, overload
 
 from flexsc import _keys
 from flexsc import _native as engine
@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Break, Linear
     from flexsc._part import Part
-    from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
+    from flexsc._sample_times import SampleTimes
+    from flexsc.parts import Actuator, Adaptation, Disturbance, Estimator, Guidance, Law, Sensor, ThreeAxisLaw
     from flexsc.results import (
         NoiseSpectrum,
         OutputBound,
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
     )
     from flexsc.scenario import Keys
 
+# The value that `with_` was not given.
+_NOT_GIVEN: Final = object()
 P = TypeVar("P", bound="Part")
 # Name of a stability margin.
 Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
@@ -222,6 +225,29 @@ class Scenario:
         """
         return self._native.to_toml()
 
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Save the scenario as a file, which `Scenario.load` and the command read; it has all defaults.
+
+        Paths of files that the scenario names, such as those of modes, are absolute.
+
+        >>> import flexsc, pathlib, tempfile
+        >>> scenario = flexsc.Scenario.example("relay-fixed")
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     scenario.save(pathlib.Path(out) / "study.toml")
+        ...     flexsc.Scenario.load(pathlib.Path(out) / "study.toml") == scenario
+        True
+
+        Raises:
+            ValueError: The scenario has parts written in Python, which no file can hold.
+            FileExistsError: The file is there, and `force` is not given.
+            OSError: The file cannot be written.
+        """
+        if self.parts:
+            raise ValueError(f"no file can hold parts written in Python: {', '.join(self.parts)}")
+        if not force and os.path.lexists(path):
+            raise FileExistsError(f"{os.fspath(path)} is there: give force=True to replace it")
+        engine.write(path, self.to_toml().encode())
+
     def get(self, key: str) -> Any:
         """Return the value of a key, as in `to_dict`: its default if it is not set, and None without one.
 
@@ -292,11 +318,12 @@ class Scenario:
     def with_(self, key: str, value: object, /) -> Scenario: ...
     @overload
     def with_(self, keys: Mapping[str, object], /) -> Scenario: ...
-    def with_(self, key: str | Mapping[str, object], value: object = None, /) -> Scenario:
+    def with_(self, key: str | Mapping[str, object], value: object = _NOT_GIVEN, /) -> Scenario:
         """Return a scenario with new values: `with_("law.relay.k_t", 0.34)`, `with_({"seed": 3, ...})`.
 
         Keys are paths into the file, such as `body.planar.modes[0].frequency`. Several keys are set together:
-        only the result has to be valid. A quantity may be a text with a unit, such as `"0.02 Hz"`.
+        only the result has to be valid. A quantity may be a text with a unit, such as `"0.02 Hz"`. None
+        removes a key, as `without` does.
 
         >>> import flexsc
         >>> scenario = flexsc.Scenario.example("relay-fixed")
@@ -306,9 +333,16 @@ class Scenario:
         <flexsc.Scenario relay-fixed: 600 s, 2 modes, seed 3>
 
         Raises:
+            KeyError: A key that is to be removed is not set.
             ScenarioError: A key or a value is not accepted.
         """
+        if isinstance(key, str) and value is _NOT_GIVEN:
+            raise TypeError(f"with_ needs the value of {key!r}")
         keys = {key: value} if isinstance(key, str) else key
+        removed = [name for name, value in keys.items() if value is None]
+        if removed:
+            changes = {name: value for name, value in keys.items() if value is not None}
+            return _keys.without(self, removed, changes)
         return self._of(self._native.with_keys([(k, toml(self.name, k, v)) for k, v in keys.items()]))
 
     def in_mode(self, name: str, /) -> Scenario:
@@ -339,6 +373,8 @@ class Scenario:
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
         actuator: Actuator | Mapping[int, Actuator] | None = None,
+        disturbance: Disturbance | Mapping[int, Disturbance] | None = None,
+        guidance: Guidance | Mapping[str, Guidance] | None = None,
     ) -> Scenario:
         """Return a scenario with your own parts in place of its parts, as `flexsc.parts` describes them.
 
@@ -346,7 +382,9 @@ class Scenario:
         of a list by their positions in it, `sensor={1: MyTracker()}`; a single one replaces the first. An
         actuator of a list keeps its `axes` and its `share`. In a scenario with modes of operation give laws
         by the names of their modes, `law={"point": MyLaw()}`, and in one with stages by the numbers of their
-        stages; the other modes and stages keep their laws.
+        stages; the other modes and stages keep their laws. A disturbance is added to those of the scenario,
+        several with numbers of their own, `disturbance={0: Slosh(), 1: Cooler()}`. A guidance replaces all
+        targets, or that of a mode, `guidance={"point": MyGuidance()}`.
         A file cannot hold such parts: `to_toml` has empty tables for them, the log of a run cannot be
         repeated without the objects, and campaigns are not written to directories.
 
@@ -367,13 +405,14 @@ class Scenario:
         from flexsc._roles import by_role
 
         return self._of(
-            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor))
+            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor, disturbance, guidance))
         )
 
     @property
     def parts(self) -> dict[str, object]:
         """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of
-        modes as `law point`, and those of stages as `law 1`.
+        modes as `law point`, and those of stages as `law 1`; disturbances as `disturbance 0`, guidance of
+        modes as `guidance point`.
 
         >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
         {}
@@ -470,6 +509,8 @@ class Scenario:
         run: int = 0,
         log: Detail = "events",
         yes: bool = False,
+        *,
+        at: npt.ArrayLike | None = None,
     ) -> Result:
         """Simulate the scenario. Other Python threads continue meanwhile.
 
@@ -480,6 +521,7 @@ class Scenario:
                 each period of the scenario's log and at every switching. `none` records the metrics only.
                 `scene` has the columns of `full`; a file written from it also has the scene for viewers.
             yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
+            at: Times (s) at which the exact motion is kept as `samples`, in the same run.
 
         >>> import flexsc
         >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate(log="full")
@@ -490,7 +532,11 @@ class Scenario:
             SimulationError: The state is no longer finite, or the law switches without end.
             ValueError: The estimate exceeds these limits, and `yes` is not given.
         """
-        return self._simulate(run_number(run), log, yes)
+        if at is None:
+            return self._simulate(run_number(run), log, yes)
+        from flexsc._sample_times import SampleTimes
+
+        return self._simulate(run_number(run), log, yes, times=SampleTimes(at, self.duration))
 
     def linearise(
         self,
@@ -819,14 +865,24 @@ class Scenario:
         return engine.export_fmu(self._native, path, fmi, part, library or fmi_library())
 
     def _simulate(
-        self, run: int, log: Detail, yes: bool, stepped: engine.Commands | None = None, until: float = inf
+        self,
+        run: int,
+        log: Detail,
+        yes: bool,
+        stepped: engine.Commands | None = None,
+        until: float = inf,
+        times: SampleTimes | None = None,
     ) -> Result:
         """Simulate a run, or repeat one that was stepped."""
         began = time.perf_counter()
-        metrics, topics, answer = engine.simulate(self._native, run, log, yes, stepped)
+        at = None if times is None else times.grown
+        metrics, topics, answer, seen = engine.simulate(self._native, run, log, yes, stepped, at)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        return Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
+        result = Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
+        if times is not None and seen is not None:
+            result.samples = result._sampled(times, seen)
+        return result
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from math import prod
 from operator import index
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from flexsc import _native as engine
 from flexsc import _units
 from flexsc._answer import CampaignAnswer
 from flexsc._columns import Columns, read_only
+from flexsc._drawable import Drawable
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
 from flexsc._row import Row
@@ -19,10 +20,9 @@ from flexsc._scenario import Scenario
 from flexsc._values import counted, objects
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure, SubFigure
+    from flexsc._ensemble import Ensemble
 
-
-class Table(Columns):
+class Table(Columns, Drawable):
     """The results of a campaign, with one row per run: a mapping of columns.
 
     The columns, of shape (rows,) and read-only, are `run`, `seed`, the varied keys, the metrics, and `error`.
@@ -51,6 +51,13 @@ class Table(Columns):
     'body.planar.angle'
     """
 
+    samples: Ensemble | None
+    """The motion of all runs at the times `at` of `flexsc.campaign`; None without them.
+
+    >>> table.samples is None
+    True
+    """
+
     def __init__(
         self,
         work: engine.Work,
@@ -67,6 +74,7 @@ class Table(Columns):
         self._statistics: dict[str, dict[str, Any]] | None = None
         self._kept: object = None
         self._work: engine.Work | None = work
+        self.samples = None
         self._manifest: str | None = None
         self._design: str | None = None
 
@@ -85,14 +93,27 @@ class Table(Columns):
         """The number of columns; `rows` is that of the rows."""
         return len(self._names)
 
-    def __getitem__(self, column: str) -> npt.NDArray[Any]:
+    @overload
+    def __getitem__(self, column: str) -> npt.NDArray[Any]: ...
+    @overload
+    def __getitem__(self, column: slice | Sequence[int] | npt.NDArray[Any]) -> Table: ...
+    def __getitem__(self, column: str | slice | Sequence[int] | npt.NDArray[Any]) -> Any:
         """Return a column, of shape (rows,), which is read-only: `table[name].copy()` can be changed.
 
-        `table["line_of_sight_rms_rad[0]"]` has an element of each list, NaN where a list has none.
+        `table["line_of_sight_rms_rad[0]"]` has an element of each list, NaN where a list has none. A slice, a
+        mask or positions instead of a name give a table of these rows: `table[table["duty"] > 0.04]`.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> table = flexsc.campaign(scenario, runs=8)
+        >>> table[:3].rows, table[table["duty"] >= table["duty"].max()].rows
+        (3, 1)
 
         Raises:
             KeyError: There is no such column.
         """
+        if not isinstance(column, str):
+            return self._taken(column)
         if column not in self._names:
             name, _, rest = column.rpartition("[")
             if name not in self._names or not rest.removesuffix("]").isdecimal():
@@ -105,6 +126,42 @@ class Table(Columns):
             read_only([values])
             self._columns[column] = values
         return self._columns[column]
+
+    def _taken(self, places: slice | Sequence[int] | npt.NDArray[Any]) -> Table:
+        """Return a table of the rows at some places."""
+        chosen = places if isinstance(places, slice) else np.asarray(places)
+        if not isinstance(chosen, slice) and chosen.dtype.kind not in "biu":
+            raise TypeError(f"a table takes the name of a column, a slice, a mask or positions, got {places!r}")
+        at = np.arange(self.rows)[chosen]
+        work = self._recreated_work() if not self.scenario.parts else self._campaign()
+        columns = {name: values[at] for name, values in self.items()}
+
+        def statistics() -> list[Any]:
+            plain = {name: list(c) if c.dtype.kind == "U" else c for name, c in columns.items()}
+            return engine.campaign_statistics(work, plain, len(at))
+
+        taken = Table(work, columns.__getitem__, statistics)
+        taken._flags = []
+        taken.samples = None if self.samples is None else self.samples._taken(at)
+        return taken
+
+    def sorted(self, column: str, *, descending: bool = False) -> Table:
+        """Return a table with its rows in the order of a column; rows without a value come last.
+
+        >>> import flexsc
+        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
+        >>> table = flexsc.campaign(scenario, runs=8).sorted("duty", descending=True)
+        >>> table["duty"][0] == table["duty"].max()
+        True
+
+        Raises:
+            KeyError: There is no such column.
+        """
+        values = self[column]
+        if descending and values.dtype.kind in "iuf":
+            return self[np.argsort(-values, kind="stable")]
+        order = np.argsort(values, kind="stable")
+        return self[order[::-1] if descending else order]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -291,28 +348,6 @@ class Table(Columns):
             for key, grid in zip(keys, grids, strict=True)
         }
         return values if all(np.array_equal(each[key], self[key]) for key in keys) else {}
-
-    def plot(self, name: str | None = None, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
-        """Draw a figure of the table with Matplotlib (`pip install flexsc[plot]`).
-
-        Args:
-            name: One of `flexsc.plot.figures(table)`, such as `distribution-duty`; if omitted, the first.
-            on: An empty figure or subfigure; if omitted, a new one.
-
-        Returns:
-            The figure, in SI units.
-
-        >>> import flexsc
-        >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
-        >>> figure = flexsc.campaign(scenario, runs=8).plot("distribution-duty")  # doctest: +SKIP
-
-        Raises:
-            ValueError: There is no such figure, or none.
-            ImportError: Matplotlib is not installed.
-        """
-        from flexsc import plot
-
-        return plot.at_a_glance(self, name, on)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for pickles and copies: all columns, statistics, and the manifest of the work."""

@@ -1,4 +1,5 @@
-"""Your own parts: a law, an estimator, a sensor, an actuator or an adaptation as a Python object.
+"""Your own parts: a law, an estimator, a sensor, an actuator, an adaptation, a disturbance or a guidance
+as a Python object.
 
 A part is called only at events and samples; between them the motion is exact. `Scenario.with_parts` puts it
 in place of a part of the scenario and combines it with parts of any other kind:
@@ -25,8 +26,9 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any
 
-from flexsc._laws import CompiledLaw, Law, ThreeAxisLaw
+from flexsc._laws import CompiledLaw, CompiledThreeAxisLaw, Law, ThreeAxisLaw
 from flexsc._native import (
+    Aim,
     Authority,
     Demanded,
     Draws,
@@ -35,8 +37,10 @@ from flexsc._native import (
     Hold,
     Instant,
     Known,
+    Load,
     Reading,
     Setting,
+    Sky,
     Stream,
     Taken,
     ThreeAxisEvent,
@@ -44,24 +48,33 @@ from flexsc._native import (
     Truth,
 )
 from flexsc._own_part import OwnPart
+from flexsc._surroundings import CompiledDisturbance, CompiledGuidance, Disturbance, Guidance
 
 __all__ = [
     "Actuator",
     "Adaptation",
+    "Aim",
     "Authority",
+    "CompiledDisturbance",
+    "CompiledGuidance",
     "CompiledLaw",
+    "CompiledThreeAxisLaw",
     "Demanded",
+    "Disturbance",
     "Draws",
     "Effort",
     "Estimator",
     "Event",
+    "Guidance",
     "Hold",
     "Instant",
     "Known",
     "Law",
+    "Load",
     "Reading",
     "Sensor",
     "Setting",
+    "Sky",
     "Stream",
     "Taken",
     "ThreeAxisEvent",
@@ -88,10 +101,21 @@ def _keep_keys(kind: type[Any], names: Sequence[str]) -> None:
 _keep_keys(Reading, ("angle", "attitude", "rate", "vector", "inertial", "is_direction"))
 _keep_keys(ThreeAxisHold, ("torques", "accelerations", "moments", "after", "until", "state"))
 _keep_keys(Effort, ("torques", "after"))
+_keep_keys(Load, ("torque", "force", "after"))
+_keep_keys(Aim, ("attitude", "rate", "acceleration"))
 
 
 # Tracebacks, `help` and pickles of classes name the place where users find them.
-for _class in (CompiledLaw, Law, ThreeAxisLaw):
+for _class in (
+    CompiledDisturbance,
+    CompiledGuidance,
+    CompiledLaw,
+    CompiledThreeAxisLaw,
+    Disturbance,
+    Guidance,
+    Law,
+    ThreeAxisLaw,
+):
     _class.__module__ = __name__
 del _class
 

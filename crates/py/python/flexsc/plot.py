@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
 
 from flexsc import _html
 from flexsc import _native as engine
-from flexsc._axes_look import INCH, POINT, WIDTH, frame, need_matplotlib, show_once
+from flexsc._axes_look import INCH, POINT, WIDTH, Look, frame, need_matplotlib, show_once
 from flexsc._frequency_figures import bode, nichols, poles
 from flexsc._log import Log
 from flexsc._missing import reading
@@ -111,19 +111,20 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
         ImportError: Matplotlib is not installed.
     """
     need_matplotlib()
-    drawn = _figure(source, name)
-    panels = drawn.panels()
+    found = drawn(source, name)
+    panels = found.panels()
     if not 0 <= panel < len(panels):
         raise ValueError(f"figure {name!r} has panels 0 to {len(panels) - 1}, got {panel}")
+    look = Look(ax)
     if ax is None:
         from matplotlib import pyplot
 
-        height = (drawn.panel_height + 100) * INCH
+        height = (found.panel_height + 100) * INCH
         _, ax = pyplot.subplots(figsize=(WIDTH * INCH, height), layout="constrained")
-        ax.set_title(drawn.title, fontsize=14 * POINT, pad=24)
+        ax.set_title(found.title, fontsize=14 * POINT, pad=24)
     # Panels above the last leave the name of the time to it.
     name_below = panels[-1]["x"]["label"]
-    _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below, drawn.panel_height)
+    _panel(ax, panels[panel], panels[panel]["x"]["label"] or name_below, found.panel_height, look)
     return ax
 
 
@@ -154,29 +155,30 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
         ImportError: Matplotlib is not installed.
     """
     need_matplotlib()
-    drawn = _figure(source, name)
-    panels = drawn.panels()
+    found = drawn(source, name)
+    panels = found.panels()
+    is_own = on is None
     if on is None:
         from matplotlib import pyplot
 
-        height = 30 + sum(_height(panel, drawn.panel_height) for panel in panels)
+        height = 30 + sum(_height(panel, found.panel_height) for panel in panels)
         on = pyplot.figure(figsize=(WIDTH * INCH, height * INCH), layout="constrained")
         show_once(on)
-    on.suptitle(drawn.title, fontsize=14 * POINT)
+    on.suptitle(found.title, fontsize=14 * POINT if is_own else None)
     axes = on.subplots(len(panels), 1, squeeze=False)[:, 0]
     for ax, panel in zip(axes, panels, strict=True):
-        _panel(ax, panel, panel["x"]["label"], drawn.panel_height)
+        _panel(ax, panel, panel["x"]["label"], found.panel_height, Look(None if is_own else ax))
     return on
 
 
-def at_a_glance(source: Source, name: str | None, on: Figure | SubFigure | None) -> Figure | SubFigure:
-    """Draw a figure of a source, or if no name is given the one that shows it at a glance."""
-    if name is None:
-        there = figures(source)
-        if not there:
-            raise ValueError("there is no figure of it")
-        name = next((name for name in _html.AT_A_GLANCE if name in there), there[0])
-    return figure(source, name, on)
+def at_a_glance(source: Source, name: str | None) -> str:
+    """Return the name of a figure, or if there is none that of the figure that shows it at a glance."""
+    if name is not None:
+        return name
+    there = figures(source)
+    if not there:
+        raise ValueError("there is no figure of it")
+    return next((name for name in _html.AT_A_GLANCE if name in there), there[0])
 
 
 def _height(panel: dict[str, Any], plot: int) -> int:
@@ -212,7 +214,8 @@ def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> di
     return dict(drawn)
 
 
-def _figure(source: Source, name: str) -> engine.Figure:
+def drawn(source: Source, name: str) -> engine.Figure:
+    """Return a figure of the engine."""
     log = _log(source)
     if log is not None:
         try:
@@ -232,13 +235,13 @@ def _figure(source: Source, name: str) -> engine.Figure:
     return there[name]
 
 
-def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
-    """Draw a panel, in the command's look."""
-    _axis(ax, "x", ax.xaxis, panel["x"], 8)
-    _axis(ax, "y", ax.yaxis, panel["y"], max(2, plot // 28))
-    ax.set_xlabel(below, fontsize=12 * POINT)
-    ax.set_ylabel(panel["y"]["label"], fontsize=12 * POINT)
-    frame(ax)
+def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int, look: Look) -> None:
+    """Draw a panel, in the command's look or with the sizes of a figure that is given."""
+    _axis(ax, "x", ax.xaxis, panel["x"], look.ticks(8))
+    _axis(ax, "y", ax.yaxis, panel["y"], look.ticks(max(2, plot // 28), is_upright=True))
+    ax.set_xlabel(below, fontsize=look.size(12))
+    ax.set_ylabel(panel["y"]["label"], fontsize=look.size(12))
+    frame(ax, look.size(11))
     if panel["plain"]:
         ax.grid(visible=False)
     handles = [(_layer(ax, layer, order), layer["name"]) for order, layer in enumerate(panel["layers"], 2)]
@@ -248,10 +251,10 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
             *zip(*named, strict=True),
             loc="lower left",
             bbox_to_anchor=(0.0, 1.0),
-            ncols=len(named),
+            ncols=look.columns([name for _, name in named]),
             frameon=False,
             borderaxespad=0.1,
-            fontsize=11 * POINT,
+            fontsize=look.size(11),
             handlelength=1.6,
             columnspacing=1.4,
         )

@@ -1242,6 +1242,9 @@ class Disturbance(Part):
             `period`. Default: 0.0.
         pulse: Pulses in place of a steady torque or force, each at the start of a period.
         period: Time for which a draw of the noise is held (s).
+        table: Torques (s, N m) or forces in the body's axes (s, N, N, N) over time, or the path of a .csv
+            file, in place of constant ones; times are from the start of the run. Each is held until the
+            next, the last until `to`.
         from_: Start time (s). Default: 0.0.
         to: End time (s); default: the end of the run.
     """
@@ -1268,6 +1271,11 @@ class Disturbance(Part):
     """Pulses in place of a steady torque or force, each at the start of a period."""
     period: float | None = None
     """Time for which a draw of the noise is held (s)."""
+    table: Rows | str | None = None
+    """Torques (s, N m) or forces in the body's axes (s, N, N, N) over time, or the path of a .csv file, in
+    place of constant ones; times are from the start of the run. Each is held until the next, the last
+    until `to`.
+    """
     from_: float | None = None
     """Start time (s). Default: 0.0."""
     to: float | None = None

@@ -10,9 +10,10 @@ use flexsc_core::control::part::Part;
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::numerics::time::{Instant, Span};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use super::compiled_arrays::address;
 use super::hold::{PHASES, never};
 use super::law::positive;
 
@@ -32,14 +33,7 @@ pub struct CompiledLaw {
 impl CompiledLaw {
     /// Reads what a compiled law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let address: usize = part.getattr("address")?.extract()?;
-        if address == 0 {
-            return Err(PyValueError::new_err("address must be the address of a function, got 0"));
-        }
-        if part.getattr("signals")?.len()? > 0 {
-            let why = "law: a compiled law has no signals: it has no attributes during a run";
-            return Err(PyValueError::new_err(why));
-        }
+        let address = address(part, "law")?;
         let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {
             function: from_address(address),

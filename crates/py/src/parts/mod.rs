@@ -8,8 +8,11 @@ mod adaptation;
 mod attitude;
 mod bring;
 mod compiled;
+mod compiled_arrays;
+mod disturbance;
 mod draws;
 mod estimator;
+mod guidance;
 mod hold;
 mod instant;
 mod law;
@@ -24,13 +27,17 @@ use std::sync::Arc;
 
 use flexsc_core::control::actuator::ActuatorSpec;
 use flexsc_core::control::custom::Custom;
+use flexsc_core::control::disturbance::DisturbanceSpec;
+use flexsc_core::control::guidance::GuidanceSpec;
 use flexsc_core::scenario::{CustomLaw, CustomParts};
 use pyo3::prelude::*;
 
 pub use actuator::{Demanded, Effort, Setting};
 pub use bring::{beside_parts, parts_of, text_beside_parts, with_parts};
+pub use disturbance::Load;
 pub use draws::{Draws, Stream};
 pub use estimator::{Known, Taken};
+pub use guidance::{Aim, Sky};
 pub use hold::Hold;
 pub use instant::Instant;
 pub use law::{Authority, Event};
@@ -40,7 +47,7 @@ pub use three_axis_law::{ThreeAxisEvent, ThreeAxisHold};
 use signals::Signals;
 
 /// A part of each role by its key; sensors have their place behind it, `sensor 0`, and actuators after the first; laws of
-/// modes of operation their name, and of stages their number.
+/// modes of operation their name, and of stages their number; disturbances their place, and guidance of modes their name.
 pub type Named = (String, Py<PyAny>);
 
 /// The engine's parts of Python's objects.
@@ -51,13 +58,17 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
             Some(("law", stage)) => own.stage_laws.push((stage.to_owned(), law(&part, &stage_role(stage))?)),
+            Some(("disturbance", place)) => {
+                own.disturbances.push((place.parse()?, disturbance(&part, place)?));
+            }
+            Some(("guidance", mode)) => own.guidance.push((mode.to_owned(), guidance(&part, mode)?)),
             Some(("actuator", place)) => own.actuators.push((place.parse()?, actuator(&part, place)?)),
             Some((_, place)) => {
-                let role = if place == "0" { "sensor".to_owned() } else { format!("sensor{place}") };
-                let sensor = sensor::PythonSensor::from_python(&part, &role)?;
+                let sensor = sensor::PythonSensor::from_python(&part, &placed("sensor", place))?;
                 let signals = sensor.signals.clone();
                 own.sensors.push((place.parse()?, custom(Arc::new(sensor), signals.as_ref(), &part)));
             }
+            None if role == "guidance" => own.guidance.push((String::new(), guidance(&part, "")?)),
             None if role == "law" => own.law = Some(law(&part, "law")?),
             None if role == "estimator" => {
                 let estimator = estimator::PythonEstimator::from_python(&part)?;
@@ -88,16 +99,26 @@ fn custom<T: ?Sized>(part: Arc<T>, signals: Option<&Signals>, object: &Bound<'_,
 /// Returns the role of the law of a mode of operation or of a stage in the name of its topic: `law_point`, or `law1` for the
 /// second stage.
 fn stage_role(stage: &str) -> String {
-    match stage.parse() {
-        Ok(0_usize) => "law".to_owned(),
-        Ok(index) => format!("law{index}"),
-        Err(_) => format!("law_{}", stage.to_lowercase().replace('-', "_")),
-    }
+    if stage.parse::<usize>().is_ok() { placed("law", stage) } else { mode_role("law", stage) }
+}
+
+/// Returns the role of a part of a mode of operation in the name of its topic.
+fn mode_role(role: &str, mode: &str) -> String {
+    format!("{role}_{}", mode.to_lowercase().replace('-', "_"))
+}
+
+/// Returns a role with its place in a list, which the first does not have, in the name of its topic.
+fn placed(role: &str, place: &str) -> String {
+    if place == "0" { role.to_owned() } else { format!("{role}{place}") }
 }
 
 /// Returns the engine's law of a Python object: compiled, about three axes together, or about each axis.
 fn law(part: &Bound<'_, PyAny>, role: &str) -> PyResult<CustomLaw> {
     if part.hasattr("address")? {
+        if is_of(part, "ThreeAxisLaw")? {
+            let law = compiled_arrays::CompiledThreeAxisLaw::from_python(part)?;
+            return Ok(custom(Arc::new(law), None, part));
+        }
         return Ok(custom(Arc::new(compiled::CompiledLaw::from_python(part)?), None, part));
     }
     if is_of(part, "ThreeAxisLaw")? {
@@ -112,10 +133,32 @@ fn law(part: &Bound<'_, PyAny>, role: &str) -> PyResult<CustomLaw> {
 
 /// Returns the engine's actuator of a Python object at a place in a list.
 fn actuator(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn ActuatorSpec>> {
-    let role = if place == "0" { "actuator".to_owned() } else { format!("actuator{place}") };
-    let actuator = actuator::PythonActuator::from_python(part, &role)?;
+    let actuator = actuator::PythonActuator::from_python(part, &placed("actuator", place))?;
     let signals = actuator.signals.clone();
     Ok(custom(Arc::new(actuator), signals.as_ref(), part))
+}
+
+/// Returns the engine's disturbance of a Python object at a place in a list.
+fn disturbance(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn DisturbanceSpec>> {
+    if part.hasattr("address")? {
+        let disturbance = compiled_arrays::CompiledDisturbance::from_python(part)?;
+        return Ok(custom(Arc::new(disturbance), None, part));
+    }
+    let role = placed("disturbance", place);
+    let disturbance = disturbance::PythonDisturbance::from_python(part, &role)?;
+    let signals = disturbance.signals.clone();
+    Ok(custom(Arc::new(disturbance), signals.as_ref(), part))
+}
+
+/// Returns the engine's guidance of a Python object, for a mode of operation or for the whole run.
+fn guidance(part: &Bound<'_, PyAny>, mode: &str) -> PyResult<Custom<dyn GuidanceSpec>> {
+    if part.hasattr("address")? {
+        return Ok(custom(Arc::new(compiled_arrays::CompiledGuidance::from_python(part)?), None, part));
+    }
+    let role = if mode.is_empty() { "guidance".to_owned() } else { mode_role("guidance", mode) };
+    let guidance = guidance::PythonGuidance::from_python(part, &role)?;
+    let signals = guidance.signals.clone();
+    Ok(custom(Arc::new(guidance), signals.as_ref(), part))
 }
 
 /// Python's objects of a scenario's parts.
@@ -138,6 +181,13 @@ pub fn named(py: Python<'_>, own: &CustomParts) -> Vec<Named> {
     for (place, actuator) in &own.actuators {
         let role = if *place == 0 { "actuator".to_owned() } else { format!("actuator {place}") };
         add(role, actuator.origin());
+    }
+    for (place, disturbance) in &own.disturbances {
+        add(format!("disturbance {place}"), disturbance.origin());
+    }
+    for (mode, guidance) in &own.guidance {
+        let role = if mode.is_empty() { "guidance".to_owned() } else { format!("guidance {mode}") };
+        add(role, guidance.origin());
     }
     named
 }

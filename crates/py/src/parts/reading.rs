@@ -7,6 +7,7 @@ use nalgebra::Quaternion;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::guidance::triple;
 use super::instant::Instant;
 use super::object::exactly;
 
@@ -27,6 +28,18 @@ pub fn angle(orientation: &Orientation) -> Option<f64> {
 /// An attitude, of a body with three axes.
 pub fn attitude(orientation: &Orientation) -> Option<Four> {
     if let Orientation::Attitude(q) = orientation { Some(four(q)) } else { None }
+}
+
+/// Returns the unit quaternion of four numbers.
+pub fn unit_quaternion(object: &Bound<'_, PyAny>) -> PyResult<Quaternion<f64>> {
+    let [w, x, y, z] = exactly::<4>(object, "attitude")?;
+    let q = Quaternion::new(w, x, y, z);
+    let length = q.norm();
+    if (length - 1.0).abs() > 1e-6 || !length.is_finite() {
+        let why = format!("attitude must be a unit quaternion (w, x, y, z), got one of length {length}");
+        return Err(PyValueError::new_err(why));
+    }
+    Ok(q)
 }
 
 /// A measurement: the `angle` (rad) or the `attitude` (w, x, y, z), which default to the true one; the
@@ -79,23 +92,13 @@ impl Reading {
         inertial: Option<&Bound<'_, PyAny>>,
         is_direction: bool,
     ) -> PyResult<Self> {
-        let attitude = attitude.map(|object| exactly::<4>(object, "attitude")).transpose()?;
+        let attitude = attitude.map(unit_quaternion).transpose()?;
         let orientation = match (angle, attitude) {
             (Some(_), Some(_)) => {
                 return Err(PyValueError::new_err("a reading has either an angle or an attitude"));
             }
             (Some(angle), None) => Some(Orientation::Angle(angle)),
-            (None, Some([w, x, y, z])) => {
-                let q = Quaternion::new(w, x, y, z);
-                let length = q.norm();
-                if (length - 1.0).abs() > 1e-6 || !length.is_finite() {
-                    let why = format!(
-                        "attitude must be a unit quaternion (w, x, y, z), got one of length {length}"
-                    );
-                    return Err(PyValueError::new_err(why));
-                }
-                Some(Orientation::Attitude(q))
-            }
+            (None, Some(attitude)) => Some(Orientation::Attitude(attitude)),
             (None, None) => None,
         };
         let vector_of = |vector: Option<&Bound<'_, PyAny>>, name: &str| {
@@ -161,7 +164,7 @@ impl Reading {
     }
 }
 
-/// The true quantities that a sensor can measure at an instant.
+/// The true motion and sky at an instant, which sensors measure and disturbances depend on.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Truth {
@@ -189,9 +192,13 @@ attributes! { Truth {
     /// The integral of `rate` (rad) up to a constant, as a gyro counts it.
     turned: Three = |this| this.truth.rate_integral.into();
     /// The magnetic field in the inertial frame (T), if there is one.
-    field: Option<Three> = |this| this.truth.environment.field.map(|field| <[f64; 3]>::from(field).into());
+    field: Option<Three> = |this| triple(this.truth.environment.field);
     /// The direction to the Sun in the inertial frame, when in sunlight.
-    sun: Option<Three> = |this| this.truth.environment.sun.map(|sun| <[f64; 3]>::from(sun).into());
+    sun: Option<Three> = |this| triple(this.truth.environment.sun);
+    /// The position from the planet's centre in the inertial frame (m), on an orbit.
+    position: Option<Three> = |this| triple(this.truth.environment.position);
+    /// The velocity in the inertial frame (m/s), on an orbit.
+    velocity: Option<Three> = |this| triple(this.truth.environment.velocity);
 }
 
     /// The attitude rotated by three small angles about the body axes (rad).

@@ -51,7 +51,13 @@ const INITIAL_TRUTH: Truth = Truth {
     rate: [0.0; 3],
     rigid_rate: [0.0; 3],
     rate_integral: [0.0; 3],
-    environment: EnvironmentObservation { field: None, sun: None, nadir: None },
+    environment: EnvironmentObservation {
+        field: None,
+        sun: None,
+        nadir: None,
+        position: None,
+        velocity: None,
+    },
 };
 
 /// Moving body.

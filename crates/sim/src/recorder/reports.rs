@@ -76,6 +76,10 @@ impl RunView<'_> {
         let parts: [&dyn Part; 4] =
             [self.sensors, &*self.estimation.estimator, self.laws, &*self.loads.actuator];
         self.add_reports(Occasion::Period, &[], &parts, &mut report);
+        let disturbances = self.loads.own.iter().map(|own| &*own.run as &dyn Part);
+        let own: Vec<_> =
+            disturbances.chain(self.guidance.own(self.now).map(|own| own as &dyn Part)).collect();
+        self.add_reports(Occasion::Period, &[], &own, &mut report);
         if let Some(search) = adaptation {
             self.add_reports(Occasion::Period, &[], &[search.part()], &mut report);
         }

@@ -131,8 +131,7 @@ pub(super) fn harris_priester(height: f64, bulge_cosine: f64, exponent: f64) -> 
 
 /// Returns the densities (kg/m³) of a table by height.
 pub(super) fn tabulated(table: &DensityTable) -> DensityRows<1> {
-    let rows: Vec<(f64, [f64; 1])> =
-        table.rows().iter().map(|[height, density]| (*height, [*density])).collect();
+    let rows: Vec<(f64, [f64; 1])> = table.rows().iter().map(|row| (row[0], [row[1]])).collect();
     DensityRows::new(&rows)
 }
 

@@ -151,7 +151,7 @@ impl Drag {
                 Some(ConfigError::new("model", why))
             }
             (DensityModel::Table, Some(table)) => {
-                let ([from, _], [to, _]) = (table.rows().first()?, table.rows().last()?);
+                let (from, to) = (table.rows().first()?.first()?, table.rows().last()?.first()?);
                 (*from > low || *to < high).then(|| {
                     let why = format!(
                         "must have heights from {low:.0} to {high:.0} m, where the orbit is, got {from} to {to} m"
@@ -166,8 +166,7 @@ impl Drag {
     /// Reads the file of a table relative to `directory`; returns a key within the drag and the reason.
     pub fn read(&mut self, directory: &Path) -> Option<ConfigError> {
         let table = self.table.as_mut()?;
-        table.locate(directory);
-        table.read().err().map(|why| ConfigError::new("table", why))
+        table.read(directory).err().map(|why| ConfigError::new("table", why))
     }
 }
 

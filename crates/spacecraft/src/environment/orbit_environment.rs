@@ -45,6 +45,10 @@ pub struct EnvironmentObservation {
     pub sun: Option<Vector>,
     /// Direction to the planet's centre, if the body is on an orbit.
     pub nadir: Option<Vector>,
+    /// Position from the planet's centre (m), if the body is on an orbit.
+    pub position: Option<Vector>,
+    /// Velocity (m/s), if the body is on an orbit.
+    pub velocity: Option<Vector>,
 }
 
 impl OrbitEnvironment {
@@ -285,6 +289,8 @@ impl OrbitEnvironment {
             field: self.field.as_ref().map(|_| row.field()),
             sun: sun.map(|_| row.light().direction),
             nadir: self.orbit.as_ref().map(|_| -row.position().normalize()),
+            position: self.orbit.as_ref().map(|_| row.position()),
+            velocity: self.orbit.as_ref().map(|_| row.velocity()),
         }
     }
 }

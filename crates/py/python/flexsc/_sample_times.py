@@ -1,0 +1,38 @@
+"""Times at which the motion of runs is kept, and the rows at them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from flexsc._numpy import np, npt
+from flexsc._values import arrays
+
+
+class SampleTimes:
+    """Times (s) in the order in which they were asked, and as a run passes them.
+
+    Raises:
+        ValueError: A time is not within the run.
+    """
+
+    def __init__(self, times: npt.ArrayLike, end: float, what: str = "duration") -> None:
+        self.asked = np.array(times, dtype=np.float64)
+        if self.asked.ndim != 1:
+            raise ValueError(f"times must be of shape (times,), got {self.asked.shape}")
+        within = (self.asked >= 0.0) & (self.asked <= end)
+        if not within.all():
+            wrong = self.asked[~within][0].item()
+            raise ValueError(f"times must be from 0 to the {what}, {end:g} s, got {wrong:g}")
+        order = np.argsort(self.asked, kind="stable")
+        self.grown: list[float] = self.asked[order].tolist()
+        # The times of most calls grow.
+        self._back = None if (order[1:] > order[:-1]).all() else np.argsort(order, kind="stable")
+
+    def rows(self, topics: dict[str, dict[str, Any]]) -> dict[str, dict[str, npt.NDArray[Any]]]:
+        """Return the columns of topics with a row for each time, in the order in which they were asked."""
+        seen = {name: arrays(columns) for name, columns in topics.items()}
+        for columns in seen.values():
+            if self._back is not None:
+                columns.update({name: values[self._back] for name, values in columns.items()})
+            columns["time_s"] = self.asked.copy()
+        return seen
