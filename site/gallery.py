@@ -40,6 +40,8 @@ class Tile(NamedTuple):
     commands: tuple[str, ...]
     picture: str
     page: str
+    # A page that the commands write too and that the picture opens; empty for the picture itself.
+    opens: str = ""
 
     @property
     def name(self) -> str:
@@ -53,6 +55,18 @@ def figure(title: str, scenario: str, what: str, page: str, options: str = "") -
     plot = f"flexsc plot {scenario}.mcap --what {what}{options}"
     return Tile(
         title, scenario, (f"flexsc simulate {scenario}.toml --log full", plot), f"{scenario}-{what}.svg", page
+    )
+
+
+def explorer(title: str, scenario: str, command: str, what: str, metric: str) -> Tile:
+    """A page that explores the directory `runs` of a command, behind a figure of it."""
+    commands = (
+        command,
+        f"flexsc plot runs --what {what} --metric {metric}",
+        "flexsc plot runs -o explorer.html",
+    )
+    return Tile(
+        title, scenario, commands, f"runs/{scenario}-{what}-{metric}.svg", "figures.md#campaigns", "explorer.html"
     )
 
 
@@ -106,7 +120,22 @@ TILES = [
         "campaigns.md#pointing-budgets",
     ),
     figure("Phase plane of a relay", "relay-adaptive", "phase-plane", "theory/relay.md"),
+    explorer(
+        "A sweep to explore: drag over points",
+        "earth-observer",
+        "flexsc sweep earth-observer.toml --vary law.attitude.bandwidth=0.05:0.3:12 "
+        "--vary law.attitude.damping=0.4:1.2:9 -o runs",
+        "region",
+        "pointing_error_end_rad",
+    ),
     figure("A gain that learns to keep the panels quiet", "relay-adaptive", "gain", "scenario/adaptation.md"),
+    explorer(
+        "A campaign to explore: drag over points",
+        "half-turn",
+        "flexsc simulate half-turn.toml --runs 200 -o runs",
+        "scatter",
+        "pointing_rms_rad",
+    ),
     Tile(
         "Where it is quiet: a map over two keys",
         "relay-fixed",
@@ -149,9 +178,10 @@ TILES = [
 def run(command: str, folder: Path) -> None:
     """Runs a command, drawing for a tile. Exit code 3 is a requirement that is not met."""
     words = shlex.split(command)
-    if words[1] in DRAWING:
+    is_page = words[-1].endswith(".html")
+    if words[1] in DRAWING and not is_page:
         words += FOR_A_TILE
-    if words[1] in ("plot", "worst", "budget"):
+    if words[1] in ("plot", "worst", "budget") and not is_page:
         words += ("--format", "svg")
     done = subprocess.run([COMMAND, *words[1:]], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode not in (0, 3):
@@ -173,6 +203,8 @@ def folder_pictures(scenario: str) -> dict[str, str]:
                 files = sorted(str(other.relative_to(folder)) for other in folder.rglob("*.*"))
                 raise SystemExit(f"{tile.title}: {tile.picture} is not made, but {files}")
             text = path.read_text("utf-8")
+            if tile.opens:
+                made[f"gallery/{tile.name}.html"] = (folder / tile.opens).read_text("utf-8")
             made[f"gallery/{tile.name}.svg"] = DRAWN.findall(text)[0] if path.suffix == ".html" else text
         if scenario == CUBESAT:
             plot = f"flexsc plot {CUBESAT}.mcap --what pointing --format svg -o wide"
@@ -214,7 +246,7 @@ def page(playground: bool) -> str:
         page_of = path.replace(".md", ".html") + (f"#{anchor}" if anchor else "")
         links.append(f'<a href="{page_of}">explained</a>')
         made.append(
-            f'<figure><a href="gallery/{tile.name}.svg"><img src="gallery/{tile.name}.svg" '
+            f'<figure><a href="gallery/{tile.name}.{"html" if tile.opens else "svg"}"><img src="gallery/{tile.name}.svg" '
             f'alt="{html.escape(tile.title)}" loading="lazy"></a>'
             f"<figcaption>{html.escape(tile.title)}<span>{' · '.join(links)}</span>"
             f"<details><summary>command</summary><pre><code>{commands}</code></pre></details></figcaption></figure>"

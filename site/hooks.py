@@ -93,6 +93,10 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
 
 
+# Letters of a formula within a text that may be wider than a narrow screen.
+WIDE = 60
+
+
 def on_page_content(content: str, **_: Any) -> str:
     """Turns formulas into MathML, which browsers draw without a script."""
 
@@ -108,7 +112,9 @@ def on_page_content(content: str, **_: Any) -> str:
         )
         drawn = convert(text, display=display)
         # A wide formula scrolls within its box.
-        return f'<div class="formula">{drawn}</div>' if display == "block" else drawn
+        if display == "block":
+            return f'<div class="formula">{drawn}</div>'
+        return f'<span class="formula">{drawn}</span>' if len(text) > WIDE else drawn
 
     return MATH.sub(formula, content)
 

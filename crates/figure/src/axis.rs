@@ -45,7 +45,7 @@ const MANY: usize = 20;
 /// Ratio by which the lowest values are far below the others.
 const FAR: f64 = 100.0;
 /// Powers of ten that are written as numbers.
-const SHORT_POWERS: Range<i32> = -4..5;
+const SHORT_POWERS: Range<i32> = -6..5;
 
 /// Maximum ratio of the largest values of axes that share a unit, for axes of one quantity.
 const SAME: f64 = 1000.0;
@@ -371,7 +371,7 @@ mod tests {
         // 41 arcsec are 0.0114 deg, 0.3 arcsec are 0.000083 deg.
         assert_eq!(
             (degrees.label().as_str(), texts(&degrees, 5)),
-            ("error (deg)", ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"].map(str::to_owned).to_vec())
+            ("error (deg)", ["0.1", "0.01", "0.001", "0.0001", "0.00001"].map(str::to_owned).to_vec())
         );
         let hertz = FigureAxis::decades(
             "frequency",

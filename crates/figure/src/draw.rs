@@ -14,11 +14,15 @@ use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::note::{self, Note, PlotBox};
 use crate::svg::{Area, Error, UNITS, at, text};
 use crate::text_width::{SMALLEST, fitting, split, wide};
-use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour, strip};
+use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, Ticks, bar, colour, strip};
 
 /// Height of a title, and of each further line of it (px).
 const TITLE: u32 = 30;
 const LINE: u32 = 17;
+/// Half the width of a mark that notes leave free (px).
+const MARKED: f64 = 8.0;
+/// Least space between numbers below an axis (px).
+const SPACE: f64 = 6.0;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
 /// Splits a title between words into lines of legible size.
@@ -125,6 +129,8 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
         height: layout.plot,
     };
     draw_axes(area, (&panel.x, y), &plot, panel.is_plain)?;
+    // Curves that notes leave free (px).
+    let mut curves: Vec<Vec<Point>> = Vec::new();
     for layer in &panel.layers {
         let points: Vec<Point> =
             layer.points.iter().map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
@@ -132,7 +138,9 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
             LayerShape::Line(_) | LayerShape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
                     let piece = thin(&piece, &plot.window, plot.across).into_iter().map(|p| plot.place(p));
-                    draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
+                    let line = straighten(&piece.collect::<Vec<_>>());
+                    curves.push(line.iter().map(|place| pixels(*place)).collect());
+                    draw_line(area, layer, line)?;
                 }
             }
             LayerShape::Area(_) => {
@@ -143,22 +151,27 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
             }
             _ => {
                 for point in points.iter().filter(|point| plot.window.contains(**point)) {
-                    draw_mark(area, layer, plot.place(*point))?;
+                    let place = plot.place(*point);
+                    let (x, y) = pixels(place);
+                    curves.push(vec![(x - MARKED, y), (x + MARKED, y)]);
+                    draw_mark(area, layer, place)?;
                 }
             }
         }
     }
     let [left, top] = [plot.left, plot.top].map(f64::from);
     let (right, bottom) = (left + f64::from(plot.across), top + f64::from(plot.height));
-    let pixels = |x: f64, y: f64| {
-        let (x, y) = plot.place((panel.x.place(x), panel.y.place(y)));
-        (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
-    };
+    let at = |x: f64, y: f64| pixels(plot.place((panel.x.place(x), panel.y.place(y))));
     let end = panel.x.range.end;
     let abscissa = |note: &Note| if note.at.0 == f64::INFINITY { end } else { note.at.0 };
-    let notes = panel.notes.iter().map(|note| (note, pixels(abscissa(note), note.at.1)));
+    let notes = panel.notes.iter().map(|note| (note, at(abscissa(note), note.at.1)));
     let shown = notes.filter(|(_, (x, _))| (left - 1.0..=right + 1.0).contains(x));
-    note::draw(area, shown, PlotBox { left, top, right, bottom })
+    note::draw(area, shown, PlotBox { left, top, right, bottom }, &curves)
+}
+
+/// Returns a place of the backend in pixels.
+fn pixels((x, y): (i32, i32)) -> Point {
+    (f64::from(x) / f64::from(UNITS), f64::from(y) / f64::from(UNITS))
 }
 
 /// Draws the grid, the numbers and the names of the axes.
@@ -173,7 +186,7 @@ fn draw_axes(
     let opposite = plot.place((x.end, y.end));
     let gap = 5 * UNITS as i32;
     let (grid, frame) = (stroke(GRID, 0.6), stroke(colour::GREY, 0.8));
-    let ticks = across.ticks(if plot.across < 400 { plot.across / 55 } else { plot.across / 85 });
+    let ticks = ticks_across(across, plot.across);
     for (place, label) in
         ticks.at.iter().map(|tick| (plot.place((across.place(*tick), y.start)).0, ticks.text(*tick)))
     {
@@ -205,6 +218,23 @@ fn draw_axes(
         area.draw_text(line, &upright, at(first + 11 * index as u32, plot.top + plot.height / 2))?;
     }
     Ok(())
+}
+
+/// Returns the ticks of a horizontal axis of a width (px), as many as have room for their numbers.
+fn ticks_across(axis: &FigureAxis, width: u32) -> Ticks {
+    let most = if width < 400 { width / 55 } else { width / 85 };
+    let place = |tick: f64| {
+        let extent = axis.extent();
+        (axis.place(tick) - extent.start) / (extent.end - extent.start) * f64::from(width)
+    };
+    let has_room = |ticks: &Ticks| {
+        ticks.at.windows(2).all(|pair| {
+            let texts = [0, 1].map(|k| wide(&ticks.text(pair[k]), 11.0));
+            (place(pair[1]) - place(pair[0])).abs() >= f64::midpoint(texts[0], texts[1]) + SPACE
+        })
+    };
+    let mut fewer = (1..=most).rev().map(|most| axis.ticks(most));
+    fewer.find(has_room).unwrap_or_else(|| axis.ticks(1))
 }
 
 /// Splits a text at the space nearest to its middle.

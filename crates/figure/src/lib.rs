@@ -148,6 +148,22 @@ impl Figure {
         FigureAxis::stacked(self.panels.iter().map(|panel| &panel.y))
     }
 
+    /// Returns the figure without the legend of a panel whose layers are all named in the panel before it.
+    #[must_use]
+    pub fn named_once(mut self) -> Self {
+        for index in (1..self.panels.len()).rev() {
+            let (before, after) = self.panels.split_at_mut(index);
+            let is_known = |layer: &Layer| {
+                layer.name.is_empty()
+                    || before[index - 1].layers.iter().any(|other| other.name == layer.name && other.is_like(layer))
+            };
+            if after[0].layers.iter().all(is_known) {
+                after[0].layers.iter_mut().for_each(|layer| layer.name.clear());
+            }
+        }
+        self
+    }
+
     /// Returns the figure as SVG, laid out for a style but in pixels of the layout: [`Style::sized`] sets its size.
     pub fn laid_out(&self, style: &Style) -> Result<String, String> {
         draw::svg(self, style.layout_width(), 0, style.is_titled()).map_err(|error| error.to_string())
@@ -207,5 +223,10 @@ impl Layer {
     /// Creates a layer from its name, colour, shape and points.
     pub fn new(name: &str, colour: RGBColor, shape: LayerShape, points: Vec<Point>) -> Self {
         Self { name: name.to_owned(), colour, shape, points }
+    }
+
+    /// Returns true if another layer looks the same in a legend.
+    fn is_like(&self, other: &Self) -> bool {
+        self.colour == other.colour && self.shape == other.shape
     }
 }

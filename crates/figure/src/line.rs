@@ -21,7 +21,7 @@ impl Window {
     }
 
     /// Returns the visible part of a segment.
-    fn clip(&self, (a, b): (Point, Point)) -> Option<(Point, Point)> {
+    pub(crate) fn clip(&self, (a, b): (Point, Point)) -> Option<(Point, Point)> {
         if self.contains(a) && self.contains(b) {
             return Some((a, b));
         }

@@ -5,7 +5,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color, FontTransform, RGBColor, WHITE};
 
 use crate::colour;
-use crate::line::Point;
+use crate::line::{Point, Window};
 use crate::svg::{Area, Error, UNITS, text};
 use crate::text_width::wide;
 
@@ -66,14 +66,18 @@ const LETTERS: f64 = 10.5;
 const DISTANCE: f64 = 5.0;
 const BESIDE: f64 = 8.0;
 const HEIGHT: f64 = 13.0;
+/// Length of covered curves (px) for which a place gives way to the next one.
+const PREFERENCE: f64 = 4.0;
 /// Opacity of the ground under the words.
 const GROUND: f64 = 0.7;
 
-/// Draws notes, each with its point (px), within a plot: above their points where there is room, and beside each other.
+/// Draws notes, each with its point (px), within a plot: where they cover least of the curves (px), above their points if
+/// possible, and beside each other.
 pub fn draw<'a>(
     area: &Area<'_>,
-    notes: impl IntoIterator<Item = (&'a Note, (f64, f64))>,
+    notes: impl IntoIterator<Item = (&'a Note, Point)>,
     plot: PlotBox,
+    curves: &[Vec<Point>],
 ) -> Result<(), Error> {
     let mut taken: Vec<PlotBox> = Vec::new();
     for (note, (x, y)) in notes {
@@ -94,7 +98,9 @@ pub fn draw<'a>(
             // The words of a limit are not on its line.
             NoteSide::Free if note.colour == colour::RED => [above, below].concat(),
             NoteSide::Free => {
-                vec![above[0], (across, 0.0), (-across, 0.0), below[0], above[1], below[1]]
+                let corners = [(across, -up), (-across, -up), (across, up), (-across, up)];
+                [&[above[0], (across, 0.0), (-across, 0.0), below[0], above[1], below[1]], &corners[..]]
+                    .concat()
             }
             NoteSide::Below => below.to_vec(),
             NoteSide::Left => beside(-across).to_vec(),
@@ -110,7 +116,15 @@ pub fn draw<'a>(
             place.top >= plot.top && place.bottom <= plot.bottom && (is_on || !is_over(place))
         };
         let free = |place: &&PlotBox| !taken.iter().any(|other| place.covers(other));
-        let place = places.iter().filter(inside).find(free).or(places.iter().find(inside)).copied();
+        let allowed: Vec<&PlotBox> = places.iter().filter(inside).collect();
+        let is_any_free = allowed.iter().any(free);
+        let covered = |index: usize, place: &PlotBox| {
+            curves.iter().map(|curve| place.covered(curve)).sum::<f64>() + PREFERENCE * index as f64
+        };
+        let ranked = allowed.into_iter().filter(|place| !is_any_free || free(place)).enumerate();
+        let place = ranked
+            .min_by(|(i, one), (j, other)| covered(*i, one).total_cmp(&covered(*j, other)))
+            .map(|(_, place)| *place);
         let held = |top: f64| top.clamp(plot.top, (plot.bottom - height).max(plot.top));
         let place = place.unwrap_or_else(|| boxed((x + offsets[0].0, held(places[0].top) + height / 2.0)));
         let at =
@@ -139,6 +153,13 @@ pub fn draw<'a>(
 }
 
 impl PlotBox {
+    /// Returns the length of a curve within the rectangle (px).
+    fn covered(&self, curve: &[Point]) -> f64 {
+        let window = Window { x: self.left..self.right, y: self.top..self.bottom };
+        let parts = curve.windows(2).filter_map(|pair| window.clip((pair[0], pair[1])));
+        parts.map(|(a, b)| (b.0 - a.0).hypot(b.1 - a.1)).sum()
+    }
+
     fn covers(&self, other: &Self) -> bool {
         self.left < other.right
             && other.left < self.right

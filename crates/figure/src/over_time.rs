@@ -91,7 +91,7 @@ impl OverTime {
 
     /// Returns the figure.
     pub fn figure(self) -> Figure {
-        self.figure
+        self.figure.named_once()
     }
 }
 

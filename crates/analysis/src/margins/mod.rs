@@ -112,6 +112,9 @@ pub struct SignalMargins {
     /// Loop transfer over frequency: its value, or its eigenvalues for several samples in a period.
     #[serde(skip)]
     pub loci: Vec<LociValues>,
+    /// Loop transfer over the frequencies (rad/s) up to half the rate of the law.
+    #[serde(skip)]
+    pub response: Vec<(f64, Complex<f64>)>,
 }
 
 /// Margin that is the inverse of a largest value over frequency.
@@ -194,7 +197,8 @@ impl StabilityMargins {
 
 impl SignalMargins {
     fn new(signal: &str, transfer: &SampledTransfer<'_>, sensitivity: &Sensitivity, own: &[usize]) -> Self {
-        let loci = loci(sensitivity.loop_transfers(own));
+        let transfers: Vec<_> = sensitivity.loop_transfers(own).collect();
+        let loci = loci(transfers.iter().cloned());
         let crossings = Crossings::find(transfer, &loci);
         let CommonMargins { gain_below, gain_above, phase_rad } = CommonMargins::from_crossings(&crossings);
         let delays = crossings.gain.iter().filter_map(|crossing| crossing.delay_s);
@@ -206,6 +210,7 @@ impl SignalMargins {
             delay_s: delays.min_by(f64::total_cmp),
             modulus: sensitivity.modulus(own),
             disk: sensitivity.disk(own),
+            response: transfer.over_frequency(&transfers, &loci),
             crossings,
             loci,
         }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::fmt;
 
+use flexsc_formats::reader_units::{number, time};
 use nalgebra::{Complex, DMatrix};
 use serde::Serialize;
 
@@ -71,10 +72,11 @@ impl UnstableLoop {
         let Self { growth_time_s, frequency_rad_s, damping, signal, .. } = self;
         format!(
             "the closed loop is not stable and has no {results}: a pole of magnitude {} at \
-             {frequency_rad_s:.4} rad/s ({:.4} Hz), damping {damping:.3e}, grows by e in {growth_time_s:.3e} s and is \
-             largest in `{signal}`",
+             {} Hz, damping {}, grows by e in {} and is largest in `{signal}`",
             magnitude_text(self.spectral_radius),
-            frequency_rad_s / TAU,
+            number(frequency_rad_s / TAU),
+            number(*damping),
+            time(*growth_time_s),
         )
     }
 }

@@ -22,24 +22,35 @@ impl LoopSamples {
     /// Returns the frequency (rad/s) of the strongest component of a motion at an angle, and true if the phase of that
     /// component is the negative one. The motion is that of some signals, sample after sample.
     pub fn frequency(self, angle: f64, motion: &[Complex<f64>]) -> (f64, bool) {
-        let Self { period, count } = self;
-        let signals = motion.len() / count;
-        if count == 1 || signals == 0 {
-            return (angle / period, false);
-        }
-        let step = |k: usize| (angle + TAU * k as f64) / count as f64;
-        let size = |k: usize| {
+        let sizes = self.sizes(angle, motion);
+        let strongest = (0..self.count).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]));
+        self.component(angle, strongest.unwrap_or(0))
+    }
+
+    /// Returns the frequency (rad/s) of a component of a motion at an angle, and true if its phase is the negative one.
+    pub fn component(self, angle: f64, component: usize) -> (f64, bool) {
+        let (turn, rate) = (self.turn(angle, component), self.count as f64 / self.period);
+        if turn > PI { ((TAU - turn) * rate, true) } else { (turn * rate, false) }
+    }
+
+    /// Returns the sizes of all components of a motion at an angle.
+    pub fn sizes(self, angle: f64, motion: &[Complex<f64>]) -> Vec<f64> {
+        let signals = motion.len() / self.count;
+        let size = |component: usize| {
+            let turn = self.turn(angle, component);
             let of_signal = |signal: usize| {
-                let samples = motion.iter().skip(signal).step_by(signals).enumerate();
-                let turned = samples.map(|(sample, part)| part * unit_circle(-step(k) * sample as f64));
+                let samples = motion.iter().skip(signal).step_by(signals.max(1)).enumerate();
+                let turned = samples.map(|(sample, part)| part * unit_circle(-turn * sample as f64));
                 turned.sum::<Complex<f64>>().norm_sqr()
             };
             (0..signals).map(of_signal).sum::<f64>()
         };
-        let strongest = (0..count).max_by(|a, b| size(*a).total_cmp(&size(*b))).unwrap_or(0);
-        let turn = step(strongest);
-        let rate = count as f64 / period;
-        if turn > PI { ((TAU - turn) * rate, true) } else { (turn * rate, false) }
+        (0..self.count).map(size).collect()
+    }
+
+    /// Returns the angle between two samples of a component.
+    fn turn(self, angle: f64, component: usize) -> f64 {
+        (angle + TAU * component as f64) / self.count as f64
     }
 }
 

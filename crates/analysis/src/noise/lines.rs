@@ -9,6 +9,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::number;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 use serde::Serialize;
 
@@ -293,7 +294,7 @@ fn loop_states(
         let forced = &a * &state;
         let forced = DVector::from_fn(within.len(), |row, _| forced[within[row]]);
         let Some(loop_state) = factors.solve(&forced) else {
-            let why = format!("has an undamped motion at {frequency} rad/s, the frequency of a load");
+            let why = format!("has an undamped motion at {} Hz, the frequency of a load", number(frequency / TAU));
             return Err(ConfigError::new("body", why));
         };
         within.iter().zip(&loop_state).for_each(|(place, value)| state[*place] = *value);

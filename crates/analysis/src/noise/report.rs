@@ -1,6 +1,7 @@
 //! Noise of the outputs of a loop in numbers: rms by source, densities, and indices over windows.
 
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::ReaderUnits;
 use schemars::JsonSchema;
 use serde::Serialize;
 use serde_json::Value as Json;
@@ -214,7 +215,7 @@ fn wheel_spectrum(
         let wrong = given.iter().find(|speed| !(**speed > 0.0 && speed.is_finite()));
         if wrong.is_some() || given.is_empty() || given.len() > MOST_SPEEDS {
             let got =
-                wrong.map_or_else(|| format!("{} of them", given.len()), |speed| format!("{speed} rad/s"));
+                wrong.map_or_else(|| format!("{} of them", given.len()), |speed| ReaderUnits::Engineering.rotor_speed().quantity(*speed));
             let why = format!("speeds must be positive, and from 1 to {MOST_SPEEDS} of them, got {got}");
             return Err(NoiseError::Request(why));
         }

@@ -15,6 +15,9 @@ const COLOURS: [RGBColor; 6] =
 const SHOWN_DB: f64 = 80.0;
 /// Largest magnitude in a Nyquist figure.
 const SHOWN: f64 = 3.0;
+/// Steps of a loop (dB, deg) that are jumps.
+const JUMP_DB: f64 = 1.0;
+const JUMP_DEG: f64 = 10.0;
 /// Width of a Nyquist figure relative to its height.
 const ASPECT: f64 = 1.37;
 
@@ -31,30 +34,23 @@ pub struct LocusLine {
 /// Returns the lines of loops whose period is `period` (s).
 pub fn locus_lines(loops: &[SignalMargins], period: f64) -> Vec<LocusLine> {
     let coloured = loops.iter().zip(COLOURS.iter().cycle());
-    let lines = coloured.flat_map(|(one, colour)| {
-        let count = one.loci.first().map_or(0, |first| first.values.len());
-        (0..count).map(move |locus| LocusLine::new(one, locus, period, *colour))
-    });
-    lines.collect()
+    coloured.map(|(one, colour)| LocusLine::new(one, period, *colour)).collect()
 }
 
 /// Returns the figures of loops whose period is `period` (s).
 pub fn figures(name: &str, loops: &[SignalMargins], period: f64, mask: Option<&NicholsMask>) -> Vec<Named> {
-    let several = loops.iter().any(|one| one.loci.first().is_some_and(|first| first.values.len() > 1));
-    let title = &if several { format!("{name}, loci of all samples") } else { name.to_owned() };
     let lines = locus_lines(loops, period);
     vec![
-        (format!("{name}-bode"), bode(title, &lines)),
-        (format!("{name}-nichols"), nichols(title, &lines, mask)),
-        (format!("{name}-nyquist"), nyquist(title, loops)),
+        (format!("{name}-bode"), bode(name, &lines)),
+        (format!("{name}-nichols"), nichols(name, &lines, mask)),
+        (format!("{name}-nyquist"), nyquist(name, loops)),
     ]
 }
 
 impl LocusLine {
-    fn new(one: &SignalMargins, locus: usize, period: f64, colour: RGBColor) -> Self {
+    fn new(one: &SignalMargins, period: f64, colour: RGBColor) -> Self {
         let mut last: Option<f64> = None;
-        let points = one.loci.iter().map(|point| {
-            let value = point.values[locus];
+        let points = one.response.iter().map(|(frequency, value)| {
             let phase = value.im.atan2(value.re);
             let phase = match last {
                 // The phase at the start is between -360 and 0 degrees.
@@ -63,15 +59,21 @@ impl LocusLine {
                 Some(before) => phase + TAU * ((before - phase) / TAU).round(),
             };
             last = Some(phase);
-            [point.angle / period / TAU, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
+            [frequency / TAU, 20.0 * value.re.hypot(value.im).log10(), phase * 180.0 / PI]
         });
-        let points = points.collect();
-        // Several loci of one loop have one name.
-        let name = if locus == 0 { one.signal.replace('_', " ") } else { String::new() };
-        // With several loci, a crossing is not that of a known one.
-        let is_single = one.loci.first().is_some_and(|first| first.values.len() == 1);
-        let crossings = if is_single { one.crossings.clone() } else { Crossings::default() };
-        Self { name, colour, points, crossings }
+        let mut points: Vec<[f64; 3]> = points.collect();
+        // With several samples in a period, the loop may jump at multiples of half the rate of the period.
+        let band = |frequency: f64| (2.0 * frequency * period).floor();
+        let is_jump = |pair: &[[f64; 3]]| {
+            band(pair[0][0]) < band(pair[1][0])
+                && ((pair[1][1] - pair[0][1]).abs() > JUMP_DB || (pair[1][2] - pair[0][2]).abs() > JUMP_DEG)
+        };
+        let jumps: Vec<usize> =
+            points.windows(2).enumerate().filter(|(_, pair)| is_jump(pair)).map(|(place, _)| place).collect();
+        for place in jumps.into_iter().rev() {
+            points.insert(place + 1, [points[place][0], f64::NAN, f64::NAN]);
+        }
+        Self { name: one.signal.replace('_', " "), colour, points, crossings: one.crossings.clone() }
     }
 
     /// Returns the point at a frequency (Hz), between those of the line.
@@ -175,7 +177,7 @@ fn bode(title: &str, lines: &[LocusLine]) -> Figure {
         Panel::new(x.clone(), y, layers).noted(notes)
     };
     let panels = vec![panel(1, "magnitude", "dB", 0.0), panel(2, "phase", "deg", -180.0)];
-    Figure { title: format!("{title}: loop transfer"), panels, panel_height: 220 }
+    Figure { title: format!("{title}: loop transfer"), panels, panel_height: 220 }.named_once()
 }
 
 fn nichols(title: &str, lines: &[LocusLine], mask: Option<&NicholsMask>) -> Figure {

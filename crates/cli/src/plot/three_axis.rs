@@ -165,7 +165,7 @@ fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
     for panel in &mut panels {
-        panel.y = FigureAxis::exact(&panel.y.name, "s", -longest..longest);
+        panel.y = FigureAxis::exact(&format!("{} pulse", panel.y.name), "s", -longest..longest);
     }
     if panels.iter().any(fires) {
         panels.retain(fires);

@@ -46,11 +46,13 @@ fn least(all: &[SignalMargins], settling: &[SettlingTime], is_clear: bool) -> Le
         let below = (own.gain_below > 0.0).then(|| decibel(own.gain_below));
         below.into_iter().chain(own.gain_above.map(decibel))
     });
-    let crossings = all.iter().flat_map(|own| own.crossings.gain.iter().map(|at| at.frequency_rad_s));
+    let crossings = all.iter().flat_map(|own| &own.crossings.gain);
+    // The crossover is where the phase margin is that of the row.
+    let crossover = crossings.min_by(|a, b| a.phase_rad.abs().total_cmp(&b.phase_rad.abs()));
     let signals: Vec<&str> = all.iter().map(|own| own.signal.as_str()).collect();
     let settling = settling.iter().filter(|own| all.len() > 1 || signals[0].contains(own.step));
     LeastMargins {
-        crossover_rad_s: crossings.fold(0.0, f64::max),
+        crossover_rad_s: crossover.map_or(0.0, |at| at.frequency_rad_s),
         gain_db: fold(&mut gains.into_iter()),
         phase_deg: fold(&mut all.iter().map(|own| own.phase_rad.abs()).filter(|own| *own < PI)).to_degrees(),
         delay_s: fold(&mut all.iter().filter_map(|own| own.delay_s)),

@@ -25,6 +25,8 @@ use crate::row_table::{Column, column, print_rows};
 use crate::scenario::{self, ScenarioArgs};
 use crate::{files, out, say};
 
+/// Change of a modulus margin over frequency that the figure shows.
+const LEAST_CHANGE: f64 = 0.02;
 /// Largest modulus margin that the figure shows.
 const SHOWN_MARGIN: f64 = 2.0;
 /// Shortfall of the loop gain at the bandwidth that is rounding of the search.
@@ -311,6 +313,12 @@ impl StructuredResults {
     }
 }
 
+/// Returns the frequency from which on a margin differs from that at the lowest one; none if it does not.
+fn first_change(points: &[Point]) -> Option<f64> {
+    let first = points.first()?.1;
+    points.iter().find(|point| (point.1 - first).abs() > LEAST_CHANGE).map(|point| point.0)
+}
+
 impl Results for StructuredResults {
     fn json(&self) -> Vec<Json> {
         vec![with_scenario_name(&self.name, json!(self.found.report()))]
@@ -330,8 +338,10 @@ impl Results for StructuredResults {
         }
         // The loop matters where a margin is within the shown ones.
         let all = || lines.iter().flat_map(|line| &line.3).filter(|point| point.1 <= SHOWN_MARGIN);
-        let x = FigureAxis::decades("frequency", "rad/s", all().map(|point| point.0)).in_hertz();
-        let y = FigureAxis::from_zero("modulus margin, 1/s1(S)", "", all().map(|point| point.1));
+        let begins = lines.iter().filter_map(|line| first_change(&line.3)).fold(f64::INFINITY, f64::min);
+        let matters = all().map(|point| point.0).filter(|frequency| *frequency >= 0.1 * begins);
+        let x = FigureAxis::decades("frequency", "rad/s", matters).in_hertz();
+        let y = FigureAxis::from_zero("distance of the loop from -1", "", all().map(|point| point.1));
         let least = self.found.report().margin_limit.map(|least| {
             let ends = vec![(x.range.start, least), (x.range.end, least)];
             Layer::new(&format!("at least {least}"), colour::RED, LayerShape::Line(1.4), ends)

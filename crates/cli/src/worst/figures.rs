@@ -21,10 +21,10 @@ pub fn figure(name: &str, case: &WorstCase, requirement: Option<&AssessedRequire
     let mut panels: Vec<Panel> =
         keys.into_iter().take(MOST_PANELS).map(|key| panel(case, key, required.as_ref())).collect();
     if let Some(first) = panels.first_mut().filter(|_| count > MOST_PANELS) {
-        first.remark = format!("{MOST_PANELS} of {count} keys");
+        first.remark = format!("the {MOST_PANELS} of {count} keys that matter most");
     }
     let title = format!("{name}: worst case of {}", case.quantity.replace('_', " "));
-    Figure { title, panels, panel_height: 200 }
+    Figure { title, panels, panel_height: 200 }.named_once()
 }
 
 /// Returns the place on the range of a key and the value of each point that has one.
