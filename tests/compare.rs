@@ -99,6 +99,32 @@ fn campaigns_have_their_distributions_side_by_side() {
     assert_ne!(arrival(0)["margin"], arrival(1)["margin"]);
 }
 
+/// Without a requirement the medians are those of the statistics of each campaign.
+#[test]
+fn campaigns_without_requirements_have_their_main_metrics_side_by_side() {
+    let dir = Dir::with(&["relay-sampled"]);
+    let short = "relay-sampled.toml --set duration=2000";
+    for (seed, directory) in [(1, "first"), (2, "second")] {
+        dir.run(&format!("simulate {short} --runs 5 --seed {seed} -o {directory}")).exits(0);
+    }
+    let ran = dir.run("compare first second").exits(0);
+    for told in ["metric", "median", "largest", "switchings"] {
+        assert!(ran.err.contains(told), "{told}: {}", ran.err);
+    }
+    let json: Json =
+        serde_json::from_str(&dir.run("compare first second --json").exits(0).out).expect("an object");
+    for (side, directory) in ["first", "second"].into_iter().enumerate() {
+        let all = json["answers"][side]["metrics"].as_array().expect("a list");
+        let median = all.iter().find(|own| own["name"] == "switchings").expect("a metric")["median"].as_f64();
+        let table = String::from_utf8(dir.read(&format!("{directory}/statistics.csv"))).expect("text");
+        let heads: Vec<&str> = table.lines().next().expect("heads").split(',').collect();
+        let place = heads.iter().position(|head| *head == "q50").expect("the median");
+        let row = table.lines().find(|line| line.starts_with("switchings,")).expect("a row");
+        let own: f64 = row.split(',').nth(place).expect("a cell").parse().expect("a number");
+        assert_eq!(median, Some(own), "{directory}");
+    }
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let dir = log_and_other();

@@ -25,8 +25,8 @@ use flexsc_core::campaign::{
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::requirement_verdict::{self, RequirementVerdict};
+use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
@@ -43,34 +43,6 @@ use points::Points;
 use progress_table::LiveStatistics;
 pub use progress_table::{RunningMean, table as table_so_far};
 use report::{CampaignReport, are_alike, verdict, write_statistics};
-
-/// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
-pub const MAIN: [&str; 24] = [
-    "goal",
-    "target_losses",
-    "envelope_late_mean_rad",
-    "gain_final",
-    "cycle_period_s",
-    "torque_impulse_per_hour_nm_s",
-    "switchings",
-    "settling_time_s",
-    "time_outside_s",
-    "angle_error_late_rad",
-    "angle_residual_rad",
-    "frequency_error_rms_rad_s",
-    "nees_mean",
-    "peak_torque_nm",
-    "angle_error_peak_rad",
-    "spectral_radius",
-    "pointing_rms_rad",
-    "pointing_error_end_rad",
-    "elastic_rate_rms_rad_s",
-    "fuel_kg",
-    "elastic_energy_end_j",
-    "elastic_energy_peak_j",
-    "energy_below_10pct_at_s",
-    "firings",
-];
 
 /// Name of the file with the least robust run of a campaign over faults.
 const LEAST_ROBUST: &str = "least-robust.toml";

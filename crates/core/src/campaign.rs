@@ -36,8 +36,8 @@ use crate::metrics::{self, Metrics, MetricsCollector, Selection};
 use flexsc_scenario::{Cost, MOST_RUNS, Scenario};
 use flexsc_sim::{Simulation, SimulationError};
 
-pub use campaign_runs::CampaignRuns;
 pub(crate) use campaign_runs::UncertainValues;
+pub use campaign_runs::{CampaignRuns, MAIN_METRICS};
 pub use command_log::CommandLog;
 pub use design::{Design, DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS};
 pub use directory::{Directory, MANIFEST, STATISTICS};

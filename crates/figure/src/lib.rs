@@ -155,7 +155,10 @@ impl Figure {
             let (before, after) = self.panels.split_at_mut(index);
             let is_known = |layer: &Layer| {
                 layer.name.is_empty()
-                    || before[index - 1].layers.iter().any(|other| other.name == layer.name && other.is_like(layer))
+                    || before[index - 1]
+                        .layers
+                        .iter()
+                        .any(|other| other.name == layer.name && other.is_like(layer))
             };
             if after[0].layers.iter().all(is_known) {
                 after[0].layers.iter_mut().for_each(|layer| layer.name.clear());

@@ -35,12 +35,7 @@ impl ModeSky {
         let of_fault = intervals.flat_map(|own| [Some(own.start()), own.end()]).flatten();
         let mut edges: Vec<f64> = sky.shadow_edges().chain(of_fault).map(Instant::seconds).collect();
         edges.sort_by(f64::total_cmp);
-        Self {
-            sky,
-            edges,
-            fault,
-            sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect(),
-        }
+        Self { sky, edges, fault, sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect() }
     }
 
     /// Returns the times (s) between two others at which a shadow or a failure of the fault begins or ends.

@@ -173,7 +173,8 @@ impl SampledTransfer<'_> {
             for (locus, value) in values.iter().enumerate().filter(|(_, value)| **value != Complex::ZERO) {
                 let vector = if values.len() == 1 { None } else { Self::eigenvector(matrix.clone(), *value) };
                 let sizes = vector.map_or_else(|| vec![1.0], |own| samples.sizes(*angle, own.as_slice()));
-                choices.extend(sizes.into_iter().enumerate().map(|(component, size)| (size, locus, component)));
+                choices
+                    .extend(sizes.into_iter().enumerate().map(|(component, size)| (size, locus, component)));
             }
             choices.sort_by(|a, b| b.0.total_cmp(&a.0));
             while let Some((_, locus, component)) = choices.first().copied() {

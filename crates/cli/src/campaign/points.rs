@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use flexsc_core::campaign::{Campaign, ColumnCells};
+use flexsc_core::campaign::{Campaign, ColumnCells, MAIN_METRICS};
 use flexsc_core::metrics::{Selection, goal};
 use flexsc_core::statistics::Statistics;
 
-use super::{MAIN, verdict};
+use super::verdict;
 use crate::number::short;
 
 /// Number of points that are printed at each end of a long sweep.
@@ -135,8 +135,8 @@ fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a
     }
     let varies = |s: &&Statistics| s.sd > 0.0 || s.infinite > 0;
     let all: Vec<&str> = statistics.iter().filter(varies).map(|s| s.name.as_str()).collect();
-    let (main, rest): (Vec<&str>, Vec<&str>) = all.iter().partition(|name| MAIN.contains(name));
-    let mut names: Vec<&str> = MAIN.into_iter().filter(|name| main.contains(name)).collect();
+    let (main, rest): (Vec<&str>, Vec<&str>) = all.iter().partition(|name| MAIN_METRICS.contains(name));
+    let mut names: Vec<&str> = MAIN_METRICS.into_iter().filter(|name| main.contains(name)).collect();
     names.extend(rest);
     names
 }

@@ -3,12 +3,11 @@
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
-use flexsc_core::campaign::RunOutcome;
+use flexsc_core::campaign::{MAIN_METRICS, RunOutcome};
 use flexsc_core::metrics::{MetricValue, Metrics, goal};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use super::MAIN;
 use crate::number::short;
 use crate::progress::{self, Lines};
 use crate::success_rate::success_rate;
@@ -120,7 +119,7 @@ impl LiveStatistics {
             Ok(metrics) => {
                 if self.metrics.is_empty() {
                     let has = |name: &&str| number(metrics, name).is_some();
-                    self.metrics = MAIN
+                    self.metrics = MAIN_METRICS
                         .into_iter()
                         .filter(has)
                         .take(SHOWN)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::answer::CampaignAnswer;
-use flexsc_core::campaign::CampaignRuns;
+use flexsc_core::campaign::{CampaignRuns, MAIN_METRICS};
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{ReaderUnits, rough_time};
 use flexsc_core::formats::text_columns::columns;
@@ -113,11 +113,11 @@ impl CampaignReport {
         }
         let place = |s: &Statistics| {
             let name = s.name.split('[').next().unwrap_or_default();
-            super::MAIN.iter().position(|main| *main == name).unwrap_or(super::MAIN.len())
+            MAIN_METRICS.iter().position(|main| *main == name).unwrap_or(MAIN_METRICS.len())
         };
         let (mut shown, constant): (Vec<&Statistics>, Vec<&Statistics>) = known.partition(|s| s.sd != 0.0);
         if shown.is_empty() {
-            shown = constant.into_iter().filter(|s| place(s) < super::MAIN.len() && s.mean != 0.0).collect();
+            shown = constant.into_iter().filter(|s| place(s) < MAIN_METRICS.len() && s.mean != 0.0).collect();
         }
         shown.sort_by_key(|s| place(s));
         shown.truncate(MOST_METRICS);

@@ -13,6 +13,7 @@ use super::fault_answer::{FaultAnswer, LeastRobust};
 use super::requirement_answer::{margin_text, requirement_id};
 use super::{Answer, RunVerdict, SCHEMA};
 use crate::campaign::CampaignRuns;
+use crate::metrics::MetricDescription;
 use crate::requirement_verdict::{Decision, RequirementVerdict};
 use crate::statistics::{quantile, wilson};
 
@@ -44,6 +45,9 @@ pub struct CampaignAnswer {
     /// Requirements, missed ones first, then by margin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub requirements: Vec<CampaignRequirement>,
+    /// Main metrics that vary, of a campaign without requirements.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub metrics: Vec<MetricSpread>,
     /// Warnings about runs, the gravest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<CampaignWarning>,
@@ -59,6 +63,35 @@ pub struct CampaignAnswer {
     /// Command that repeats the worst run of the first requirement; absent without a directory of the runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeat: Option<String>,
+}
+
+/// Metric over the runs of a campaign that have a value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MetricSpread {
+    /// Name.
+    pub name: &'static str,
+    /// SI unit of all values.
+    pub unit: &'static str,
+    /// Median.
+    pub median: f64,
+    /// Value that is not exceeded in 95 % of the runs.
+    pub p95: f64,
+    /// Largest value.
+    pub largest: f64,
+}
+
+impl MetricSpread {
+    /// Returns the main metrics of runs that vary.
+    fn all(runs: &CampaignRuns) -> Vec<Self> {
+        let spread = |(meaning, values): &(&'static MetricDescription, Vec<f64>)| {
+            let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+            sorted.sort_by(f64::total_cmp);
+            let (least, largest) = (*sorted.first()?, *sorted.last()?);
+            let [median, p95] = [0.5, 0.95].map(|part| quantile(&sorted, part));
+            (least < largest).then_some(Self { name: meaning.name, unit: meaning.unit, median, p95, largest })
+        };
+        runs.main_metrics.iter().filter_map(spread).collect()
+    }
 }
 
 /// Share of the runs that meet something.
@@ -226,10 +259,11 @@ impl CampaignAnswer {
         let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs, but);
         let by_fault = runs.faults(scenario);
         let least_robust = LeastRobust::among(&by_fault);
-        let worst = least_robust.as_ref().map(|own| own.run).or(requirements.first().map(|own| own.worst.run));
-        let repeat = directory.zip(worst).map(|(directory, run)| {
-            format!("flexsc simulate --from {directory} --row {run} -o run-{run}")
-        });
+        let worst =
+            least_robust.as_ref().map(|own| own.run).or(requirements.first().map(|own| own.worst.run));
+        let repeat = directory
+            .zip(worst)
+            .map(|(directory, run)| format!("flexsc simulate --from {directory} --row {run} -o run-{run}"));
         Self {
             schema: SCHEMA,
             kind: "campaign",
@@ -240,6 +274,7 @@ impl CampaignAnswer {
             verdict_text,
             met,
             requirements,
+            metrics: MetricSpread::all(runs),
             by_mode: campaign_modes(scenario, runs, &warnings),
             warnings,
             by_fault,

@@ -124,11 +124,11 @@ impl RunComparison {
 /// Returns the items of both sides by their names, those of the first side in front.
 pub(super) fn paired<'a, T>(
     [first, second]: [&'a [T]; 2],
-    name: fn(&T) -> &String,
+    name: fn(&T) -> &str,
 ) -> Vec<(&'a str, [Option<&'a T>; 2])> {
     let of = |all: &'a [T], wanted: &str| all.iter().find(|own| name(own) == wanted);
     let new = second.iter().filter(|own| of(first, name(own)).is_none());
-    let all = first.iter().chain(new).map(|own| name(own).as_str());
+    let all = first.iter().chain(new).map(name);
     all.map(|name| (name, [of(first, name), of(second, name)])).collect()
 }
 

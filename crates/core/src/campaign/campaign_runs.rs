@@ -40,6 +40,34 @@ const ANSWER_METRICS: [&str; 22] = [
     "lock_lost_at_s",
 ];
 
+/// Metrics that a campaign prints, draws and compares if none is named: the first ones of this list that vary.
+pub const MAIN_METRICS: [&str; 24] = [
+    "goal",
+    "target_losses",
+    "envelope_late_mean_rad",
+    "gain_final",
+    "cycle_period_s",
+    "torque_impulse_per_hour_nm_s",
+    "switchings",
+    "settling_time_s",
+    "time_outside_s",
+    "angle_error_late_rad",
+    "angle_residual_rad",
+    "frequency_error_rms_rad_s",
+    "nees_mean",
+    "peak_torque_nm",
+    "angle_error_peak_rad",
+    "spectral_radius",
+    "pointing_rms_rad",
+    "pointing_error_end_rad",
+    "elastic_rate_rms_rad_s",
+    "fuel_kg",
+    "elastic_energy_end_j",
+    "elastic_energy_peak_j",
+    "energy_below_10pct_at_s",
+    "firings",
+];
+
 /// Values of runs, as they are collected.
 #[derive(Clone, Debug)]
 pub struct CampaignRuns {
@@ -53,6 +81,8 @@ pub struct CampaignRuns {
     pub(crate) failed: u64,
     /// Metrics from which warnings and modes of operation follow, each with a cell for every run.
     answer_metrics: Vec<(&'static MetricDescription, ColumnCells)>,
+    /// Main metrics that are numbers, each with its value in every run; none beside requirements.
+    pub(crate) main_metrics: Vec<(&'static MetricDescription, Vec<f64>)>,
     /// Name of the active fault in each run, if that varies.
     pub(crate) faults: Option<Vec<String>>,
     /// Place of the active fault among the keys that vary.
@@ -89,7 +119,12 @@ impl CampaignRuns {
             let field = fields.iter().find(|field| field.name == name)?;
             Some((meaning(name, Some(scenario))?, ColumnCells::empty(field.kind)))
         };
+        let is_asked = !scenario.study.requirements.is_empty();
+        let main = MAIN_METRICS.into_iter().filter(|_| !is_asked).filter_map(metric);
+        let is_number =
+            |cells: &ColumnCells| matches!(cells, ColumnCells::Numbers(_) | ColumnCells::Integers(_));
         Self {
+            main_metrics: main.filter(|own| is_number(&own.1)).map(|own| (own.0, Vec::new())).collect(),
             answer_metrics: ANSWER_METRICS.into_iter().filter_map(metric).collect(),
             requirements: RequirementRuns::new(scenario),
             designed: campaign.keys().count() - keys.len(),
@@ -104,7 +139,7 @@ impl CampaignRuns {
 
     /// Returns the names of the columns of a table from which the answer of a campaign is made, besides its varied keys.
     pub fn columns() -> impl Iterator<Item = &'static str> {
-        COLUMNS.into_iter().chain(ANSWER_METRICS)
+        COLUMNS.into_iter().chain(ANSWER_METRICS).chain(MAIN_METRICS)
     }
 
     /// Adds a run of this number by the values of all keys that vary and by its metrics; one that failed has none.
@@ -118,6 +153,9 @@ impl CampaignRuns {
         }
         for (meaning, cells) in &mut self.answer_metrics {
             cells.push_metric(metrics.and_then(|metrics| metrics.get(meaning.name)));
+        }
+        for (meaning, values) in &mut self.main_metrics {
+            values.push(metrics.and_then(|metrics| metrics.number(meaning.name)).unwrap_or(f64::NAN));
         }
         self.add_goal(metrics.and_then(|metrics| metrics.word(GOAL)).and_then(goal::score));
         self.runs += 1;
@@ -167,7 +205,12 @@ impl RowMaker {
         names.push(ACTIVE_FAULT);
         names.extend(keys.iter().map(String::as_str));
         names.extend(all.answer_metrics.iter().map(|(meaning, _)| meaning.name));
+        let answer = names.len();
+        names.extend(all.main_metrics.iter().map(|(meaning, _)| meaning.name));
         let mut found = columns(&names)?;
+        for ((_, own), cells) in all.main_metrics.iter_mut().zip(found.drain(answer..)) {
+            *own = cells.map_or_else(Vec::new, |cells| cells.numbers());
+        }
         let metrics = found.drain(COLUMNS.len() + 1 + keys.len()..);
         for ((_, own), cells) in all.answer_metrics.iter_mut().zip(metrics) {
             // A table may have only some of the metrics.
@@ -176,7 +219,8 @@ impl RowMaker {
         for (own, cells) in all.keys.iter_mut().zip(found.drain(COLUMNS.len() + 1..)) {
             own.values = cells.map_or_else(Vec::new, |cells| cells.numbers());
         }
-        if let (Some(faults), Some(ColumnCells::Text(cells))) = (&mut all.faults, found[COLUMNS.len()].take()) {
+        if let (Some(faults), Some(ColumnCells::Text(cells))) = (&mut all.faults, found[COLUMNS.len()].take())
+        {
             *faults = cells.into_iter().map(Option::unwrap_or_default).collect();
         }
         let [runs, errors, goals, values, shares] = [0, 1, 2, 3, 4].map(|place| found[place].take());

@@ -151,9 +151,8 @@ impl RequirementMonitors {
                     |times: &[f64]| Some(times.iter().map(|t| vec![sky.value(*quantity, *t)]).collect());
                 let is_flag = quantity.is_boolean();
                 if is_flag || edges.is_empty() && sky.is_steady(*quantity, from) {
-                    let constant = |[from, to]: [f64; 2]| {
-                        SignalPiece::constant(from, to, sky.value(*quantity, from), 0)
-                    };
+                    let constant =
+                        |[from, to]: [f64; 2]| SignalPiece::constant(from, to, sky.value(*quantity, from), 0);
                     into.extend(parts([from, to], f64::INFINITY, edges).into_iter().map(constant));
                     continue;
                 }

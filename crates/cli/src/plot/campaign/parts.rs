@@ -2,13 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker};
+use flexsc_core::campaign::{
+    ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, MAIN_METRICS, RUN, RowMaker,
+};
 use flexsc_core::metrics::{self, goal, list_element};
 
 use super::metric_column::{MetricColumn, elements, requirement_label};
 use super::table::{CampaignKey, CampaignRuns, ScenarioSource};
 use super::text_cells::TextCells;
-use crate::campaign::{MAIN, part_files};
+use crate::campaign::part_files;
 use crate::error::CliError;
 
 /// Largest number of values in memory; beyond it only the main and the named metrics are read.
@@ -61,7 +63,7 @@ pub fn campaign_runs(
     let is_metric = |field: &&ColumnHeading| !keys.contains(&field.name.as_str()) && is_number(field);
     let all = work.fields().iter().filter(is_metric).collect::<Vec<_>>();
     let few = all.len() * numbers.len() <= HELD;
-    let wanted = |name: &str| few || MAIN.contains(&name) || named.iter().any(|named| named == name);
+    let wanted = |name: &str| few || MAIN_METRICS.contains(&name) || named.iter().any(|named| named == name);
     // Words and lists have no place on an axis.
     let numeric = |key: &&str| work.fields().iter().any(|field| field.name == *key && is_number(&field));
     let drawn: Vec<&str> = keys.iter().copied().filter(numeric).collect();
