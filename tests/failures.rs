@@ -314,7 +314,7 @@ fn an_attitude_filter_refuses_false_readings() {
     let errors = within(&trace, "/attitude_filter", "axes", "angle_error_rad");
     let times = crate::traces::times(&trace, "/attitude_filter");
     for (time, error) in times.iter().zip(errors.chunks(3)) {
-        let most = if (20.0..240.0).contains(time) || *time > 300.0 { 3e-4 } else { 1e-1 };
+        let most = if (20.0..240.0).contains(time) || *time > 300.0 { 6e-4 } else { 1e-1 };
         assert!(error.iter().all(|part| part.abs() < most), "{time}: {error:?}");
     }
 }

@@ -143,6 +143,19 @@ fn contraction_and_fast_mathematics_are_found() {
     }
     let output = make(&dir, "out", &["driver", "CFLAGS=-O2 -ffast-math"]);
     assert!(!output.status.success() && text(&output).contains("#error"), "{}", text(&output));
+    // Flags for which clang defines no macro are switched off by pragmas.
+    let unseen = [
+        "-funsafe-math-optimizations",
+        "-freciprocal-math",
+        "-fassociative-math -fno-signed-zeros -fno-trapping-math",
+    ];
+    let hash = format!("HASH={}", hashes(&dir, "out")[&HOST_CYCLES]);
+    let cycles = format!("CYCLES={HOST_CYCLES}");
+    for flags in unseen.into_iter().filter(|_| cfg!(target_arch = "x86_64") && is_installed("clang")) {
+        let exact = format!("EXACT=-std=c99 -ffp-contract=off {flags}");
+        let output = make(&dir, "out", &["check-clang", "LEVELS=-O3", &exact, &cycles, &hash]);
+        assert!(output.status.success(), "{flags}: {}", text(&output));
+    }
     // A changed gain differs from the vectors.
     let source =
         dir.text("out/earth_observer.c").replace("total_angle = axis", "total_angle = 1.0000001 * axis");

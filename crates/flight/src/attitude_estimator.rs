@@ -130,7 +130,8 @@ impl AttitudeEstimator {
 
     /// Returns the standard deviation of the attitude about all axes together (rad), as the filter believes it.
     pub fn deviation_size(&self, entries: &[AttitudeHistoryEntry]) -> f64 {
-        self.deviation(entries).norm()
+        let deviation: Vector3 = self.deviation(entries);
+        deviation.norm()
     }
 
     /// Returns the standard deviation of the attitude about each axis (rad), as the filter believes it.

@@ -282,6 +282,9 @@ impl AttitudeHistory {
                 correction.status = ReadingStatus::Reaccepted;
             }
         }
+        if correction.status == ReadingStatus::Improbable {
+            self.improbable += 1;
+        }
         if correction.status.is_refusal() {
             self.refused += 1;
         }
@@ -311,14 +314,12 @@ impl AttitudeHistory {
         correction
     }
 
-    /// Counts an improbable measurement. Returns true if it is accepted all the same: after several in a row, after a gap, or
-    /// after the clock was set back.
-    fn is_reaccepted(&mut self, observation: &DelayedObservation) -> bool {
-        if !self.is_unsure && self.improbable < self.gate.most_refusals {
-            self.improbable += 1;
-            return self.gate.gap.is_before(observation.exposed.since(self.corrected));
-        }
-        true
+    /// Returns true if an improbable measurement is accepted all the same: after several in a row, after a gap, or after the clock was
+    /// set back.
+    fn is_reaccepted(&self, observation: &DelayedObservation) -> bool {
+        self.is_unsure
+            || self.improbable >= self.gate.most_refusals
+            || self.gate.gap.is_before(observation.exposed.since(self.corrected))
     }
 
     /// Corrects the filter at the exposure of a measurement, for which it inserts an entry if there is none.

@@ -2,7 +2,6 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::ActuatorKind;
-use flexsc_core::control::estimator::EstimatorSpec;
 
 use super::ControlSystem;
 

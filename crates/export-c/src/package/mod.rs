@@ -89,7 +89,7 @@ struct Plan<'a> {
     /// Scenario, and what was changed of it.
     origin: ExportOrigin<'a>,
     /// SHA-256 of the scenario with these changes and all defaults.
-    digest: String,
+    digest: &'a str,
     system: &'a ControlSystem,
     calls: &'a [CallLayout],
     /// Parts of the control loop that are not in the code.
@@ -125,8 +125,8 @@ pub fn export(
     let calls = system.calls();
     let left_out = system.left_out(scenario);
     let effective = scenario.to_toml();
-    let digest = Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect();
-    let plan = Plan { prefix, origin, digest, system: &system, calls: &calls, left_out: &left_out };
+    let digest: String = Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect();
+    let plan = Plan { prefix, origin, digest: &digest, system: &system, calls: &calls, left_out: &left_out };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
         _ => (calls::functions(&plan), header::state(&plan)),
