@@ -25,8 +25,8 @@ use flexsc_core::campaign::{
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::requirement_verdict::{self, RequirementVerdict};
+use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};

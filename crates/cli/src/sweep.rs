@@ -86,9 +86,16 @@ struct VariedKey {
 /// Values as they are written, with their units.
 #[derive(Clone)]
 enum KeyValues {
-    Even { first: String, last: String, count: u32 },
+    Even {
+        first: String,
+        last: String,
+        count: u32,
+    },
     List(Vec<String>),
-    Range { from: String, to: String },
+    Range {
+        from: String,
+        to: String,
+    },
     /// Names of faults; all of the scenario, and none, if none is given.
     Faults(Vec<String>),
 }

@@ -123,7 +123,9 @@ impl ScenarioSpec {
     fn part_key(&self, role: Role, index: usize) -> String {
         match role {
             Role::Sensor => self.sensor_key(index),
-            Role::Actuator => format!("{}.{}", self.actuator.key("actuator", index), self.actuator[index].kind.kind()),
+            Role::Actuator => {
+                format!("{}.{}", self.actuator.key("actuator", index), self.actuator[index].kind.kind())
+            }
         }
     }
 
@@ -158,7 +160,12 @@ impl ScenarioSpec {
         Ok(())
     }
 
-    fn change_failures(&mut self, role: Role, index: usize, change: impl FnOnce(&mut Vec<Value>)) -> Option<()> {
+    fn change_failures(
+        &mut self,
+        role: Role,
+        index: usize,
+        change: impl FnOnce(&mut Vec<Value>),
+    ) -> Option<()> {
         match role {
             Role::Sensor => {
                 let part = self.sensor.get_mut(index)?;
@@ -177,9 +184,14 @@ impl ScenarioSpec {
     fn fault_error(&self) -> Option<ConfigError> {
         let error_of = |(index, fault): (usize, &Fault)| {
             let names = self.fault[..index].iter().map(|other| other.name.as_str());
-            let is_taken = fault.name.is_empty() || fault.name.contains([')', '(']) || names.chain([NO_FAULT]).any(|name| name == fault.name);
+            let is_taken = fault.name.is_empty()
+                || fault.name.contains([')', '('])
+                || names.chain([NO_FAULT]).any(|name| name == fault.name);
             if is_taken {
-                let why = format!("must be a name of its own without brackets, and not `{NO_FAULT}`, got `{}`", fault.name);
+                let why = format!(
+                    "must be a name of its own without brackets, and not `{NO_FAULT}`, got `{}`",
+                    fault.name
+                );
                 return Some(ConfigError::new("name", why));
             }
             if fault.intervals().next().is_none() {
@@ -199,7 +211,10 @@ impl ScenarioSpec {
         of_faults.or_else(|| {
             let active = self.active_fault.as_deref().filter(|name| *name != NO_FAULT)?;
             let names: Vec<&str> = self.fault.iter().map(|fault| fault.name.as_str()).collect();
-            let why = format!("must be `{NO_FAULT}` or the name of a `[[fault]]`, `{}`, got `{active}`", names.join("`, `"));
+            let why = format!(
+                "must be `{NO_FAULT}` or the name of a `[[fault]]`, `{}`, got `{active}`",
+                names.join("`, `")
+            );
             (!names.contains(&active)).then(|| ConfigError::new(ACTIVE_FAULT, why))
         })
     }
@@ -232,7 +247,8 @@ fn change_failures<P: Serialize + DeserializeOwned>(
         // A kind without keys is written as its name.
         value = Value::Table(Table::from_iter([(kind.to_owned(), Value::Table(Table::new()))]));
     }
-    let list = value.get_mut(kind)?.as_table_mut()?.entry("faults").or_insert_with(|| Value::Array(Vec::new()));
+    let list =
+        value.get_mut(kind)?.as_table_mut()?.entry("faults").or_insert_with(|| Value::Array(Vec::new()));
     change(list.as_array_mut()?);
     *part = value.try_into().ok()?;
     Some(())

@@ -67,7 +67,9 @@ impl Distribution {
             }
             Self::Choice(values) if self.has_texts() => match nominal {
                 Some(Value::String(_)) if values.iter().all(ChoiceValue::is_text) => None,
-                Some(other) => Some(format!("has a text among its values, and that key holds a {}", other.type_str())),
+                Some(other) => {
+                    Some(format!("has a text among its values, and that key holds a {}", other.type_str()))
+                }
                 None => Some("names no key of this scenario".to_owned()),
             },
             _ => match nominal {
@@ -117,7 +119,8 @@ impl Distribution {
             Self::LogUniform([low, high]) => libm::exp(between(libm::log(low.get()), libm::log(high.get()))),
             Self::RelativeUniform(part) => own * between(1.0 - part.get(), 1.0 + part.get()),
             Self::Choice(values) => {
-                return values[((probability * values.len() as f64) as usize).min(values.len() - 1)].like(nominal);
+                return values[((probability * values.len() as f64) as usize).min(values.len() - 1)]
+                    .like(nominal);
             }
             Self::Normal(_) | Self::RelativeNormal(_) => {
                 return self.value_at_deviation(nominal, normal::quantile(probability));

@@ -35,12 +35,7 @@ impl ModeSky {
         let of_fault = intervals.flat_map(|own| [Some(own.start()), own.end()]).flatten();
         let mut edges: Vec<f64> = sky.shadow_edges().chain(of_fault).map(Instant::seconds).collect();
         edges.sort_by(f64::total_cmp);
-        Self {
-            sky,
-            edges,
-            fault,
-            sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect(),
-        }
+        Self { sky, edges, fault, sites: scenario.mode.iter().map(|mode| site(&mode.target)).collect() }
     }
 
     /// Returns the times (s) between two others at which a shadow or a failure of the fault begins or ends.
@@ -48,6 +43,11 @@ impl ModeSky {
         let first = self.edges.partition_point(|edge| *edge <= from);
         let count = self.edges[first..].partition_point(|edge| *edge < to);
         &self.edges[first..first + count]
+    }
+
+    /// Returns true if a fault is that of the run.
+    pub fn has_fault(&self, index: usize) -> bool {
+        self.fault.as_ref().is_some_and(|(own, _)| *own == index)
     }
 
     /// Returns true if a quantity stays as it is at a time (s) until the next edge.

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use flexsc_formats::document::ConfigError;
 
 use super::{
-    ActuatorKind, AssignedActuator, ControlMomentGyros, Failure, Jets, Magnetorquers, Share, Thrusters, UnloadingTask,
-    Wheel, Wheels,
+    ActuatorKind, AssignedActuator, ControlMomentGyros, Failure, Jets, Magnetorquers, Share, Thrusters,
+    UnloadingTask, Wheel, Wheels,
 };
 use crate::one_or_many::OneOrMany;
 

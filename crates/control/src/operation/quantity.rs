@@ -202,7 +202,8 @@ impl ModeQuantity {
 
     /// Returns true for a quantity that is not available on board, and that only requirements compare.
     pub fn is_of_requirements(self) -> bool {
-        self.is_of_motion() || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Fault(_) | Self::Metric(..))
+        self.is_of_motion()
+            || matches!(self, Self::Mode(_) | Self::Blinded(_) | Self::Fault(_) | Self::Metric(..))
     }
 
     /// Returns true for a quantity of the true motion.

@@ -226,10 +226,11 @@ impl CampaignAnswer {
         let (verdict, verdict_text) = verdict(&requirements, met.as_ref(), runs.runs, but);
         let by_fault = runs.faults(scenario);
         let least_robust = LeastRobust::among(&by_fault);
-        let worst = least_robust.as_ref().map(|own| own.run).or(requirements.first().map(|own| own.worst.run));
-        let repeat = directory.zip(worst).map(|(directory, run)| {
-            format!("flexsc simulate --from {directory} --row {run} -o run-{run}")
-        });
+        let worst =
+            least_robust.as_ref().map(|own| own.run).or(requirements.first().map(|own| own.worst.run));
+        let repeat = directory
+            .zip(worst)
+            .map(|(directory, run)| format!("flexsc simulate --from {directory} --row {run} -o run-{run}"));
         Self {
             schema: SCHEMA,
             kind: "campaign",

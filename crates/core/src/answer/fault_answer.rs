@@ -121,7 +121,8 @@ impl CampaignRuns {
 impl LeastRobust {
     /// Returns the run with the least margin; `None` without a requirement.
     pub(super) fn among(faults: &[FaultAnswer]) -> Option<Self> {
-        let all = faults.iter().flat_map(|own| own.requirements.iter().map(move |requirement| (own, requirement)));
+        let all =
+            faults.iter().flat_map(|own| own.requirements.iter().map(move |requirement| (own, requirement)));
         let (own, least) = all.min_by(|(_, a), (_, b)| a.rank().total_cmp(&b.rank()))?;
         (least.rank() < f64::INFINITY).then(|| Self {
             fault: own.fault.clone(),
@@ -133,8 +134,12 @@ impl LeastRobust {
 
     /// Returns the fault, the requirement and its margin in words.
     pub fn text(&self) -> String {
-        let margin = self.margin.map_or_else(|| "no value".to_owned(), |own| margin_text(own, 1.0 - own));
-        format!("{}: {}, margin {margin}, run {}", self.fault, self.requirement, self.run)
+        let margin = match self.margin {
+            Some(own) if own < -1.0 => margin_text(own, 1.0 - own),
+            Some(own) => format!("margin {}", margin_text(own, 1.0 - own)),
+            None => "no value".to_owned(),
+        };
+        format!("{}: {}, {margin}, run {}", self.fault, self.requirement, self.run)
     }
 }
 
@@ -167,7 +172,10 @@ pub(super) fn fault_table(faults: &[FaultAnswer], options: ScreenOptions) -> Vec
     let mut lines = indented(columns(&rows, |_| true));
     if faults.iter().any(|own| own.runs > 1) {
         let most = faults.iter().map(|own| own.runs).max().unwrap_or(0);
-        lines.push(format!("  runs that meet it, of up to {}, and the least margin", counted(most as usize, "run")));
+        lines.push(format!(
+            "  runs that meet it, of up to {}, and the least margin",
+            counted(most as usize, "run")
+        ));
     }
     lines.extend(legend);
     lines

@@ -176,7 +176,8 @@ impl RowMaker {
         for (own, cells) in all.keys.iter_mut().zip(found.drain(COLUMNS.len() + 1..)) {
             own.values = cells.map_or_else(Vec::new, |cells| cells.numbers());
         }
-        if let (Some(faults), Some(ColumnCells::Text(cells))) = (&mut all.faults, found[COLUMNS.len()].take()) {
+        if let (Some(faults), Some(ColumnCells::Text(cells))) = (&mut all.faults, found[COLUMNS.len()].take())
+        {
             *faults = cells.into_iter().map(Option::unwrap_or_default).collect();
         }
         let [runs, errors, goals, values, shares] = [0, 1, 2, 3, 4].map(|place| found[place].take());
