@@ -110,6 +110,7 @@ mod determinism;
 mod events;
 mod exact;
 mod failures;
+mod fault_campaigns;
 mod kinds;
 mod own_parts;
 mod properties;

@@ -68,6 +68,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "rotation-thrusters",
     "safe-mode",
     "cubesat-day",
+    "cubesat-faults",
     "basilisk-momentum",
     "forty-two-leo",
     "s2e-sample",

@@ -101,6 +101,10 @@ pub struct RequirementRuns {
     /// Values and shares of each requirement, one of each run.
     values: Vec<Vec<f64>>,
     shares: Vec<Vec<f64>>,
+    /// Number of runs in which something was to meet each requirement, and of those that do not.
+    counts: Vec<[u64; 2]>,
+    /// True for a run that failed.
+    failed: Vec<bool>,
 }
 
 impl RequirementRuns {
@@ -108,7 +112,15 @@ impl RequirementRuns {
     pub fn new(scenario: &Scenario) -> Self {
         let requirements = scenario.study.requirements.clone();
         let empty = vec![Vec::new(); requirements.len()];
-        Self { requirements, runs: Vec::new(), values: empty.clone(), shares: empty }
+        let counts = vec![[0; 2]; requirements.len()];
+        Self {
+            requirements,
+            runs: Vec::new(),
+            values: empty.clone(),
+            shares: empty,
+            counts,
+            failed: Vec::new(),
+        }
     }
 
     /// Returns the values of a requirement, one of each run.
@@ -129,15 +141,20 @@ impl RequirementRuns {
 
     /// Returns the runs in some rows.
     pub fn of_rows(&self, counts: impl Fn(usize) -> bool) -> Self {
-        fn some<T: Copy>(all: &[T], counts: impl Fn(usize) -> bool) -> Vec<T> {
-            all.iter().enumerate().filter(|(row, _)| counts(*row)).map(|(_, own)| *own).collect()
-        }
-        Self {
+        let empty = vec![Vec::new(); self.values.len()];
+        let mut own = Self {
             requirements: self.requirements.clone(),
-            runs: some(&self.runs, &counts),
-            values: self.values.iter().map(|own| some(own, &counts)).collect(),
-            shares: self.shares.iter().map(|own| some(own, &counts)).collect(),
+            counts: vec![[0; 2]; empty.len()],
+            values: empty.clone(),
+            shares: empty,
+            ..Self::default()
+        };
+        for row in (0..self.runs.len()).filter(|row| counts(*row)) {
+            let in_row = |all: &[Vec<f64>]| all.iter().map(|list| list[row]).collect::<Vec<f64>>();
+            let values = if self.failed[row] { Vec::new() } else { in_row(&self.values) };
+            own.add_values(self.runs[row], &values, &in_row(&self.shares));
         }
+        own
     }
 
     /// Returns the numbers of the runs.
@@ -160,11 +177,18 @@ impl RequirementRuns {
     /// Adds a run of this number by the lists of its values and shares.
     pub fn add_values(&mut self, run: u64, values: &[f64], shares: &[f64]) {
         self.runs.push(run);
+        self.failed.push(values.is_empty());
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(f64::NAN);
         let each = self.values.iter_mut().zip(&mut self.shares);
         for (index, (of_values, of_shares)) in each.enumerate() {
             of_values.push(at(values, index));
             of_shares.push(at(shares, index));
+        }
+        let row = self.runs.len() - 1;
+        for index in 0..self.counts.len() {
+            let is_exercised = !self.is_not_exercised(index, row);
+            self.counts[index][0] += u64::from(is_exercised);
+            self.counts[index][1] += u64::from(!self.is_met(index, row));
         }
     }
 
@@ -176,12 +200,7 @@ impl RequirementRuns {
                 Interpretation::Temporal => 1.0,
                 Interpretation::Ensemble => requirement.level,
             };
-            let exercised = (0..self.runs.len()).filter(|row| !self.is_not_exercised(index, *row));
-            let (mut runs, mut beyond) = (0, 0);
-            for row in exercised {
-                runs += 1;
-                beyond += u64::from(!self.is_met(index, row));
-            }
+            let [runs, beyond] = self.counts[index];
             let remaining = total - self.runs.len() as u64;
             let all = runs + remaining;
             let holds = |beyond: u64| {
@@ -201,7 +220,10 @@ impl RequirementRuns {
         }
         let each = self.requirements.into_iter().zip(self.values.into_iter().zip(self.shares));
         let runs = &self.runs;
-        each.map(|(requirement, (values, shares))| verdict(requirement, runs, (values, &shares))).collect()
+        each.map(|(requirement, (values, shares))| {
+            verdict(requirement, (runs, &self.failed), (values, &shares))
+        })
+        .collect()
     }
 }
 
@@ -238,19 +260,26 @@ pub fn run_verdicts(scenario: &Scenario, metrics: &Metrics) -> Vec<RequirementVe
 
 fn verdict(
     requirement: AssessedRequirement,
-    numbers: &[u64],
+    (numbers, failed): (&[u64], &[bool]),
     (values, shares): (Vec<f64>, &[f64]),
 ) -> RequirementVerdict {
     let (limit, level) = (requirement.limit, requirement.level);
     let all = values.len() as u64;
-    let exercised = numbers.iter().zip(&values).zip(shares);
-    let exercised = exercised.filter(|((_, value), share)| !is_not_exercised(**value, **share));
-    let (exercised, shares): (Vec<(u64, f64)>, Vec<f64>) =
-        exercised.map(|((number, value), share)| ((*number, *value), *share)).unzip();
-    let (numbers, mut values): (Vec<u64>, Vec<f64>) = exercised.into_iter().unzip();
+    let exercised: Vec<usize> =
+        (0..values.len()).filter(|row| !is_not_exercised(values[*row], shares[*row])).collect();
+    let of = |list: &[f64]| exercised.iter().map(|row| list[*row]).collect::<Vec<f64>>();
+    let (mut values, shares) = (of(&values), of(shares));
+    let numbers: Vec<u64> = exercised.iter().map(|row| numbers[*row]).collect();
+    let failed: Vec<bool> = exercised.iter().map(|row| failed[*row]).collect();
     let runs = values.len() as u64;
     let is_timed = matches!(requirement.source, RequirementSource::Formula(_));
-    let undecided = values.iter().filter(|value| is_timed && value.is_nan()).count() as u64;
+    let is_undecided = |(value, failed): (&f64, &bool)| is_timed && value.is_nan() && !failed;
+    let undecided = values.iter().zip(&failed).filter(|own| is_undecided(*own)).count() as u64;
+    // The values if all runs that end too early meet the limit.
+    let decided = values.iter().zip(&failed).map(|own| if is_undecided(own) { limit } else { *own.0 });
+    let mut decided: Vec<f64> =
+        decided.map(|value| if value.is_nan() { f64::INFINITY } else { value }).collect();
+    decided.sort_by(f64::total_cmp);
     let runs_met = values.iter().filter(|value| **value <= limit).count() as u64;
     let share = shares.iter().sum::<f64>() / runs as f64;
     let mut worst = (0, if runs == 0 { f64::NAN } else { f64::NEG_INFINITY });
@@ -263,10 +292,6 @@ fn verdict(
     // A run without a value is beyond every limit.
     values.iter_mut().filter(|value| value.is_nan()).for_each(|value| *value = f64::INFINITY);
     values.sort_by(f64::total_cmp);
-    // The value if all runs that end too early meet the limit.
-    let mut decided = values.clone();
-    decided.iter_mut().filter(|value| is_timed && **value == f64::INFINITY).for_each(|value| *value = limit);
-    decided.sort_by(f64::total_cmp);
     let (value, is_within) = match requirement.interpretation {
         Interpretation::Mixed if runs > 1 => (f64::NAN, share >= level * (1.0 - ROUNDING)),
         _ if runs == 0 => (f64::NAN, false),

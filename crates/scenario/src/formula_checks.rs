@@ -190,13 +190,18 @@ fn limit(leaf: &Expression) -> Option<f64> {
     if let Expression::Compared { limit, .. } = leaf { Some(*limit) } else { None }
 }
 
-/// Returns the first number of a text after `<`, if it is the limit and was written with a unit.
+/// Returns the number of a text after a `<` that is the limit, if it was written with a unit.
 fn limit_text(text: &str, unit: &str, limit: f64) -> Option<String> {
-    let number = text.split_once('<')?.1.trim_start_matches('=').trim();
-    let end = number.find([')', ':', ';']).unwrap_or(number.len());
-    let number = number[..end].split(" until").next()?.split(" and ").next()?.trim();
-    let has_unit = number.parse::<f64>().is_err() && number_in(number, unit) == Ok(limit);
-    has_unit.then(|| number.to_owned())
+    let number = |after: &str| {
+        let after = after.trim_start_matches('=');
+        let end = after.find([')', ':', ';']).unwrap_or(after.len());
+        let words = [" until", " and ", " or ", " implies "];
+        let end = words.iter().filter_map(|word| after[..end].find(word)).fold(end, usize::min);
+        let number = after[..end].trim();
+        let has_unit = number.parse::<f64>().is_err() && number_in(number, unit) == Ok(limit);
+        has_unit.then(|| number.to_owned())
+    };
+    text.split('<').skip(1).find_map(number)
 }
 
 /// Returns the requirement in words: `holds` with the other keys.

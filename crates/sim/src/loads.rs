@@ -185,6 +185,11 @@ impl Loads {
         Vector::from(*hub).norm() + torque.norm() + rotors + gimbals + sines
     }
 
+    /// Returns true if the loads have no part that changes by itself: neither sines nor turning gimbals.
+    pub fn is_constant(&self) -> bool {
+        self.wrench.sines.is_empty() && self.wrench.gimbals.is_empty()
+    }
+
     /// Returns the wrench of the actuator alone from `now` on.
     pub fn actuator_wrench(&self, now: Instant) -> Wrench {
         let mut wrench = Wrench::default();

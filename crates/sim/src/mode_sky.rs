@@ -45,6 +45,11 @@ impl ModeSky {
         &self.edges[first..first + count]
     }
 
+    /// Returns true if a fault is that of the run.
+    pub fn has_fault(&self, index: usize) -> bool {
+        self.fault.as_ref().is_some_and(|(own, _)| *own == index)
+    }
+
     /// Returns true if a quantity stays as it is at a time (s) until the next edge.
     pub fn is_steady(&self, quantity: ModeQuantity, t: f64) -> bool {
         match quantity {

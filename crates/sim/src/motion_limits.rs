@@ -3,6 +3,7 @@
 use flexsc_dynamics::three_axis::Surroundings;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Instant;
 use flexsc_scenario::Scenario;
 
 use super::plant::Plant;
@@ -45,6 +46,23 @@ impl MotionLimits {
         let (_, momentum) = motion.rotational_energy();
         let torque = torque + motion.surroundings().map_or(0.0, Surroundings::bound);
         self.inverse_inertia * (torque + rate * momentum) + modal_rotation * self.modal_torque * torque
+    }
+
+    /// Returns a bound of the second derivative (rad/s³) of the rigid rate under a constant torque (N m) and that of the
+    /// environment, on a hub with this norm of its modal rotations.
+    pub fn bend(&self, plant: &Plant, hub_rotation: f64, torque: f64, now: Instant) -> f64 {
+        let Some(motion) = plant.quantities().three_axis() else { return 0.0 };
+        let elastic = Self::elastic_rate(plant, hub_rotation);
+        let rate = Vector::from(plant.truth().rigid_rate).norm() + elastic;
+        let (_, momentum) = motion.rotational_energy();
+        let acceleration = self.growth(plant, hub_rotation, torque) + motion.fastest_frequency() * elastic;
+        let [environment, varies] = motion.surroundings().map_or([0.0; 2], |surroundings| {
+            [surroundings.bound(), surroundings.frequency_at(now.seconds())]
+        });
+        self.inverse_inertia
+            * (acceleration * momentum
+                + rate * (torque + environment + rate * momentum)
+                + environment * (varies + rate))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Block of the campaign: figures of the requirements, one table, and what drives them; and the budgets of pointing indices.
 
 use flexsc_core::analysis::budget::{IndexBudget, LevelsAtProbability};
-use flexsc_core::answer::CampaignRequirement;
+use flexsc_core::answer::{CampaignRequirement, FaultAnswer};
 use flexsc_core::formats::reader_units::{ReaderUnits, number};
 
 use super::conclusions::sentence;
@@ -26,6 +26,7 @@ pub fn block(study: &Study, campaign: &StudyCampaign) -> String {
     let answer = &campaign.answer;
     if !answer.requirements.is_empty() {
         html += &table(&answer.requirements);
+        html += &faults(&answer.by_fault);
         let driven = answer.requirements.iter().filter_map(|own| {
             Some(sentence(&format!("{} is driven by {}", own.name, own.driven_by.first()?.text)))
         });
@@ -57,6 +58,19 @@ fn table(requirements: &[CampaignRequirement]) -> String {
         HtmlRow { cells, is_missed: own.decision.fails() }
     };
     HtmlTable { heads, rows: requirements.iter().map(row).collect(), is_cards: true }.html()
+}
+
+/// Returns the table of faults by requirements; empty unless the active fault varies.
+fn faults(by_fault: &[FaultAnswer]) -> String {
+    let Some(first) = by_fault.first() else { return String::new() };
+    let mut heads = vec![head("Fault"), number_head("Runs")];
+    heads.extend(first.requirements.iter().map(|own| number_head(&own.name)));
+    let row = |own: &FaultAnswer| {
+        let mut cells = vec![cell(&own.fault), cell(&own.runs.to_string())];
+        cells.extend(own.requirements.iter().map(|own| cell(&own.text()).hot(own.decision.fails())));
+        HtmlRow { cells, is_missed: own.requirements.iter().any(|own| own.decision.fails()) }
+    };
+    HtmlTable { heads, rows: by_fault.iter().map(row).collect(), is_cards: false }.html()
 }
 
 /// Returns the block of the budgets of pointing indices; `None` without a requirement on one.

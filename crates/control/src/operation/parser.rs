@@ -390,6 +390,10 @@ pub fn index_of_kind(name: &str, kinds: &[&str]) -> Option<usize> {
 /// Returns the index of a name at a place of the text; an error lists the known ones under their role.
 fn index_of(part: Range<usize>, name: &str, known: &[&str], role: &str) -> Result<usize, ConditionFault> {
     let index = known.iter().position(|known| *known == name);
+    let count = known.iter().filter(|known| **known == name).count();
+    if count > 1 {
+        return Err(fault(part, format!("must name one of the {role}, and {count} are `{name}`")));
+    }
     index.ok_or_else(|| fault(part, format!("must name one of the {role}, {}, got `{name}`", listed(known))))
 }
 

@@ -153,6 +153,11 @@ impl PointRobustness {
         }
     }
 
+    /// Returns true for the least value of a signal up to the end of the run (s).
+    fn lasts_to(&self, end: f64) -> bool {
+        matches!(self, Self::Least { span, .. } if span[1] >= end)
+    }
+
     /// Returns true if no later part changes the value.
     fn is_known(&self) -> bool {
         match self {
@@ -249,7 +254,15 @@ impl EventRobustness {
                     let mut open =
                         PointRobustness::new(&self.then, [sign.from, self.end], &mut self.source.clone());
                     open.push(chunk);
-                    self.open.push(open);
+                    // To the end of the run, `always` after the first event is the least, `eventually` after the last one.
+                    let is_always = |own: &PointRobustness| own.lasts_to(self.end);
+                    let is_eventually = |own: &PointRobustness| matches!(own, PointRobustness::Not(inner) if inner.lasts_to(self.end));
+                    if is_eventually(&open) {
+                        self.open.retain(|own| !is_eventually(own));
+                    }
+                    if !(is_always(&open) && self.open.iter().any(is_always)) {
+                        self.open.push(open);
+                    }
                 }
                 self.is_on = is_on;
             }

@@ -134,8 +134,12 @@ impl LeastRobust {
 
     /// Returns the fault, the requirement and its margin in words.
     pub fn text(&self) -> String {
-        let margin = self.margin.map_or_else(|| "no value".to_owned(), |own| margin_text(own, 1.0 - own));
-        format!("{}: {}, margin {margin}, run {}", self.fault, self.requirement, self.run)
+        let margin = match self.margin {
+            Some(own) if own < -1.0 => margin_text(own, 1.0 - own),
+            Some(own) => format!("margin {}", margin_text(own, 1.0 - own)),
+            None => "no value".to_owned(),
+        };
+        format!("{}: {}, {margin}, run {}", self.fault, self.requirement, self.run)
     }
 }
 

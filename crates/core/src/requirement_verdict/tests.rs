@@ -19,7 +19,14 @@ fn requirement(level: f64, interpretation: Interpretation, wanted: Option<f64>) 
 fn judged(requirement: AssessedRequirement, runs: &[(f64, f64)]) -> RequirementVerdict {
     let empty = vec![Vec::new()];
     let requirements = vec![requirement];
-    let mut all = RequirementRuns { requirements, runs: Vec::new(), values: empty.clone(), shares: empty };
+    let counts = vec![[0; 2]; empty.len()];
+    let mut all = RequirementRuns {
+        requirements,
+        counts,
+        values: empty.clone(),
+        shares: empty,
+        ..RequirementRuns::default()
+    };
     for (number, (value, share)) in (7..).zip(runs) {
         all.add_values(number, &[*value], &[*share]);
     }

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use flexsc_control::operation::{ModeQuantity, ModeReadings};
 use flexsc_control::robustness::{RequirementMonitor, limit_scale};
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::polynomial::{Polynomial, TERMS};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::signal::{Curve, PieceValues, SignalPiece, fit};
@@ -44,9 +45,28 @@ pub struct RequirementMonitors {
     limits: MotionLimits,
     hub_rotation: f64,
     slew_acceleration: f64,
-    /// Start of the motion segment; of three axes, the body and its reference there.
+    /// True if nothing that turns in the body, or moves on it, changes its torque by itself.
+    is_steady: bool,
+    /// Start of the motion segment; of three axes also the values there, and the body with its reference unless the body can
+    /// return to it.
     since: Instant,
+    start: Option<SegmentEnd>,
     copy: Option<Box<(Plant, Guidance)>>,
+}
+
+/// Values at an end of a segment about three axes.
+#[derive(Clone, Debug)]
+struct SegmentEnd {
+    /// Vectors whose norms are the quantities.
+    errors: Vec<Vector>,
+    /// Bound of the rate (rad/s) at which the pointing error turns.
+    turning: f64,
+    /// Size of the acceleration of the reference (rad/s²).
+    reference: f64,
+    /// Bounds of the acceleration (rad/s²) without and with the modes.
+    growth: [f64; 2],
+    /// Bound of the second derivative of the rate (rad/s³).
+    bend: f64,
 }
 
 /// Quantity that a requirement reads.
@@ -57,6 +77,8 @@ struct Observed {
     tolerance: f64,
     /// Values, each with the time (s) from which on it holds; the first time is at most the start of the segment.
     values: Vec<(f64, f64)>,
+    /// True for a quantity of the motion about three axes on which a requirement may depend in the segment.
+    counts: bool,
 }
 
 impl RequirementMonitors {
@@ -77,6 +99,9 @@ impl RequirementMonitors {
             all.hub_rotation = modal_rotation(body, body.points.first().map_or("", |point| &point.name));
             let of_modes = scenario.mode.iter().filter_map(|mode| mode.target.as_ref()?.acceleration);
             let of_targets = scenario.targets().iter().filter_map(|target| target.acceleration);
+            all.is_steady = scenario.study.bearings.is_empty()
+                && body.articulation.is_none()
+                && body.disturbance.is_none();
             all.slew_acceleration = of_modes.chain(of_targets).map(Positive::get).fold(0.0, f64::max);
         }
         all
@@ -90,7 +115,7 @@ impl RequirementMonitors {
             known.tolerance = known.tolerance.min(tolerance);
             return place;
         }
-        self.quantities.push(Observed { quantity, tolerance, values: Vec::new() });
+        self.quantities.push(Observed { quantity, tolerance, values: Vec::new(), counts: false });
         self.quantities.len() - 1
     }
 
@@ -126,11 +151,29 @@ impl RequirementMonitors {
         let range = |observed: &Observed| match observed.quantity {
             quantity @ ModeQuantity::Mode(_) => [run.value(quantity); 2],
             quantity if quantity.is_of_motion() => [0.0, f64::INFINITY],
+            quantity @ ModeQuantity::Fault(fault) if !run.sky.has_fault(fault) => [run.value(quantity); 2],
             _ => [f64::NEG_INFINITY, f64::INFINITY],
         };
         let ranges: Vec<[f64; 2]> = self.quantities.iter().map(range).collect();
-        if run.plant.quantities().three_axis().is_some() && !self.ignore(f64::INFINITY, &ranges) {
-            self.copy = Some(Box::new((run.plant.clone(), run.guidance.clone())));
+        self.start = None;
+        let quantities = run.plant.quantities();
+        let Some(motion) = quantities.three_axis() else { return };
+        self.quantities.iter_mut().for_each(|observed| observed.counts = false);
+        for (_, monitor, places) in &self.monitors {
+            if Self::depends_on_motion(&self.quantities, places)
+                && !monitor.ignores(f64::INFINITY, places.iter().map(|place| ranges[*place]))
+            {
+                for place in places {
+                    let observed = &mut self.quantities[*place];
+                    observed.counts |= observed.quantity.is_of_motion();
+                }
+            }
+        }
+        if self.quantities.iter().any(|observed| observed.counts) {
+            self.start = Some(self.at_end(run.plant, run.guidance, run.loads, run.now));
+            if !self.is_steady || motion.two_way().is_none() {
+                self.copy = Some(Box::new((run.plant.clone(), run.guidance.clone())));
+            }
         }
     }
 
@@ -144,7 +187,7 @@ impl RequirementMonitors {
         let mut pieces: Vec<Vec<SignalPiece>> = vec![Vec::new(); self.quantities.len()];
         let edges = self.sky.edges(from, to);
         for (observed, into) in self.quantities.iter_mut().zip(&mut pieces) {
-            let Observed { quantity, tolerance, values } = observed;
+            let Observed { quantity, tolerance, values, .. } = observed;
             if quantity.is_of_sky() {
                 let sky = &self.sky;
                 let mut evaluate =

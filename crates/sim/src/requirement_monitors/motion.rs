@@ -11,10 +11,12 @@ use super::super::loads::Loads;
 use super::super::motion_limits::{MotionLimits, RESERVE};
 use super::super::plant::{AppliedTorque, Plant};
 use super::super::run_view::{motion_error, true_rate};
-use super::{Observed, RequirementMonitors, curve, join, parts};
+use super::{Observed, RequirementMonitors, SegmentEnd, curve, join, parts};
 
-/// Radians of the fastest motion in a part that is fitted.
-const REACH: f64 = 1.5;
+/// Radians of the fastest motion in a part that is fitted first: at least eight points in a period.
+const REACH: f64 = 4.0;
+/// Largest error (rad) for which the second derivative of its rotation vector is bounded.
+const BENT: f64 = 1.0;
 
 impl RequirementMonitors {
     /// Adds the pieces of the true motion. Where none of its possible values changes a result, one of them stands for it.
@@ -39,75 +41,116 @@ impl RequirementMonitors {
         };
         let mut ranges: Vec<[f64; 2]> = self.quantities.iter().zip(&*pieces).map(known).collect();
         let mut is_ignored = self.ignore(to, &ranges);
-        let copy = self.copy.take();
-        if let Some(copy) = copy.as_ref().filter(|_| !is_ignored) {
-            for (observed, range) in self.quantities.iter().zip(&mut ranges) {
-                if observed.quantity.is_of_motion() {
-                    *range = self.bounds(observed.quantity, copy, (plant, loads), span);
+        let (start, copy) = (self.start.take(), self.copy.take());
+        let jumps = guidance.next_target(span[0]).is_some_and(|next| next <= span[1]);
+        if let Some(start) = start.as_ref().filter(|_| !is_ignored && !jumps) {
+            let end = self.at_end(plant, guidance, loads, span[1]);
+            for (number, range) in ranges.iter_mut().enumerate() {
+                if is_bounded(&self.quantities[number]) {
+                    *range = self.bounds(number, [start, &end], to - from, loads.is_constant());
                 }
             }
             is_ignored = self.ignore(to, &ranges);
         }
         if is_ignored {
-            for ((observed, into), [low, high]) in self.quantities.iter().zip(&mut *pieces).zip(ranges) {
-                if observed.quantity.is_of_motion() {
-                    let value = if high.is_finite() { f64::midpoint(low, high) } else { low };
-                    into.push(SignalPiece::constant(from, to, value, 0));
-                }
+            for number in 0..ranges.len() {
+                self.add_any(number, ranges[number], [from, to], pieces);
             }
         } else if plant.quantities().one_axis().is_some() {
             self.add_one_axis(span, (plant, guidance, &loads.applied), pieces);
-        } else if let Some(copy) = &copy {
-            self.add_three_axis(span, copy, plant, pieces);
+        } else if start.is_some() {
+            let of_copy = copy.map(|copy| *copy);
+            let (base, guidance) =
+                of_copy.as_ref().map_or((plant, guidance), |(base, guidance)| (base, guidance));
+            self.add_three_axis(span, (base.clone(), guidance), plant, pieces);
+            for number in (0..ranges.len()).filter(|number| !self.quantities[*number].counts) {
+                self.add_any(number, ranges[number], [from, to], pieces);
+            }
         }
-        self.copy = copy;
         for pieces in pieces {
             join(pieces, [from, to]);
         }
     }
 
+    /// Returns true if one of the quantities at some places is of the motion.
+    pub(super) fn depends_on_motion(quantities: &[Observed], places: &[usize]) -> bool {
+        places.iter().any(|place| quantities[*place].quantity.is_of_motion())
+    }
+
     /// Returns true if no requirement depends on the motion up to `to` (s) while each quantity stays within its range.
     pub(super) fn ignore(&self, to: f64, ranges: &[[f64; 2]]) -> bool {
-        let of_motion = |place: &usize| self.quantities[*place].quantity.is_of_motion();
         self.monitors.iter().all(|(_, monitor, places)| {
-            !places.iter().any(of_motion) || monitor.ignores(to, places.iter().map(|place| ranges[*place]))
+            !Self::depends_on_motion(&self.quantities, places)
+                || monitor.ignores(to, places.iter().map(|place| ranges[*place]))
         })
     }
 
-    /// Returns bounds of a quantity of the motion about three axes over a segment, from its values at both ends and a bound
-    /// of its rate of change.
-    fn bounds(
+    /// Adds a value of a quantity of the motion that changes no result while it stays within its range.
+    fn add_any(
         &self,
-        quantity: ModeQuantity,
-        (start, guidance): &(Plant, Guidance),
-        (end, loads): (&Plant, &Loads),
-        [since, now]: [Instant; 2],
-    ) -> [f64; 2] {
-        let anything = [0.0, f64::INFINITY];
-        let jumps = guidance.next_target(since).is_some_and(|next| next <= now);
-        if jumps || matches!(quantity, ModeQuantity::LineOfSight(_)) {
-            return anything;
+        number: usize,
+        [low, high]: [f64; 2],
+        [from, to]: [f64; 2],
+        pieces: &mut [Vec<SignalPiece>],
+    ) {
+        if self.quantities[number].quantity.is_of_motion() {
+            let value = if high.is_finite() { f64::midpoint(low, high) } else { low };
+            pieces[number].push(SignalPiece::constant(from, to, value, 0));
         }
-        let h = now.since(since).seconds();
-        let at_ends = |of: &dyn Fn(&Plant, Instant) -> f64| [of(start, since), of(end, now)];
-        let largest = |[one, other]: [f64; 2]| one.max(other);
-        let norm = |vector: [f64; 3]| Vector::from(vector).norm();
-        let values = at_ends(&|plant, at| norm(self.error(quantity, plant, guidance, at)));
-        let turns = quantity == ModeQuantity::PointingError;
-        let rotation = if turns { self.hub_rotation } else { 0.0 };
-        let torque = loads.torque_bound();
-        let growth = largest(at_ends(&|plant, _| self.limits.growth(plant, rotation, torque)));
-        let reference = largest(at_ends(&|_, at| guidance.reference_acceleration(at)));
-        let acceleration = RESERVE * (growth + reference) + self.slew_acceleration;
-        let rate = if turns {
-            let rates = at_ends(&|plant, at| norm(motion_error(plant, guidance, at, true)));
-            let elastic = at_ends(&|plant, _| MotionLimits::elastic_rate(plant, rotation));
-            largest(rates) + RESERVE * largest(elastic) + acceleration * h
-        } else {
-            acceleration
+    }
+
+    /// Returns the values at an end of a segment from which bounds of the motion about three axes follow.
+    pub(super) fn at_end(
+        &self,
+        plant: &Plant,
+        guidance: &Guidance,
+        loads: &Loads,
+        now: Instant,
+    ) -> SegmentEnd {
+        let error = |observed: &Observed| {
+            if is_bounded(observed) { self.error(observed.quantity, plant, guidance, now) } else { [0.0; 3] }
         };
-        let middle = 0.5 * (values[0] + values[1]);
-        [(middle - 0.5 * rate * h).max(0.0), middle + 0.5 * rate * h]
+        let torque = loads.torque_bound();
+        let turns =
+            self.quantities.iter().any(|own| own.counts && own.quantity == ModeQuantity::PointingError);
+        let follows = self.quantities.iter().any(|own| own.counts && own.quantity != ModeQuantity::TrueRate);
+        let rate = if turns { motion_error(plant, guidance, now, true) } else { [0.0; 3] };
+        SegmentEnd {
+            errors: self.quantities.iter().map(|observed| Vector::from(error(observed))).collect(),
+            turning: Vector::from(rate).norm()
+                + RESERVE * MotionLimits::elastic_rate(plant, self.hub_rotation),
+            reference: if follows { guidance.reference_acceleration(now) } else { 0.0 },
+            growth: [0.0, self.hub_rotation].map(|rotation| self.limits.growth(plant, rotation, torque)),
+            bend: self.limits.bend(plant, self.hub_rotation, torque, now),
+        }
+    }
+
+    /// Returns bounds of a quantity of the motion about three axes over a segment with a length (s), by its number and the values
+    /// at both ends; `is_constant`: the loads are.
+    fn bounds(&self, number: usize, ends: [&SegmentEnd; 2], h: f64, is_constant: bool) -> [f64; 2] {
+        let quantity = self.quantities[number].quantity;
+        let largest = |of: &dyn Fn(&SegmentEnd) -> f64| of(ends[0]).max(of(ends[1]));
+        let turns = quantity == ModeQuantity::PointingError;
+        let growth = largest(&|end| end.growth[usize::from(turns)]);
+        let follows = quantity != ModeQuantity::TrueRate;
+        let reference = if follows { largest(&|end| end.reference) } else { 0.0 };
+        let slew = if follows { self.slew_acceleration } else { 0.0 };
+        let acceleration = RESERVE * (growth + reference) + slew;
+        let rate = if turns { largest(&|end| end.turning) + acceleration * h } else { acceleration };
+        let vectors = ends.map(|end| end.errors[number]);
+        let [one, other] = vectors.map(|vector| vector.norm());
+        let (middle, most) = (f64::midpoint(one, other), one.max(other));
+        let [low, high] = [(middle - 0.5 * rate * h).max(0.0), middle + 0.5 * rate * h];
+        let bend = match quantity {
+            ModeQuantity::PointingError if most < BENT => 2.0 * acceleration + rate * rate,
+            ModeQuantity::TrueRate if self.is_steady && is_constant => RESERVE * largest(&|end| end.bend),
+            _ => return [low, high],
+        };
+        // The vector is near the straight line between its values at both ends.
+        let (line, off) = (vectors[1] - vectors[0], bend * h * h / 8.0);
+        let along = -vectors[0].dot(&line) / line.norm_squared();
+        let nearest = (vectors[0] + line * if along > 0.0 { along.min(1.0) } else { 0.0 }).norm();
+        [low.max(nearest - off), high.min(most + off)]
     }
 
     /// Appends the pieces of the true motion about one axis.
@@ -153,16 +196,15 @@ impl RequirementMonitors {
         });
     }
 
-    /// Appends the pieces of the true motion about three axes, on a copy of the body at the start of the segment.
+    /// Appends the pieces of the true motion about three axes, on a copy of the body that can return to the start of the segment.
     fn add_three_axis(
         &self,
         [since, now]: [Instant; 2],
-        copy: &(Plant, Guidance),
+        (mut base, guidance): (Plant, &Guidance),
         plant: &Plant,
         pieces: &mut [Vec<SignalPiece>],
     ) {
-        let (mut base, guidance) = (copy.0.clone(), &copy.1);
-        let moving = self.quantities.iter().zip(pieces).filter(|(of, _)| of.quantity.is_of_motion());
+        let moving = self.quantities.iter().zip(pieces).filter(|(of, _)| of.counts);
         let mut moving: Vec<(&Observed, &mut Vec<SignalPiece>)> = moving.collect();
         let tolerances: Vec<f64> = moving.iter().flat_map(|(of, _)| [of.tolerance; 3]).collect();
         let quantities: Vec<ModeQuantity> = moving.iter().map(|(of, _)| of.quantity).collect();
@@ -207,6 +249,11 @@ impl RequirementMonitors {
             _ => motion_error(plant, guidance, at, false),
         }
     }
+}
+
+/// Returns true for a quantity of the motion that counts, and has bounds.
+fn is_bounded(observed: &Observed) -> bool {
+    observed.counts && !matches!(observed.quantity, ModeQuantity::LineOfSight(_))
 }
 
 /// Appends the norm of a vector over a part with a start and a length (s).
