@@ -155,7 +155,10 @@ impl Figure {
             let (before, after) = self.panels.split_at_mut(index);
             let is_known = |layer: &Layer| {
                 layer.name.is_empty()
-                    || before[index - 1].layers.iter().any(|other| other.name == layer.name && other.is_like(layer))
+                    || before[index - 1]
+                        .layers
+                        .iter()
+                        .any(|other| other.name == layer.name && other.is_like(layer))
             };
             if after[0].layers.iter().all(is_known) {
                 after[0].layers.iter_mut().for_each(|layer| layer.name.clear());
@@ -228,5 +231,29 @@ impl Layer {
     /// Returns true if another layer looks the same in a legend.
     fn is_like(&self, other: &Self) -> bool {
         self.colour == other.colour && self.shape == other.shape
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_that_repeats_the_one_above_is_left_out() {
+        let line = |name: &str, colour| Layer::new(name, colour, LayerShape::Line(1.0), vec![(0.0, 0.0)]);
+        let panel = |layers| {
+            let axis = FigureAxis::exact("x", "", 0.0..1.0);
+            Panel::new(axis.clone(), axis, layers)
+        };
+        let both = || vec![line("roll", colour::BLUE), line("pitch", colour::GREEN)];
+        let other = vec![line("roll", colour::BLUE), line("pitch", colour::RED)];
+        let figure = Figure {
+            title: String::new(),
+            panels: vec![panel(both()), panel(both()), panel(both()), panel(other)],
+            panel_height: 100,
+        };
+        let names = |panel: &Panel| panel.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
+        let names: Vec<_> = figure.named_once().panels.iter().map(names).collect();
+        assert_eq!(names, [["roll", "pitch"], ["", ""], ["", ""], ["roll", "pitch"]]);
     }
 }

@@ -294,7 +294,8 @@ fn loop_states(
         let forced = &a * &state;
         let forced = DVector::from_fn(within.len(), |row, _| forced[within[row]]);
         let Some(loop_state) = factors.solve(&forced) else {
-            let why = format!("has an undamped motion at {} Hz, the frequency of a load", number(frequency / TAU));
+            let why =
+                format!("has an undamped motion at {} Hz, the frequency of a load", number(frequency / TAU));
             return Err(ConfigError::new("body", why));
         };
         within.iter().zip(&loop_state).for_each(|(place, value)| state[*place] = *value);

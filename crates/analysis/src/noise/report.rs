@@ -175,8 +175,10 @@ fn wheel_spectrum(
     if let Some(given) = &speeds {
         let wrong = given.iter().find(|speed| !(**speed > 0.0 && speed.is_finite()));
         if wrong.is_some() || given.is_empty() || given.len() > MOST_SPEEDS {
-            let got =
-                wrong.map_or_else(|| format!("{} of them", given.len()), |speed| ReaderUnits::Engineering.rotor_speed().quantity(*speed));
+            let got = wrong.map_or_else(
+                || format!("{} of them", given.len()),
+                |speed| ReaderUnits::Engineering.rotor_speed().quantity(*speed),
+            );
             let why = format!("speeds must be positive, and from 1 to {MOST_SPEEDS} of them, got {got}");
             return Err(NoiseError::Request(why));
         }
