@@ -208,7 +208,7 @@ fn spatial_figures_have_units_that_people_use() {
     for (figure, words) in [
         ("energy", ["elastic energy (J)", "propellant (kg)"]),
         ("tracking", ["roll (Hz)", "estimated"]),
-        ("jets", ["yaw (s)", "time (s)"]),
+        ("jets", ["yaw pulse (s)", "time (s)"]),
         ("damping", ["predicted elastic rate", "threshold"]),
     ] {
         let svg = dir.text(&format!("figures/iss-ringdown-{figure}.svg"));

@@ -58,7 +58,9 @@ fn figures_are_chosen_by_name_and_have_a_size_and_a_title() {
     assert_eq!(dir.names("figures"), ["earth-observer-bode.svg", "earth-observer-root-locus.svg"]);
     let bode = Drawing::read(&dir, "earth-observer-bode");
     assert!(bode.0.starts_with("<svg width=\"85.000mm\""), "{}", &bode.0[..80]);
-    bode.shows(&["Loop", "frequency (Hz)", "magnitude (dB)"]);
+    // With two samples of the law in a period, the margins are those of `flexsc margins`.
+    let margins = ["+21.3 dB at 1.34 Hz", "67.9 deg at 0.0269 Hz"];
+    bode.shows(&["Loop", "frequency (Hz)", "magnitude (dB)", margins[0], margins[1]]);
     dir.run("margins earth-observer.toml --what boden -o figures")
         .exits(2)
         .says(&["no figure `boden`", "bode, nichols, nyquist, singular-values, root-locus"]);

@@ -153,7 +153,8 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
                 for point in points.iter().filter(|point| plot.window.contains(**point)) {
                     let place = plot.place(*point);
                     let (x, y) = pixels(place);
-                    curves.push(vec![(x - MARKED, y), (x + MARKED, y)]);
+                    let ends = [(x - MARKED, y), (x + MARKED, y), (x, y - MARKED), (x, y + MARKED)];
+                    curves.push(ends.to_vec());
                     draw_mark(area, layer, place)?;
                 }
             }
@@ -318,4 +319,32 @@ impl Layer {
 
 fn stroke(colour: RGBColor, width: f64) -> ShapeStyle {
     colour.stroke_width((width * f64::from(UNITS)).round() as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_below_an_axis_do_not_touch() {
+        // "0.000", "0.005" and so on would touch at 55 px each.
+        for (axis, width) in [
+            (FigureAxis::exact("real part", "", -0.0321..0.0127), 110),
+            (FigureAxis::exact("time", "s", 19_800.0..20_000.0), 230),
+            (FigureAxis::decades("frequency", "Hz", [1e-6, 5.0]), 120),
+        ] {
+            let (ticks, extent) = (ticks_across(&axis, width), axis.extent());
+            let places = ticks.at.iter().map(|tick| {
+                let part = (axis.place(*tick) - extent.start) / (extent.end - extent.start);
+                (part * f64::from(width), wide(&ticks.text(*tick), 11.0))
+            });
+            let places: Vec<(f64, f64)> = places.collect();
+            assert!(places.len() > 1, "{}", axis.name);
+            assert!(
+                places
+                    .windows(2)
+                    .all(|pair| { (pair[1].0 - pair[0].0).abs() > f64::midpoint(pair[0].1, pair[1].1) })
+            );
+        }
+    }
 }

@@ -233,3 +233,27 @@ impl Layer {
         self.colour == other.colour && self.shape == other.shape
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_legend_that_repeats_the_one_above_is_left_out() {
+        let line = |name: &str, colour| Layer::new(name, colour, LayerShape::Line(1.0), vec![(0.0, 0.0)]);
+        let panel = |layers| {
+            let axis = FigureAxis::exact("x", "", 0.0..1.0);
+            Panel::new(axis.clone(), axis, layers)
+        };
+        let both = || vec![line("roll", colour::BLUE), line("pitch", colour::GREEN)];
+        let other = vec![line("roll", colour::BLUE), line("pitch", colour::RED)];
+        let figure = Figure {
+            title: String::new(),
+            panels: vec![panel(both()), panel(both()), panel(both()), panel(other)],
+            panel_height: 100,
+        };
+        let names = |panel: &Panel| panel.layers.iter().map(|layer| layer.name.clone()).collect::<Vec<_>>();
+        let names: Vec<_> = figure.named_once().panels.iter().map(names).collect();
+        assert_eq!(names, [["roll", "pitch"], ["", ""], ["", ""], ["roll", "pitch"]]);
+    }
+}

@@ -4,12 +4,12 @@
 use std::f64::consts::{PI, TAU};
 
 use flexsc_numerics::scalar_search::root;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::Complex;
 use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::frequency_response::{FrequencyResponse, modulus, unit_circle};
-use super::loci::{LociValues, LocusSegment};
+use super::loci::{LociValues, LocusSegment, eigenvector};
 use super::sample_components::LoopSamples;
 
 /// Loop gains below this are zeros of a filter.
@@ -152,53 +152,8 @@ impl SampledTransfer<'_> {
         if count == 1 {
             return (angle / self.period, false);
         }
-        let vector = self.response.at(unit_circle(angle)).and_then(|own| Self::eigenvector(own, value));
+        let vector = self.response.at(unit_circle(angle)).and_then(|own| eigenvector(own, value));
         let Some(vector) = vector else { return (angle / self.period, false) };
         LoopSamples { period: self.period, count }.frequency(angle, vector.as_slice())
-    }
-
-    /// Returns the transfer over frequency (rad/s): each locus at the component that is strongest in its motion, and at
-    /// each component one locus.
-    pub fn over_frequency(
-        &self,
-        transfers: &[(f64, DMatrix<Complex<f64>>)],
-        all: &[LociValues],
-    ) -> Vec<(f64, Complex<f64>)> {
-        let samples = LoopSamples { period: self.period, count: self.samples };
-        let mut found = Vec::new();
-        for LociValues { angle, values } in all {
-            let matrix = transfers.iter().find(|(other, _)| other == angle).map(|(_, matrix)| matrix);
-            let Some(matrix) = matrix else { continue };
-            let mut choices = Vec::new();
-            for (locus, value) in values.iter().enumerate().filter(|(_, value)| **value != Complex::ZERO) {
-                let vector = if values.len() == 1 { None } else { Self::eigenvector(matrix.clone(), *value) };
-                let sizes = vector.map_or_else(|| vec![1.0], |own| samples.sizes(*angle, own.as_slice()));
-                choices
-                    .extend(sizes.into_iter().enumerate().map(|(component, size)| (size, locus, component)));
-            }
-            choices.sort_by(|a, b| b.0.total_cmp(&a.0));
-            while let Some((_, locus, component)) = choices.first().copied() {
-                let (frequency, is_mirrored) = samples.component(*angle, component);
-                let value = values[locus];
-                found.push((frequency, if is_mirrored { value.conj() } else { value }));
-                choices.retain(|choice| choice.1 != locus && choice.2 != component);
-            }
-        }
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found
-    }
-
-    /// Computes the eigenvector of a value of the loci by inverse iteration.
-    fn eigenvector(matrix: DMatrix<Complex<f64>>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-        let count = matrix.nrows();
-        let shift = value * (1.0 + 1e-9);
-        let factors = (matrix - DMatrix::from_diagonal_element(count, count, shift)).lu();
-        let mut vector = DVector::from_fn(count, |row, _| Complex::new(1.0, 0.3 * row as f64));
-        for _ in 0..3 {
-            vector = factors.solve(&vector)?;
-            let size = vector.iter().map(|entry| modulus(*entry)).fold(0.0, f64::max);
-            vector.iter_mut().for_each(|entry| *entry /= size);
-        }
-        vector.iter().all(|entry| entry.re.is_finite() && entry.im.is_finite()).then_some(vector)
     }
 }

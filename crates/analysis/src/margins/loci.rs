@@ -3,11 +3,11 @@
 //! A loop of one signal has its own transfer as its locus. One with several samples in a period, which is a matrix, has
 //! as many loci: a factor k on all its samples is at the limit of stability where a locus passes -1/k.
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use crate::eigenvalues::complex_eigenvalues;
 
-use super::frequency_response::{FrequencyResponse, unit_circle};
+use super::frequency_response::{FrequencyResponse, modulus, unit_circle};
 
 /// Ratio of the largest locus to another beyond which the other is rounding.
 const WIDEST: f64 = 1e8;
@@ -65,4 +65,18 @@ impl LocusSegment<'_> {
             None => last,
         }
     }
+}
+
+/// Computes the eigenvector of a value of the loci by inverse iteration.
+pub fn eigenvector(matrix: DMatrix<Complex<f64>>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+    let count = matrix.nrows();
+    let shift = value * (1.0 + 1e-9);
+    let factors = (matrix - DMatrix::from_diagonal_element(count, count, shift)).lu();
+    let mut vector = DVector::from_fn(count, |row, _| Complex::new(1.0, 0.3 * row as f64));
+    for _ in 0..3 {
+        vector = factors.solve(&vector)?;
+        let size = vector.iter().map(|entry| modulus(*entry)).fold(0.0, f64::max);
+        vector.iter_mut().for_each(|entry| *entry /= size);
+    }
+    vector.iter().all(|entry| entry.re.is_finite() && entry.im.is_finite()).then_some(vector)
 }

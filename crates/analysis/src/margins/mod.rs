@@ -210,7 +210,8 @@ impl SignalMargins {
             delay_s: delays.min_by(f64::total_cmp),
             modulus: sensitivity.modulus(own),
             disk: sensitivity.disk(own),
-            response: transfer.over_frequency(&transfers, &loci),
+            response: LoopSamples { period: transfer.period, count: transfer.samples }
+                .over_frequency(&transfers, &loci),
             crossings,
             loci,
         }
