@@ -8,13 +8,13 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-use flexsc_core::campaign::{ColumnKind, Directory, ERROR, SECONDS};
+use flexsc_core::campaign::{ColumnKind, Directory, ERROR, MAIN_METRICS, SECONDS};
 use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::goal;
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use crate::campaign::{MAIN, RunningMean, part_files, table_so_far};
+use crate::campaign::{RunningMean, part_files, table_so_far};
 use crate::error::CliError;
 use crate::quantity::in_unit;
 use crate::terminal::is_plain;
@@ -102,7 +102,8 @@ fn metrics(args: &TopArgs, directory: &Directory) -> Result<Vec<(String, Running
     };
     let mut names: Vec<String> = args.metric.clone();
     if names.is_empty() {
-        names = MAIN.into_iter().filter(|name| numeric(name)).take(SHOWN).map(str::to_owned).collect();
+        names =
+            MAIN_METRICS.into_iter().filter(|name| numeric(name)).take(SHOWN).map(str::to_owned).collect();
     }
     if let Some(other) = names.iter().find(|name| !numeric(name)) {
         let why = format!("there is no metric `{other}` that is a number");

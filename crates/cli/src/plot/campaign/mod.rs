@@ -16,13 +16,12 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use flexsc_core::campaign::{ColumnCells, RowMaker};
+use flexsc_core::campaign::{ColumnCells, MAIN_METRICS, RowMaker};
 use flexsc_figure::{Figure, Named};
 
 use super::PlotArgs;
 use super::figure_kind::{CampaignFigure, FigureKind, select};
 use super::figure_name::FigureName;
-use crate::campaign::MAIN;
 use crate::error::CliError;
 use crate::figure_files::FigureTarget;
 use crate::{out, print, say};
@@ -230,7 +229,7 @@ fn metrics<'a>(
         let column = |name: &String| runs.metrics.iter().find(|metric| metric.name == *name);
         let required: Vec<_> = columns.iter().filter_map(column).filter(is_informative).collect();
         let most = MOST.max(required.len());
-        let others = MAIN.into_iter().filter(|name| !limited.iter().any(|limited| limited == name));
+        let others = MAIN_METRICS.into_iter().filter(|name| !limited.iter().any(|limited| limited == name));
         let main: Vec<_> =
             required.into_iter().chain(others.filter_map(named).filter(is_informative)).collect();
         let any = runs.metrics.iter().filter(is_informative);
