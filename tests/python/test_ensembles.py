@@ -16,7 +16,8 @@ def test_the_motion_is_that_of_sample_and_changes_nothing(name: str, seconds: fl
     scenario = shipped(name).with_("duration", seconds)
     times = np.array([0.0, seconds, 0.3 * seconds, 0.3 * seconds, 0.71234 * seconds])
     run, plain = scenario.simulate(log="full", at=times), scenario.simulate(log="full")
-    assert run.samples is not None and plain.samples is None
+    assert run.samples is not None
+    assert plain.samples is None
     assert run.samples == plain.sample(times)
     assert run.metrics == plain.metrics
     assert dict(run) == dict(plain)
@@ -31,7 +32,8 @@ def test_an_ensemble_has_a_row_for_each_run_and_time() -> None:
     plain = flexsc.campaign(scenario, 4)
     np.testing.assert_array_equal(table["pointing_error_end_rad"], plain["pointing_error_end_rad"])
     samples = table.samples
-    assert samples is not None and samples.topics == ["pointing", "vibrations"]
+    assert samples is not None
+    assert samples.topics == ["pointing", "vibrations"]
     assert plain.samples is None
     for run in range(4):
         drawn = scenario.draw(run).simulate(run).sample(times)
@@ -42,7 +44,8 @@ def test_an_ensemble_has_a_row_for_each_run_and_time() -> None:
     assert samples["vibrations"]["modes.displacement"].shape == (4, 5, 8)
     assert samples["vibrations"].unit("modes.displacement") == "m sqrt(kg)"
     threads = flexsc.campaign(scenario, 4, jobs=2, at=times, topics=["pointing"])
-    assert threads.samples is not None and threads.samples["pointing"] == samples["pointing"]
+    assert threads.samples is not None
+    assert threads.samples["pointing"] == samples["pointing"]
 
 
 def test_an_ensemble_goes_to_other_libraries() -> None:
@@ -52,7 +55,8 @@ def test_an_ensemble_goes_to_other_libraries() -> None:
     angle = samples["attitude"]["angle_rad"]
     xarray = pytest.importorskip("xarray")
     found = samples.to_xarray()["attitude"]["angle_rad"]
-    assert isinstance(found, xarray.DataArray) and found.dims == ("run", "time_s")
+    assert isinstance(found, xarray.DataArray)
+    assert found.dims == ("run", "time_s")
     np.testing.assert_array_equal(found.values, angle)
     assert found.sel(run=2, time_s=45.0).item() == angle[2, 3]
     assert found.attrs["units"] == "rad"
@@ -60,7 +64,9 @@ def test_an_ensemble_goes_to_other_libraries() -> None:
     pytest.importorskip("pandas")
     frame = samples["attitude"].to_pandas()
     assert len(frame) == 12
-    np.testing.assert_array_equal(frame.pivot(index="run", columns="time_s", values="angle_rad")[45.0], angle[:, 3])
+    np.testing.assert_array_equal(
+        frame.pivot(index="run", columns="time_s", values="angle_rad")[45.0], angle[:, 3]
+    )
 
 
 def test_a_run_that_failed_has_no_motion() -> None:
@@ -79,7 +85,8 @@ def test_a_run_that_failed_has_no_motion() -> None:
     samples = flexsc.campaign(scenario, 3, at=[1.0, 2.0], topics=["rates"]).samples
     assert samples is not None
     rates = samples["rates"]["axes.rate_rad_s"]
-    assert np.isnan(rates[1]).all() and np.isfinite(rates[[0, 2]]).all()
+    assert np.isnan(rates[1]).all()
+    assert np.isfinite(rates[[0, 2]]).all()
 
 
 def test_what_cannot_be_sampled_is_refused() -> None:

@@ -6,6 +6,7 @@ import ctypes
 import math
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from types import MappingProxyType
 from typing import Any
 
 import flexsc
@@ -32,11 +33,11 @@ class Steady(flexsc.Disturbance):
 
 
 class Slosh(flexsc.Disturbance):
-    """A fluid about the z axis: an inertia on a spring and a damper, integrated by the symplectic Euler method."""
+    """A fluid about the z axis: an inertia on a spring and a damper, by the symplectic Euler method."""
 
     period = 0.002
-    inertia, stiffness, damper = 4.0, 1.0, 0.05                            # kg m², N m/rad, N m s/rad
-    signals = {"angle": "rad"}
+    inertia, stiffness, damper = 4.0, 1.0, 0.05  # kg m², N m/rad, N m s/rad
+    signals = MappingProxyType({"angle": "rad"})
 
     def start(self, axes: int, draws: Draws) -> None:
         self.angle = self.rate = 0.0
@@ -103,7 +104,10 @@ def test_torques_and_forces_at_several_points_add_up() -> None:
     scenario = observer()
     forces = [[0.0, 0.0, 2e-3], [1e-3, 0.0, 0.0]]
     both = Steady(force=forces, points=("bus", "bench"))
-    each = {index: Steady(force=force, points=(name,)) for index, (force, name) in enumerate(zip(forces, ("bus", "bench")))}
+    each = {
+        index: Steady(force=force, points=(name,))
+        for index, (force, name) in enumerate(zip(forces, ("bus", "bench"), strict=True))
+    }
     one = scenario.with_parts(disturbance=both).simulate(log="full")
     two = scenario.with_parts(disturbance=each).simulate(log="full")
     difference = one["rates"]["axes.rate_rad_s"] - two["rates"]["axes.rate_rad_s"]
@@ -127,7 +131,9 @@ def test_slosh_is_the_coupled_motion() -> None:
         return [y[1], -torque / 10.0, y[3], torque / Slosh.inertia]
 
     times = run["rates"]["time_s"]
-    exact = integrate.solve_ivp(motion, (0.0, 20.0), [0.0, 0.01, 0.0, 0.0], t_eval=times, rtol=1e-10, atol=1e-13)
+    exact = integrate.solve_ivp(
+        motion, (0.0, 20.0), [0.0, 0.01, 0.0, 0.0], t_eval=times, rtol=1e-10, atol=1e-13
+    )
     rate = run["rates"]["axes.rigid_rad_s"][:, 2]
     assert np.abs(rate - exact.y[1]).max() < 2e-5 * 0.01 / 2e-3
     assert np.abs(run["own_disturbance"]["angle"] - exact.y[2]).max() < 2e-4
@@ -153,7 +159,9 @@ def test_campaigns_and_processes_take_both() -> None:
     table = flexsc.campaign(scenario, 4)
     errors = table["pointing_error_end_rad"]
     assert len(set(errors.tolist())) == 4
-    assert [scenario.simulate(run=run).metrics["pointing_error_end_rad"] for run in range(4)] == errors.tolist()
+    assert [
+        scenario.simulate(run=run).metrics["pointing_error_end_rad"] for run in range(4)
+    ] == errors.tolist()
     with ProcessPoolExecutor(2) as pool:
         np.testing.assert_array_equal(
             flexsc.campaign(scenario, 4, executor=pool)["pointing_error_end_rad"], errors
@@ -170,7 +178,9 @@ def test_a_mode_has_a_guidance_of_its_own() -> None:
     own = scenario.with_parts(guidance={names[-1]: Spin()})
     assert list(own.parts) == [f"guidance {names[-1]}"]
     assert own.with_("duration", 5.0).simulate().metrics is not None
-    with pytest.raises(flexsc.ScenarioError, match="guidance: must be one of `detumble`, `point`, `safe`, got `nowhere`"):
+    with pytest.raises(
+        flexsc.ScenarioError, match="guidance: must be one of `detumble`, `point`, `safe`, got `nowhere`"
+    ):
         scenario.with_parts(guidance={"nowhere": Spin()})
     with pytest.raises(flexsc.ScenarioError, match="has no modes of operation"):
         observer().with_parts(guidance={"point": Spin()})
@@ -182,7 +192,9 @@ def test_what_cannot_be_is_refused() -> None:
         one.with_parts(guidance=Spin())
     with pytest.raises(flexsc.ScenarioError, match=r"names points of a body with three axes"):
         one.with_parts(disturbance=Steady(1.0, points=("tip",)))
-    with pytest.raises(flexsc.ScenarioError, match=r"must be one of the body's points, `bus`, `bench`, got `tip`"):
+    with pytest.raises(
+        flexsc.ScenarioError, match=r"must be one of the body's points, `bus`, `bench`, got `tip`"
+    ):
         observer().with_parts(disturbance=Steady(points=("tip",)))
     with pytest.raises(ValueError, match="a force acts on a body with three axes"):
         one.with_parts(disturbance=Steady(force=[1.0, 0.0, 0.0])).simulate()

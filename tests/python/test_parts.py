@@ -250,7 +250,7 @@ def test_what_a_part_answers_is_checked() -> None:
             return None  # type: ignore[return-value]
 
     scenario = flexsc.Scenario.parse(SMALL, "own")
-    with pytest.raises(TypeError, match=r"decide must return a flexsc\.Hold, got NoneType"):
+    with pytest.raises(TypeError, match=r"decide must return a flexsc\.Hold or a torque, got NoneType"):
         scenario.with_parts(law=Silent()).simulate()
     with pytest.raises(ValueError, match="torque must be a finite number"):
         flexsc.Hold(float("nan"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import flexsc
@@ -31,7 +32,7 @@ def test_files_have_the_format_of_their_ending_and_the_width_that_is_asked(tmp_p
         run.save(path, "angle", width=88.0)
         assert path.read_bytes().startswith(head)
     assert 'width="88.000mm"' in (tmp_path / "angle.svg").read_text()
-    run.save(tmp_path / "angle.svg", "torque")                             # another figure of its own
+    run.save(tmp_path / "angle.svg", "torque")  # another figure of its own
     other = tmp_path / "mine.svg"
     other.write_text("<svg>mine</svg>")
     with pytest.raises(FileExistsError, match="is no figure of flexsc"):
@@ -66,14 +67,14 @@ def test_a_figure_fits_the_column_of_a_journal() -> None:
         figure, axes = pyplot.subplots(2, 1, figsize=(3.4, 3.2), layout="constrained")
         flexsc.plot.draw(run, "pointing", axes[0])
         figure.canvas.draw()
-        assert axes[0].xaxis.label.get_size() == 6.0
+        assert axes[0].xaxis.label.get_fontsize() == 6.0
         legend = axes[0].get_legend()
         width = axes[0].get_window_extent().width
         assert legend is None or legend.get_window_extent().width < 1.3 * width
         ticks = [text.get_window_extent() for text in axes[0].get_xticklabels() if text.get_text()]
         shown = [box for box in ticks if 0.0 < box.x0 < figure.bbox.width]
-        assert all(one.x1 < other.x0 for one, other in zip(shown, shown[1:]))
+        assert all(one.x1 < other.x0 for one, other in pairwise(shown))
         pyplot.close(figure)
     figure = run.plot("pointing")
-    assert figure.axes[0].xaxis.label.get_size() == 9.0
+    assert figure.axes[0].xaxis.label.get_fontsize() == 9.0
     pyplot.close(figure)

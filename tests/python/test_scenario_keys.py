@@ -104,8 +104,10 @@ def test_public_classes_have_public_names() -> None:
             places = ("flexsc", "flexsc.parts", "flexsc.structure")
             # Classes of the engine have the name of its module.
             assert thing.__module__ in places or name in (
+                "Aim",
                 "Effort",
                 "Hold",
+                "Load",
                 "Reading",
                 "ThreeAxisEvent",
                 "ThreeAxisHold",

@@ -3,7 +3,7 @@
 import tempfile
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import flexsc
 import flexsc.parts
@@ -107,3 +107,28 @@ here: npt.NDArray[np.float64] = linear.state_of(flexsc.Simulator(scenario))
 system: npt.NDArray[np.float64] = linear.a
 names: list[str] = [signal.name for signal in linear.states]
 led: flexsc.Scenario = scenario.with_law(([], [], [], [[1e-3, 1e-2]]), period=0.5)
+
+
+class Push(flexsc.Disturbance):
+    period = 0.5
+    points = ("tip",)
+
+    def act(self, truth: flexsc.parts.Truth) -> flexsc.Load:
+        return flexsc.Load(force=[0.0, 1e-3, 0.0] if truth.sun is None else None)
+
+
+class Still(flexsc.Guidance):
+    def aim(self, sky: flexsc.parts.Sky) -> flexsc.Aim:
+        return flexsc.Aim((1.0, 0.0, 0.0, 0.0), rate=np.zeros(3))
+
+
+loads: flexsc.Disturbance = flexsc.CompiledDisturbance(1, period=0.1, points=("tip",))
+kept: flexsc.Samples | None = scenario.simulate(at=[1.0, 2.0]).samples
+drawing: str = result.svg("angle")
+ensemble = flexsc.campaign(scenario, 3, at=np.linspace(0.0, 1.0, 3), topics=["attitude"])
+few: flexsc.Table = ensemble[ensemble["duty"] > 0.0][:2].sorted("duty")
+without_noise: flexsc.Scenario = scenario.with_({"uncertain": None, "duration": 20.0})
+if TYPE_CHECKING:
+    result.plot("angle").savefig("angle.pdf")
+    few.plot().savefig("few.pdf")
+    log.plot().savefig("log.pdf")

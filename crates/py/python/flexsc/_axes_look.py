@@ -27,7 +27,7 @@ def need_matplotlib() -> None:
 
 
 class Look:
-    """Sizes of a panel: those of the command, or on axes that are given those of `rcParams` and of the axes."""
+    """Sizes of a panel: those of the command, or of `rcParams` and of axes that are given."""
 
     def __init__(self, ax: Axes | None = None) -> None:
         self.width = self.height = None

@@ -31,7 +31,7 @@ def campaign(
     seed: int | None = None,
     yes: bool = False,
     *,
-    metrics: Sequence[str] | None = None,
+    metrics: str | Sequence[str] | None = None,
     sample: Sample = "random",
     replicas: int = 1,
     out: str | os.PathLike[str] | None = None,
@@ -119,7 +119,7 @@ def sweep(
     *,
     points: Points | None = None,
     sample: Sample | None = None,
-    metrics: Sequence[str] | None = None,
+    metrics: str | Sequence[str] | None = None,
     replicas: int = 1,
     uncertain: bool = False,
     noise: Noise | None = None,
@@ -239,7 +239,7 @@ class _Study(NamedTuple):
     scenario: Scenario
     span: tuple[int, int]
     design: engine.Design
-    metrics: Sequence[str] | None
+    metrics: str | Sequence[str] | None
     seed: int | None
     yes: bool
     draws: bool
@@ -264,7 +264,8 @@ class _Study(NamedTuple):
         if self.log != "none":
             _check_place(out)
         scenario = self.scenario if self.seed is None else self.scenario.with_("seed", self.seed)
-        names = None if self.metrics is None else list(self.metrics)
+        names = [self.metrics] if isinstance(self.metrics, str) else self.metrics
+        names = None if names is None else list(names)
         work = engine.Work.create(
             scenario._native,
             self.span,

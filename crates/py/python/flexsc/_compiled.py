@@ -6,10 +6,12 @@ import ctypes
 from collections.abc import Sequence
 from typing import NoReturn, TypeVar
 
+from flexsc._own_part import OwnPart
+
 Self_ = TypeVar("Self_", bound="Compiled")
 
 
-class Compiled:
+class Compiled(OwnPart):
     """A part given by a function: a `cfunc` of numba, a function of `ctypes`, or an address. A wrong address
     crashes the process.
     """

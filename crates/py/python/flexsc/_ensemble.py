@@ -152,7 +152,9 @@ class Ensemble(Topics):
         taken = copy(self)
         taken.runs = self.runs[places]
         taken._topics = {
-            name: EnsembleTopic(name, {c: v[places] for c, v in topic.items()}, topic._scenario, topic._metadata)
+            name: EnsembleTopic(
+                name, {c: v[places] for c, v in topic.items()}, topic._scenario, topic._metadata
+            )
             for name, topic in self._topics.items()
         }
         return taken

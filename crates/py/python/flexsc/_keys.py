@@ -57,7 +57,11 @@ def without(
     if "" not in tables and not changes:
         return scenario.with_({above: value_at(values, path) for above, path in tables.items()})
     text, name = document(scenario.name, _beside_parts(values)), scenario.name
-    parts = [(role, part) for role, part in scenario.parts.items() if role.split()[0] in values or role.split()[0] in BESIDE]
+    parts = [
+        (role, part)
+        for role, part in scenario.parts.items()
+        if role.split()[0] in values or role.split()[0] in BESIDE
+    ]
     if parts:
         return type(scenario)._of(engine.beside_parts(text, name, parts))
     return type(scenario)._of(engine.Scenario.from_values(text, name))

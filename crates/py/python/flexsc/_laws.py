@@ -95,7 +95,7 @@ class Law(OwnPart):
         """
 
     @abstractmethod
-    def decide(self, event: Event) -> Hold:
+    def decide(self, event: Event) -> Hold | float:
         """Return the command from now on and the conditions for the next call.
 
         Called at the start of the run, at the time given by the last hold, and when the angle passes one of

@@ -543,6 +543,7 @@ class Hold:
         'RACC'
         """
     def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def __deepcopy__(self, _memo: object) -> Hold: ...
 
 @final
@@ -706,6 +707,7 @@ class ThreeAxisHold:
         >>> flexsc.ThreeAxisHold([0.01, 0.0, 0.0], state="FIRE").state
         'FIRE'
         """
+    def __eq__(self, other: object, /) -> bool: ...
     def __deepcopy__(self, _memo: object) -> ThreeAxisHold: ...
 
 @final
@@ -881,6 +883,7 @@ class Reading:
         >>> flexsc.Reading(vector=[0.0, 0.0, 1.0], inertial=[1.0, 0.0, 0.0], is_direction=True).is_direction
         True
         """
+    def __eq__(self, other: object, /) -> bool: ...
     def __deepcopy__(self, _memo: object) -> Reading: ...
 
 @final
@@ -1165,6 +1168,7 @@ class Effort:
         >>> flexsc.Effort([0.01], after=0.05).after
         0.05
         """
+    def __eq__(self, other: object, /) -> bool: ...
 
 @final
 class Load:
@@ -1207,6 +1211,7 @@ class Load:
         >>> flexsc.Load([0.01, 0.0, 0.0], after=0.05).after
         0.05
         """
+    def __eq__(self, other: object, /) -> bool: ...
     def __deepcopy__(self, _memo: object) -> Load: ...
 
 @final

@@ -217,6 +217,12 @@ class Result(Topics, Exportable, Drawable):
         self._motion: engine.MotionSampler | None = None
         self.samples = None
 
+    def __setattr__(self, name: str, value: object) -> None:
+        # What a result says of its run stays as it is.
+        if not name.startswith("_") and self.__dict__.get(name) is not None:
+            raise AttributeError(f"cannot assign to {name!r}: results are read-only")
+        object.__setattr__(self, name, value)
+
     @property
     def answer(self) -> Answer:
         """What was asked, whether it is met, by how much, and when not.

@@ -405,7 +405,9 @@ class Scenario:
         from flexsc._roles import by_role
 
         return self._of(
-            engine.with_parts(self._native, by_role(law, estimator, adaptation, actuator, sensor, disturbance, guidance))
+            engine.with_parts(
+                self._native, by_role(law, estimator, adaptation, actuator, sensor, disturbance, guidance)
+            )
         )
 
     @property

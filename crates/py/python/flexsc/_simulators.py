@@ -13,7 +13,7 @@ from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot, unpicklable
 from flexsc._sources import Source, check_scenarios, held, parse_sources
 from flexsc._threads import threads
-from flexsc._values import run_number
+from flexsc._values import checked, run_number
 
 # More copies than this are a mistake: each takes some kilobytes.
 _MOST = 10_000_000
@@ -54,6 +54,7 @@ class Simulators(Copies):
         *,
         keep_commands: bool = False,
     ) -> None:
+        checked(scenario)
         count = runs if isinstance(runs, int) else len(runs)
         if count > _MOST:
             raise ValueError(f"runs must be at most {_MOST}, got {count}")

@@ -22,6 +22,7 @@ from flexsc._values import counted, objects
 if TYPE_CHECKING:
     from flexsc._ensemble import Ensemble
 
+
 class Table(Columns, Drawable):
     """The results of a campaign, with one row per run: a mapping of columns.
 
@@ -131,7 +132,9 @@ class Table(Columns, Drawable):
         """Return a table of the rows at some places."""
         chosen = places if isinstance(places, slice) else np.asarray(places)
         if not isinstance(chosen, slice) and chosen.dtype.kind not in "biu":
-            raise TypeError(f"a table takes the name of a column, a slice, a mask or positions, got {places!r}")
+            raise TypeError(
+                f"a table takes the name of a column, a slice, a mask or positions, got {places!r}"
+            )
         at = np.arange(self.rows)[chosen]
         work = self._recreated_work() if not self.scenario.parts else self._campaign()
         columns = {name: values[at] for name, values in self.items()}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc._analysis import analysis
 from flexsc._equality import equal
@@ -142,6 +142,14 @@ class Metrics(dict[str, Any]):
     # That of a dictionary takes arrays for truth values.
     __ne__ = object.__ne__
     __hash__ = None
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise TypeError("metrics are those of a run, and read-only: dict(run.metrics) can be changed")
+
+    __setitem__ = __delitem__ = pop = popitem = clear = update = setdefault = __ior__ = _refuse
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Metrics, (dict(self), self._scenario)
 
     def __missing__(self, name: object) -> Any:
         raise no_such("no metric", name, self)

@@ -39,7 +39,7 @@ def campaign(
     seed: int | None = None,
     yes: bool = False,
     *,
-    metrics: Sequence[str] | None = None,
+    metrics: str | Sequence[str] | None = None,
     sample: Sample = "random",
     replicas: int = 1,
     out: str | os.PathLike[str] | None = None,

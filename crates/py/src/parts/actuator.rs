@@ -91,8 +91,8 @@ fn value(demand: &Demand) -> f64 {
 /// >>> import flexsc
 /// >>> flexsc.Effort([0.01], after=0.05).torques
 /// [0.01]
-#[pyclass(frozen, module = "flexsc._native")]
-#[derive(Clone, Debug)]
+#[pyclass(frozen, eq, module = "flexsc._native")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Effort {
     torques: Vec<f64>,
     after: Option<Span>,

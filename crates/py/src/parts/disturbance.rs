@@ -25,8 +25,8 @@ use super::signals::Signals;
 /// >>> import flexsc
 /// >>> flexsc.Load([0.0, 1e-3, 0.0], after=0.1).torque
 /// [[0.0, 0.001, 0.0]]
-#[pyclass(frozen, module = "flexsc._native")]
-#[derive(Clone, Debug)]
+#[pyclass(frozen, eq, module = "flexsc._native")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Load {
     torque: Vec<Vec<f64>>,
     force: Vec<Vec<f64>>,

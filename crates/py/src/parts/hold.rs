@@ -20,8 +20,8 @@ use super::instant::{Instant, span};
 /// >>> import flexsc
 /// >>> flexsc.Hold(-4e-5, at_most=4e-4, state="RACC").at_most
 /// 0.0004
-#[pyclass(frozen, from_py_object, module = "flexsc._native")]
-#[derive(Copy, Clone, Debug)]
+#[pyclass(frozen, eq, from_py_object, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Hold {
     command: Command,
     after: Option<Span>,
@@ -74,6 +74,12 @@ fn finite(name: &str, value: f64) -> PyResult<f64> {
 }
 
 impl Hold {
+    /// A torque (N m), with no conditions for the next call.
+    pub fn from_torque(torque: f64) -> Self {
+        let command = Command::Torque(torque);
+        Self { command, after: None, until: None, at_least: None, at_most: None, phase: Phase::Feedback }
+    }
+
     /// The engine's answer of a law that is asked again after a period, if it names no time; an error if it would never be.
     pub fn engine_output(
         &self,
@@ -186,6 +192,23 @@ impl Hold {
     #[getter]
     fn state(&self) -> &'static str {
         self.phase.label()
+    }
+
+    fn __repr__(&self) -> String {
+        let (name, value) = match self.command {
+            Command::Torque(value) => ("", value),
+            Command::Acceleration(value) => ("acceleration=", value),
+            Command::Change(value) => ("change=", value),
+            Command::Moment(value) => ("moment=", value),
+        };
+        let given = [
+            ("after", self.after()),
+            ("until", self.until.map(|until| until.0.seconds())),
+            ("at_least", self.at_least),
+            ("at_most", self.at_most),
+        ];
+        let given = given.into_iter().filter_map(|(name, value)| Some(format!(", {name}={:?}", value?)));
+        format!("Hold({name}{value:?}{}, state='{}')", given.collect::<String>(), self.state())
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {

@@ -244,8 +244,13 @@ impl Law for Deciding {
                     let hold = *hold.get();
                     return Ok((hold, hold.engine_output(now, period)?));
                 }
-                let found = shape(returned);
-                Err(PyTypeError::new_err(format!("law: decide must return a flexsc.Hold, got {found}")))
+                // A number is a torque, as three numbers are of a law about three axes.
+                let hold = returned.extract::<f64>().map(Hold::from_torque).map_err(|_| {
+                    let found = shape(returned);
+                    let why = format!("law: decide must return a flexsc.Hold or a torque, got {found}");
+                    PyTypeError::new_err(why)
+                })?;
+                Ok((hold, hold.engine_output(now, period)?))
             })
         });
         let Some((hold, output)) = reported else { return Held::NONE };

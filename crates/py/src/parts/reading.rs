@@ -49,8 +49,8 @@ pub fn unit_quaternion(object: &Bound<'_, PyAny>) -> PyResult<Quaternion<f64>> {
 /// >>> import flexsc
 /// >>> flexsc.Reading(angle=1e-3, rate=2e-6).rate
 /// (2e-06, 0.0, 0.0)
-#[pyclass(frozen, module = "flexsc._native")]
-#[derive(Copy, Clone, Debug)]
+#[pyclass(frozen, eq, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Reading {
     /// Orientation of the body, of a sensor that measures it.
     at: Option<Orientation>,

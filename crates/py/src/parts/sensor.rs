@@ -30,12 +30,18 @@ impl PythonSensor {
     pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         Ok(Self {
             object: Object::new(part),
-            period: positive(part.getattr("period")?.extract()?, "period")?,
+            period: positive(period(part)?, "period")?,
             angle_noise: part.getattr("angle_noise")?.extract()?,
             rate_noise: part.getattr("rate_noise")?.extract()?,
             signals: Signals::from_python(part, role, false)?,
         })
     }
+}
+
+/// Returns the period of a sensor (s).
+fn period(part: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let found = part.getattr("period").and_then(|period| Ok(period.extract()?));
+    found.map_err(|_| PyTypeError::new_err("sensor: period, the time (s) between samples, must be a number"))
 }
 
 impl SensorSpec for PythonSensor {

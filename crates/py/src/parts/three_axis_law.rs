@@ -90,8 +90,8 @@ attributes! { ThreeAxisEvent {
 /// >>> import flexsc
 /// >>> flexsc.ThreeAxisHold([0.01, 0.0, -0.02], after=0.5).torques
 /// (0.01, 0.0, -0.02)
-#[pyclass(frozen, module = "flexsc._native")]
-#[derive(Copy, Clone, Debug)]
+#[pyclass(frozen, eq, module = "flexsc._native")]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ThreeAxisHold {
     commands: [Command; 3],
     after: Option<Span>,
