@@ -181,8 +181,10 @@ fn bode(title: &str, lines: &[LocusLine]) -> Figure {
 }
 
 fn nichols(title: &str, lines: &[LocusLine], mask: Option<&NicholsMask>) -> Figure {
-    let x = FigureAxis::around("phase", "deg", values(lines, 2).chain([-180.0]));
-    let y = FigureAxis::around("magnitude", "dB", values(lines, 1).chain([0.0]));
+    // A mask is shown whole.
+    let (gain, phase) = mask.map_or((0.0, 0.0), |mask| (mask.gain_db, mask.phase_deg));
+    let x = FigureAxis::around("phase", "deg", values(lines, 2).chain([-180.0 - phase, -180.0 + phase]));
+    let y = FigureAxis::around("magnitude", "dB", values(lines, 1).chain([-gain, gain]));
     // The points that the loop must not pass: -1 and its repetitions.
     let turns = (-40..40).map(|turn| f64::from(turn) * 360.0 - 180.0);
     let critical: Vec<Point> =
