@@ -7,14 +7,16 @@ use super::signature::{has_time, inits_at_time};
 use crate::control_system::{CallLayout, Channel, NumberKind};
 use crate::self_test::{BLOCK, EXTREME_BLOCK, EXTREMES, SEED, cycle_milliseconds};
 
-/// Returns the driver.
-pub fn driver(plan: &Plan<'_>) -> String {
+/// Returns the driver, which is compiled under the guards of the source too: it computes inputs.
+pub fn driver(plan: &Plan<'_>, guards: &str) -> String {
     let prefix = plan.prefix;
     let mut text = format!(
         "/* Driver of {prefix}.c.\n *\n *   driver vectors.bin    replays the calls of a run and compares their outputs by bits\n *   driver --hash N       \
          prints the hash over the outputs of N cycles with random and extreme inputs\n *\n * On a board without arguments, DRIVER_CYCLES \
          is the number of cycles.\n */\n\n#include \"{prefix}.h\"\n\n{COUNTING}#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\n"
     );
+    text.push_str(guards.trim());
+    text.push_str("\n\n");
     text.push_str(WORDS);
     let most = |words: fn(&CallLayout) -> usize| plan.calls.iter().map(words).max().unwrap_or(0).max(1);
     let _ = writeln!(

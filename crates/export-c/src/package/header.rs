@@ -32,7 +32,8 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     }
     let _ = writeln!(
         text,
-        "/* Version: the exporter, and the SHA-256 of the scenario in `scenario.toml`. */\nextern const char {prefix}_version[];\n"
+        "/* Version: the exporter, and the SHA-256 of the scenario in `scenario.toml`. */\nextern const char {prefix}_version[{}];\n",
+        plan.version().len() + 1
     );
     let _ = writeln!(
         text,

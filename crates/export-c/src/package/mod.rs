@@ -141,7 +141,7 @@ pub fn export(
     files.extend([
         text(format!("{prefix}.h"), header),
         text(format!("{prefix}.c"), source),
-        text("driver.c".to_owned(), driver::driver(&plan)),
+        text("driver.c".to_owned(), driver::driver(&plan, &translation.guards)),
         text(format!("{prefix}.icd.json"), interface::interface(&plan, scenario)),
         text("scenario.toml".to_owned(), effective),
         text("main_loop.c".to_owned(), main_loop::main_loop(&plan)),

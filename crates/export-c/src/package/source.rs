@@ -109,7 +109,13 @@ pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> St
     text.push_str("\n\n");
     text.push_str(translation.definitions.trim());
     text.push_str("\n\n");
-    let _ = writeln!(text, "const char {}_version[] = \"{}\";\n", plan.prefix, plan.version());
+    let _ = writeln!(
+        text,
+        "const char {}_version[{}] = \"{}\";\n",
+        plan.prefix,
+        plan.version().len() + 1,
+        plan.version()
+    );
     text.push_str(functions);
     text
 }
