@@ -21,7 +21,7 @@ DOUBLES = ctypes.POINTER(ctypes.c_double)
 FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_double, DOUBLES, DOUBLES, DOUBLES)
 
 
-class Steady(flexsc.Disturbance):
+class Steady(flexsc.DisturbanceModel):
     """A torque and a force that do not change."""
 
     period = 1000.0
@@ -33,7 +33,7 @@ class Steady(flexsc.Disturbance):
         return flexsc.Load(self.torque, self.force)
 
 
-class Slosh(flexsc.Disturbance):
+class Slosh(flexsc.DisturbanceModel):
     """A fluid about the z axis: an inertia on a spring and a damper, by the symplectic Euler method."""
 
     period = 0.002
@@ -205,10 +205,10 @@ def test_what_cannot_be_is_refused() -> None:
         observer().with_parts(disturbance=Steady([1.0, 0.0, 0.0], points=("bus", "bench"))).simulate()
     with pytest.raises(ValueError, match="torque must be finite, got NaN"):
         observer().with_parts(disturbance=Steady([math.nan, 0.0, 0.0])).simulate()
-    with pytest.raises(TypeError, match=r"disturbance 0 must be an object of a flexsc\.Disturbance"):
+    with pytest.raises(TypeError, match=r"disturbance 0 must be an object of a flexsc\.DisturbanceModel"):
         observer().with_parts(disturbance=Spin())  # type: ignore[arg-type]
 
-    class Once(flexsc.Disturbance):
+    class Once(flexsc.DisturbanceModel):
         def act(self, truth: Truth) -> list[float]:
             return [0.0, 0.0, 0.0]
 
@@ -241,7 +241,7 @@ def test_compiled_loads_are_those_of_python() -> None:
         aim[0], aim[3] = math.cos(half), math.sin(half)
         aim[6], aim[9] = constants[0] + constants[1] * now, constants[1]
 
-    class Drag(flexsc.Disturbance):
+    class Drag(flexsc.DisturbanceModel):
         period = 0.1
 
         def act(self, truth: Truth) -> list[float]:
