@@ -70,7 +70,7 @@ def test_an_ensemble_goes_to_other_libraries() -> None:
 
 
 def test_a_run_that_failed_has_no_motion() -> None:
-    class Failing(flexsc.Disturbance):
+    class Failing(flexsc.DisturbanceModel):
         period = 1.0
 
         def start(self, axes: int, draws: flexsc.parts.Draws) -> None:

@@ -6,6 +6,7 @@ import ctypes
 import math
 import pickle
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -20,7 +21,7 @@ DOUBLES = ctypes.POINTER(ctypes.c_double)
 FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_double, DOUBLES, DOUBLES, DOUBLES)
 
 
-class Steady(flexsc.Disturbance):
+class Steady(flexsc.DisturbanceModel):
     """A torque and a force that do not change."""
 
     period = 1000.0
@@ -32,7 +33,7 @@ class Steady(flexsc.Disturbance):
         return flexsc.Load(self.torque, self.force)
 
 
-class Slosh(flexsc.Disturbance):
+class Slosh(flexsc.DisturbanceModel):
     """A fluid about the z axis: an inertia on a spring and a damper, by the symplectic Euler method."""
 
     period = 0.002
@@ -204,10 +205,10 @@ def test_what_cannot_be_is_refused() -> None:
         observer().with_parts(disturbance=Steady([1.0, 0.0, 0.0], points=("bus", "bench"))).simulate()
     with pytest.raises(ValueError, match="torque must be finite, got NaN"):
         observer().with_parts(disturbance=Steady([math.nan, 0.0, 0.0])).simulate()
-    with pytest.raises(TypeError, match=r"disturbance 0 must be an object of a flexsc\.Disturbance"):
+    with pytest.raises(TypeError, match=r"disturbance 0 must be an object of a flexsc\.DisturbanceModel"):
         observer().with_parts(disturbance=Spin())  # type: ignore[arg-type]
 
-    class Once(flexsc.Disturbance):
+    class Once(flexsc.DisturbanceModel):
         def act(self, truth: Truth) -> list[float]:
             return [0.0, 0.0, 0.0]
 
@@ -240,7 +241,7 @@ def test_compiled_loads_are_those_of_python() -> None:
         aim[0], aim[3] = math.cos(half), math.sin(half)
         aim[6], aim[9] = constants[0] + constants[1] * now, constants[1]
 
-    class Drag(flexsc.Disturbance):
+    class Drag(flexsc.DisturbanceModel):
         period = 0.1
 
         def act(self, truth: Truth) -> list[float]:
@@ -294,3 +295,58 @@ def test_a_compiled_law_about_three_axes_is_that_of_python() -> None:
 
     with pytest.raises(RuntimeError, match="a compiled law gave commands"):
         scenario.with_parts(law=flexsc.CompiledThreeAxisLaw(broken, period=0.25)).simulate()
+
+
+def test_a_table_is_that_of_constant_torques_and_forces(tmp_path: Path) -> None:
+    scenario = observer()
+    torques = [[1.0, 1e-3], [3.5, -2e-3], [7.0, 0.0]]
+    forces = [[0.0, 0.0, 0.0, 2e-3], [5.0, 1e-3, 0.0, 0.0]]
+    bounds = [*zip(torques, [*torques[1:], [20.0, 0.0]], strict=True)]
+    steps: list[dict[str, Any]] = [
+        {"about": "pitch", "torque": torque, "from": start, "to": end} for (start, torque), (end, _) in bounds
+    ]
+    steps += [
+        {"force": forces[0][1:], "point": "bench", "to": 5.0},
+        {"force": forces[1][1:], "point": "bench", "from": 5.0},
+    ]
+    tables: list[dict[str, Any]] = [
+        {"about": "pitch", "table": torques},
+        {"table": forces, "point": "bench"},
+    ]
+    mine = scenario.with_("disturbance", tables).simulate(log="full")
+    theirs = scenario.with_("disturbance", steps).simulate(log="full")
+    same(mine, theirs, ("rates", "torques", "vibrations"))
+    # A file with a header, beside the scenario.
+    rows = "\n".join(",".join(map(str, row)) for row in torques)
+    (tmp_path / "measured.csv").write_text(f"time,torque\n{rows}\n")
+    (tmp_path / "study.toml").write_text(
+        scenario.to_toml() + '\n[[disturbance]]\nabout = "pitch"\ntable = "measured.csv"\n'
+    )
+    of_file = flexsc.Scenario.load(tmp_path / "study.toml").simulate(log="full")
+    same(of_file, scenario.with_("disturbance", tables[:1]).simulate(log="full"), ("rates", "torques"))
+    # About one axis.
+    one = shipped("rotation-robust").with_("duration", 20.0)
+    table = one.with_("disturbance", [{"table": torques}]).simulate(log="full")
+    constant = [{key: value for key, value in step.items() if key != "about"} for step in steps[:3]]
+    same(table, one.with_("disturbance", constant).simulate(log="full"), ("rate", "torque"))
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"about": "roll", "table": [[0.0, 1.0]]}, "must have from 2 to 1000000 rows, got 1"),
+        ({"about": "roll", "table": [[1.0, 1.0], [1.0, 2.0]]}, "row 2: must have increasing times"),
+        ({"about": "roll", "table": [[0.0, 1.0], [1.0, 1.0, 2.0]]}, "row 2: must have a time"),
+        ({"about": "roll", "table": "nowhere.csv"}, "nowhere.csv"),
+        ({"table": [[0.0, 1.0], [1.0, 2.0]]}, "must be given for a torque"),
+        (
+            {"force": [1, 0, 0], "table": [[0, 1, 0, 0], [1, 2, 0, 0]]},
+            "takes the place of a constant `force`",
+        ),
+        ({"about": "roll", "table": [[0, 1, 0, 0], [1, 2, 0, 0]]}, "applies only to a torque"),
+    ],
+)
+def test_a_table_that_is_none_is_refused(keys: dict[str, Any], words: str) -> None:
+    with pytest.raises(flexsc.ScenarioError) as raised:
+        observer().with_("disturbance", [keys])
+    assert words in str(raised.value)

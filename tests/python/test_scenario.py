@@ -360,7 +360,7 @@ def test_a_scenario_is_saved_and_none_removes(tmp_path: Path) -> None:
 
 
 def test_own_disturbances_stay_when_keys_are_removed() -> None:
-    class Nothing(flexsc.Disturbance):
+    class Nothing(flexsc.DisturbanceModel):
         period = 1.0
 
         def act(self, truth: flexsc.parts.Truth) -> list[float]:

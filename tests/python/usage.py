@@ -109,7 +109,7 @@ names: list[str] = [signal.name for signal in linear.states]
 led: flexsc.Scenario = scenario.with_law(([], [], [], [[1e-3, 1e-2]]), period=0.5)
 
 
-class Push(flexsc.Disturbance):
+class Push(flexsc.DisturbanceModel):
     period = 0.5
     points = ("tip",)
 
@@ -122,7 +122,7 @@ class Still(flexsc.Guidance):
         return flexsc.Aim((1.0, 0.0, 0.0, 0.0), rate=np.zeros(3))
 
 
-loads: flexsc.Disturbance = flexsc.CompiledDisturbance(1, period=0.1, points=("tip",))
+loads: flexsc.DisturbanceModel = flexsc.CompiledDisturbance(1, period=0.1, points=("tip",))
 kept: flexsc.Samples | None = scenario.simulate(at=[1.0, 2.0]).samples
 drawing: str = result.svg("angle")
 ensemble = flexsc.campaign(scenario, 3, at=np.linspace(0.0, 1.0, 3), topics=["attitude"])

@@ -4,12 +4,12 @@ use crate::csv_table::{CsvTable, TableKind};
 
 /// Rows of time and torque or force, by increasing time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Loads;
+pub struct LoadRows;
 
 /// Torque (N m) or force (N) from times (s) on, or the path of the file that contains them.
-pub type LoadTable = CsvTable<Loads>;
+pub type LoadTable = CsvTable<LoadRows>;
 
-impl TableKind for Loads {
+impl TableKind for LoadRows {
     const NAME: &'static str = "LoadTable";
     const ROWS: &'static str =
         "rows of time (s) and torque (N m), or of time and three components of a force (N)";

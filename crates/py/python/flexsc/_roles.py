@@ -20,7 +20,7 @@ def by_role(
     adaptation: parts.Adaptation | None,
     actuator: parts.Actuator | Mapping[int, parts.Actuator] | None,
     sensor: parts.Sensor | Mapping[int, parts.Sensor] | None,
-    disturbance: parts.Disturbance | Mapping[int, parts.Disturbance] | None,
+    disturbance: parts.DisturbanceModel | Mapping[int, parts.DisturbanceModel] | None,
     guidance: parts.Guidance | Mapping[str, parts.Guidance] | None,
 ) -> list[tuple[str, object]]:
     """Return the parts that are given, each with its role, such as `sensor 0` or `law point`.
@@ -47,7 +47,10 @@ def by_role(
         ("adaptation", parts.Adaptation, adaptation),
         *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
         *((f"sensor {index(place)}", parts.Sensor, each) for place, each in sensors.items()),
-        *((f"disturbance {index(place)}", parts.Disturbance, each) for place, each in disturbances.items()),
+        *(
+            (f"disturbance {index(place)}", parts.DisturbanceModel, each)
+            for place, each in disturbances.items()
+        ),
         *((role, parts.Guidance, each) for role, each in guides.items()),
     ]
     brought = []

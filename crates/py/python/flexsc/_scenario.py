@@ -28,7 +28,16 @@ if TYPE_CHECKING:
     from flexsc._linear import Break, Linear
     from flexsc._part import Part
     from flexsc._sample_times import SampleTimes
-    from flexsc.parts import Actuator, Adaptation, Disturbance, Estimator, Guidance, Law, Sensor, ThreeAxisLaw
+    from flexsc.parts import (
+        Actuator,
+        Adaptation,
+        DisturbanceModel,
+        Estimator,
+        Guidance,
+        Law,
+        Sensor,
+        ThreeAxisLaw,
+    )
     from flexsc.results import (
         NoiseSpectrum,
         OutputBound,
@@ -373,7 +382,7 @@ class Scenario:
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
         actuator: Actuator | Mapping[int, Actuator] | None = None,
-        disturbance: Disturbance | Mapping[int, Disturbance] | None = None,
+        disturbance: DisturbanceModel | Mapping[int, DisturbanceModel] | None = None,
         guidance: Guidance | Mapping[str, Guidance] | None = None,
     ) -> Scenario:
         """Return a scenario with your own parts in place of its parts, as `flexsc.parts` describes them.

@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from flexsc._native import Aim, Draws, Load, Sky, Truth
 
 
-class Disturbance(OwnPart):
+class DisturbanceModel(OwnPart):
     """A disturbance, in addition to those of the scenario: torques and forces that depend on the time, the
     motion and the sky.
 
-    >>> class Drag(Disturbance):
+    >>> class Drag(DisturbanceModel):
     ...     period = 0.1
     ...     def act(self, truth):
     ...         return [-1e-3 * rate for rate in truth.rigid]                  # N m
@@ -104,7 +104,7 @@ class Guidance(OwnPart):
         """
 
 
-class CompiledDisturbance(Compiled, Disturbance):
+class CompiledDisturbance(Compiled, DisturbanceModel):
     """A disturbance given by a compiled function, such as a `cfunc` of numba or a C function.
 
     The function takes five arguments and returns nothing; all numbers are doubles:
@@ -132,7 +132,7 @@ class CompiledDisturbance(Compiled, Disturbance):
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
         period: Period (s) of the calls if a load gives no time; None for a function that always gives one.
-        points: Names of the points at which it acts, as `Disturbance.points`.
+        points: Names of the points at which it acts, as `DisturbanceModel.points`.
         states: Its states at the start of a run.
     """
 

@@ -48,7 +48,7 @@ from flexsc._native import (
     Truth,
 )
 from flexsc._own_part import OwnPart
-from flexsc._surroundings import CompiledDisturbance, CompiledGuidance, Disturbance, Guidance
+from flexsc._surroundings import CompiledDisturbance, CompiledGuidance, DisturbanceModel, Guidance
 
 __all__ = [
     "Actuator",
@@ -60,7 +60,7 @@ __all__ = [
     "CompiledLaw",
     "CompiledThreeAxisLaw",
     "Demanded",
-    "Disturbance",
+    "DisturbanceModel",
     "Draws",
     "Effort",
     "Estimator",
@@ -111,7 +111,7 @@ for _class in (
     CompiledGuidance,
     CompiledLaw,
     CompiledThreeAxisLaw,
-    Disturbance,
+    DisturbanceModel,
     Guidance,
     Law,
     ThreeAxisLaw,

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use super::draws::Draws;
 use super::instant::Instant;
 use super::object::{Method, Object, exactly, shape};
-use super::reading::{Four, Three, four, unit_quaternion};
+use super::reading::{Four, Three, four, triple, unit_quaternion};
 use super::signals::Signals;
 
 /// The sky at an instant, in inertial axes.
@@ -25,11 +25,6 @@ use super::signals::Signals;
 pub struct Sky {
     now: Exact,
     sky: EnvironmentObservation,
-}
-
-/// Returns a vector as a tuple.
-pub fn triple(vector: Option<Vector>) -> Option<Three> {
-    vector.map(|vector| <[f64; 3]>::from(vector).into())
 }
 
 attributes! { Sky {

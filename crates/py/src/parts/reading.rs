@@ -7,7 +7,6 @@ use nalgebra::Quaternion;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use super::guidance::triple;
 use super::instant::Instant;
 use super::object::exactly;
 
@@ -28,6 +27,11 @@ pub fn angle(orientation: &Orientation) -> Option<f64> {
 /// An attitude, of a body with three axes.
 pub fn attitude(orientation: &Orientation) -> Option<Four> {
     if let Orientation::Attitude(q) = orientation { Some(four(q)) } else { None }
+}
+
+/// Returns a vector as a tuple.
+pub fn triple(vector: Option<Vector>) -> Option<Three> {
+    vector.map(|vector| <[f64; 3]>::from(vector).into())
 }
 
 /// Returns the unit quaternion of four numbers.
