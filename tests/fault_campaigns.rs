@@ -80,7 +80,7 @@ fn a_sweep_over_faults_has_a_table_by_requirements_and_saves_the_least_robust_ru
         "push               ✓ 30 %",
         "weakest     shove and silence: stays near",
     ]);
-    let json = dir.run("sweep rest.toml --vary active_fault --json").exits(3).printed();
+    let json = dir.run("sweep rest.toml --vary active_fault --json").exits(3).prints(&[]);
     let answer = json.lines().last().expect("an answer");
     let answer: serde_json::Value = serde_json::from_str(answer).expect("JSON");
     let shove = &answer["answer"]["by_fault"][2];
@@ -101,8 +101,8 @@ fn which_fault_occurs_and_how_is_drawn() {
                  \"fault[0].actuator.faults[0].added.constant\" = { uniform = [10.0, 20.0] }\n";
     dir.write("drawn.toml", format!("{REST}{drawn}"));
     // Pushes of up to 20 N m turn it by at most 0.2 rad/s, but 0.7 rad in 4 s: the limit is at 14.3 N m.
-    let ran = dir.run("simulate drawn.toml --runs 40 --json").exits(3).printed();
-    assert_eq!(ran, dir.run("simulate drawn.toml --runs 40 --json --jobs 3").exits(3).printed());
+    let ran = dir.run("simulate drawn.toml --runs 40 --json").exits(3).prints(&[]);
+    assert_eq!(ran, dir.run("simulate drawn.toml --runs 40 --json --jobs 3").exits(3).prints(&[]));
     let rows: Vec<serde_json::Value> =
         ran.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     let (mut none, mut missed) = (0, 0);
@@ -178,10 +178,9 @@ fn what_does_not_fit_is_refused_at_its_place() {
         let error = Scenario::parse("rest.toml", &text).expect_err(new).to_string();
         assert!(error.contains(expected) && error.contains(key), "{new}: {error}");
     }
-    let silent = REST
-        .replace("[sensor.sampled]\nperiod = 1.0", "[sensor]\ncontinuous = {}")
-        .replace("part = \"sampled\"", "part = \"continuous\"");
-    let error = Scenario::parse("rest.toml", &format!("active_fault = \"shove and silence\"\n{silent}"))
-        .expect_err("no faults");
+    let silent =
+        REST.replace("[sensor.sampled]\nperiod = 1.0\n", "").replace("\"sampled\"", "\"continuous\"");
+    let silent = format!("active_fault = \"shove and silence\"\nsensor = \"continuous\"\n{silent}");
+    let error = Scenario::parse("rest.toml", &silent).expect_err("no faults");
     assert!(error.to_string().contains("has no `faults`"), "{error}");
 }

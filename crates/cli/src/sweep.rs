@@ -32,7 +32,8 @@ pub struct SweepArgs {
     /// Scenario file
     pub scenario: PathBuf,
     /// A key and its values: LO:HI:COUNT for evenly spaced values, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a
-    /// range LO:HI for --sample. Repeat it for more keys: grids and lists are combined, ranges are sampled together
+    /// range LO:HI for --sample; active_fault alone for all faults. Repeat it for more keys: grids and lists are combined,
+    /// ranges are sampled together
     #[arg(long, required_unless_present = "points", value_name = "KEY=VALUES", value_parser = varied)]
     vary: Vec<VariedKey>,
     /// CSV file of points: one column per key, one row per point; combined with --vary

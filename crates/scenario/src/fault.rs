@@ -22,6 +22,7 @@ pub const ACTIVE_FAULT: &str = "active_fault";
 /// Failures that occur together, in the runs of which this is the `active_fault`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "RunFault")]
 pub struct Fault {
     /// Name.
     pub name: String,
@@ -36,6 +37,7 @@ pub struct Fault {
 /// Failures of a part, besides its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(rename = "PartWith{F}")]
 pub struct PartFailures<F> {
     /// Part by its kind, or by its kind and its place among those of the kind, such as `star_tracker[1]`.
     pub part: String,
