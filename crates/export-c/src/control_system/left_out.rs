@@ -86,7 +86,7 @@ impl ControlSystem {
                     add(key, "give the commands by on-times of the jets");
                 }
                 ActuatorKind::Thrusters(_) => add(key, "give the torque by the thrusters"),
-                ActuatorKind::Magnetorquers(_) if !included.has_moments => {
+                kind if kind.kind() == "magnetorquers" && !included.has_moments => {
                     add(key, "give the torque by magnetic moments");
                 }
                 _ => {}
