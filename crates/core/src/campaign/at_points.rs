@@ -7,8 +7,8 @@ use super::{Campaign, Design, DesignBlock};
 use flexsc_scenario::Scenario;
 
 impl Campaign {
-    /// Returns the campaign of a scenario whose runs have the uncertain keys at given points, in the order of the keys, all
-    /// with the noise of run 0. A manoeuvre that a campaign plans for the body as it is written is planned so here too.
+    /// Returns the campaign of a scenario whose runs have the uncertain keys at given points, in the order of the keys, but
+    /// for those that hold a text, all with the noise of run 0. A manoeuvre that a campaign plans for the body as it is written is planned so here too.
     ///
     /// # Errors
     /// A scenario without a model of its own body for the manoeuvre.
@@ -17,7 +17,8 @@ impl Campaign {
         origin: &str,
         points: Vec<Vec<f64>>,
     ) -> Result<Self, ScenarioError> {
-        let mut keys: Vec<String> = scenario.uncertain.keys().cloned().collect();
+        let numbers = scenario.uncertain.iter().filter(|(_, distribution)| !distribution.has_texts());
+        let mut keys: Vec<String> = numbers.map(|(key, _)| key.clone()).collect();
         let block = if Self::plans_before_drawing(scenario) {
             let model = Self::planned_model(scenario)?;
             keys.push("manoeuvre.model".to_owned());
