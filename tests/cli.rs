@@ -275,7 +275,7 @@ fn margins_of_a_loop() {
         ["bode", "nichols", "nyquist", "root-locus", "singular-values"]
             .map(|name| format!("wheel-fast-mode-{name}.svg"))
     );
-    let unstable = ["not stable and has no margins", "magnitude 1.0476992", "0.1090 rad/s", "`command`"];
+    let unstable = ["not stable and has no margins", "magnitude 1.0476992", "0.0174 Hz", "`command`"];
     dir.run("margins wheel-unstable-band.toml").exits(2).says(&unstable);
     dir.run("margins relay-fixed.toml").exits(2).says(&["law.relay", "is not linear"]);
     dir.run("margins wheel-fast-mode.toml --loop wheel").exits(2).says(&["command, torque, measurement"]);

@@ -79,6 +79,7 @@ const KINDS: [Kind; 14] = [
             "actuator/unloading.rs",
             "cli/src/plot/magnetorquers.rs",
             "export-c/src/control_system/b_dot.rs",
+            "export-c/src/control_system/left_out.rs",
             "formats/src/document/suggestions.rs",
             "scenario/src/actuator_checks.rs",
         ],

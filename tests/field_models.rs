@@ -26,7 +26,7 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 /// A body at rest whose filter takes the field of a lower degree than the true one, with hardly any noise.
 const BOARD_MODEL: &str = "duration = 5.0\nepoch = 2026-11-24T00:00:00Z\nlaw = { open = {} }\n\
     sensor = [{ gyro = { period = 0.5, angle_random_walk = 1e-6 } }, { magnetometer = { period = 0.5, noise = 1e-11 } }]\n\
-    estimator = { attitude = { prior = \"true\", watch_only = true, field_degree = 1 } }\n\
+    estimator = { attitude = { prior = \"true\", watch_only = true, field_degree = 1, gate = { deviations = 1e6 } } }\n\
     [spacecraft]\nmass = 100.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\n\
     [environment]\norbit = { semi_major_axis = 7e6, inclination = 1.2, node = 0.4 }\nmagnetic_field = {}\n";
 

@@ -250,7 +250,7 @@ fn panels_visibly_bend() {
         // turns of a pass are too smooth.
         let straight = "detumble-and-point sun-tracking panel-deployment adaptive-bandwidth bounded-jitter \
                         orbit-correction ground-pass safe-mode cubesat-day s2e-sample basilisk-momentum forty-two-leo blinded-tracker \
-                        two-line-orbit site-pass field-aligned molniya";
+                        two-line-orbit site-pass field-aligned molniya false-readings cubesat-faults";
         if straight.split(' ').any(|straight| straight == name) {
             continue;
         }

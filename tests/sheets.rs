@@ -102,7 +102,7 @@ fn axes_without_pulses_have_no_panel() {
     dir.run("simulate momentum-unloading.toml --set duration=1400").exits(0);
     dir.run("plot momentum-unloading.mcap --what jets,rates -o figures --format svg").exits(0);
     let jets = texts(&dir.text("figures/momentum-unloading-jets.svg"));
-    assert!(jets.iter().any(|text| text == "roll (s)"), "{jets:?}");
+    assert!(jets.iter().any(|text| text == "roll pulse (s)"), "{jets:?}");
     assert!(!jets.iter().any(|text| text.starts_with("pitch") || text.starts_with("yaw")), "{jets:?}");
     // An axis that is at rest has none either.
     let rates = texts(&dir.text("figures/momentum-unloading-rates.svg"));

@@ -140,6 +140,7 @@ impl RequirementRuns {
     }
 
     /// Returns the runs in some rows.
+    #[must_use]
     pub fn of_rows(&self, counts: impl Fn(usize) -> bool) -> Self {
         let empty = vec![Vec::new(); self.values.len()];
         let mut own = Self {

@@ -128,13 +128,13 @@ impl AttitudeEstimator {
         self.correction.innovation.norm()
     }
 
-    /// Returns the standard deviation of the attitude about all axes together (rad), as the filter believes it.
+    /// Returns the standard deviation of the attitude about all axes together (rad), by the covariance of the filter.
     pub fn deviation_size(&self, entries: &[AttitudeHistoryEntry]) -> f64 {
         let deviation: Vector3 = self.deviation(entries);
         deviation.norm()
     }
 
-    /// Returns the standard deviation of the attitude about each axis (rad), as the filter believes it.
+    /// Returns the standard deviation of the attitude about each axis (rad), by the covariance of the filter.
     pub fn deviation(&self, entries: &[AttitudeHistoryEntry]) -> Vector3 {
         let filter: AttitudeBiasFilter = entries[self.history.latest()].filter;
         Vector3 {

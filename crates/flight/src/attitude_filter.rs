@@ -156,15 +156,11 @@ impl AttitudeBiasFilter {
         let across: Vector3 = off.cross(&expected);
         let innovation: Vector3 = across.divided(expected.norm_squared());
         let components: u32 = if is_direction { 2 } else { 3 };
-        let nis: f64;
-        if is_direction {
-            let x: f64 = inverse.rows[0][0] * measured.off.x + inverse.rows[0][1] * measured.off.y;
-            let y: f64 = inverse.rows[1][0] * measured.off.x + inverse.rows[1][1] * measured.off.y;
-            nis = (measured.off.x * x + measured.off.y * y) * 1.5;
-        } else {
-            let scaled: Vector3 = inverse.times(&off);
-            nis = off.dot(&scaled);
-        }
+        let x: f64 = inverse.rows[0][0] * measured.off.x + inverse.rows[0][1] * measured.off.y;
+        let y: f64 = inverse.rows[1][0] * measured.off.x + inverse.rows[1][1] * measured.off.y;
+        let across_direction: f64 = (measured.off.x * x + measured.off.y * y) * 1.5;
+        let scaled: Vector3 = inverse.times(&off);
+        let nis: f64 = if is_direction { across_direction } else { off.dot(&scaled) };
         if !(nis <= most_nis) {
             return Correction { innovation, nis, components, status: ReadingStatus::Improbable };
         }

@@ -70,8 +70,8 @@ const PREFIXES: [(&str, f64, f64); 6] = [
     ("n", 1e-9, 0.0),
 ];
 
-/// Names of keys that are natural frequencies, and of those that are speeds of rotors.
-const FREQUENCY: &str = "frequenc";
+/// Names of keys that are angular frequencies, and of those that are speeds of rotors.
+const FREQUENCIES: [&str; 2] = ["frequenc", "bandwidth"];
 const SPEED: &str = "speed";
 
 impl ReaderUnits {
@@ -117,7 +117,7 @@ impl ReaderUnits {
         let last = key.rsplit('.').next().unwrap_or_default();
         let name = last.split('[').next().unwrap_or_default();
         match unit {
-            "rad/s" if name.contains(FREQUENCY) => self.frequency(),
+            "rad/s" if FREQUENCIES.iter().any(|own| name.contains(own)) => self.frequency(),
             "rad/s" if name.contains(SPEED) => self.rotor_speed(),
             _ => self.fitting(largest, unit),
         }

@@ -91,6 +91,9 @@ impl Work {
     }
 }
 
+/// Rows, their statistics, and the number of each run that did not fail with its topics.
+type SampledRows<'py> = (Bound<'py, PyDict>, Vec<Summary>, Vec<(u64, Bound<'py, PyDict>)>);
+
 #[pymethods]
 impl Work {
     /// The work of some runs; `part_s` is the work of a part (s), in place of about 4 s, `drawn` whether `[uncertain]` keys
@@ -255,7 +258,7 @@ impl Work {
         jobs: usize,
         times: Vec<f64>,
         topics: Option<Vec<String>>,
-    ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>, Vec<(u64, Bound<'py, PyDict>)>)> {
+    ) -> PyResult<SampledRows<'py>> {
         let (work, traces) = (self.0.clone(), Arc::new(Mutex::new(BTreeMap::new())));
         let kept = Arc::clone(&traces);
         let (rows, statistics) = aside(py, move |stop| {

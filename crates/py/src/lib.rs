@@ -263,6 +263,9 @@ fn detail(log: &str) -> PyResult<Option<Detail>> {
     }
 }
 
+/// Metrics, topics, answer and, at chosen times, the topics there.
+type SimulatedRun<'py> = (Bound<'py, PyDict>, Bound<'py, PyDict>, RunAnswer, Option<Bound<'py, PyDict>>);
+
 #[pyfunction]
 fn simulate<'py>(
     py: Python<'py>,
@@ -272,7 +275,7 @@ fn simulate<'py>(
     yes: bool,
     stepped: Option<&Commands>,
     at: Option<Vec<f64>>,
-) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>, RunAnswer, Option<Bound<'py, PyDict>>)> {
+) -> PyResult<SimulatedRun<'py>> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
     let Commands { commands, until } = Commands::from_stepped(stepped);

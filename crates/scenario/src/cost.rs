@@ -250,27 +250,7 @@ impl Scenario {
         if let Some((adaptation, window)) = self.adaptation.as_ref().and_then(|of| Some((of, of.window()?))) {
             each(format!("adaptation.{}.window", adaptation.kind()), duration, window);
         }
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
-            let rows = disturbance.rows().len();
-            if rows > 0 {
-                each(
-                    format!("disturbance[{index}].table"),
-                    duration,
-                    Span::from_seconds(duration / rows as f64),
-                );
-            }
-            if let Some(pulse) = disturbance.pulse {
-                each(
-                    format!("disturbance[{index}].pulse.period"),
-                    until - disturbance.from.get(),
-                    pulse.period,
-                );
-            }
-            if let Some(period) = disturbance.period.filter(|_| disturbance.noise > NonNegative::default()) {
-                each(format!("disturbance[{index}].period"), until - disturbance.from.get(), period);
-            }
-        }
+        steps.extend(self.disturbance_steps());
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let is_sampled = self.study.sample_period.is_some();
@@ -323,6 +303,28 @@ impl Scenario {
                 };
                 let key = if pushed < PUSHED_STEP { PUSHES } else { TURNS };
                 steps.push((key.to_owned(), count));
+            }
+        }
+        steps
+    }
+
+    /// Returns the steps of the disturbances: rows of tables, pulses and draws of noise.
+    fn disturbance_steps(&self) -> Vec<(String, f64)> {
+        let duration = self.duration.seconds();
+        let mut steps = Vec::new();
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
+            let span = (until - disturbance.from.get()).max(0.0);
+            let mut add = |key: &str, count: f64| steps.push((format!("disturbance[{index}].{key}"), count));
+            let rows = disturbance.rows().len();
+            if rows > 0 {
+                add("table", rows as f64);
+            }
+            if let Some(pulse) = disturbance.pulse {
+                add("pulse.period", span / pulse.period.seconds());
+            }
+            if let Some(period) = disturbance.period.filter(|_| disturbance.noise > NonNegative::default()) {
+                add("period", span / period.seconds());
             }
         }
         steps

@@ -43,7 +43,7 @@ pub struct Guidance {
 #[derive(Clone, Debug)]
 enum ModeReference {
     /// Target; and for each mode before, true if a slew to it starts at the estimated attitude, and not at the reference.
-    Target(AttitudeTarget, Vec<bool>),
+    Target(Box<AttitudeTarget>, Vec<bool>),
     /// Guidance of a program.
     Own(OwnGuidance),
 }
@@ -76,7 +76,7 @@ impl ModeReference {
         };
         let slews = target.acceleration.is_some();
         let from_estimate = scenario.mode.iter().map(|mode| slews && starts(mode)).collect();
-        Self::Target(target.at_start(), from_estimate)
+        Self::Target(Box::new(target.at_start()), from_estimate)
     }
 }
 

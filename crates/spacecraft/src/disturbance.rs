@@ -116,21 +116,21 @@ impl Disturbance {
         if self.table.is_some() && self.force.is_some() {
             return refused("table", "takes the place of a constant `force`: give one of them");
         }
-        match (self.is_force().then_some(()), self.about) {
-            (None, None) => refused(
+        match (self.is_force(), self.about) {
+            (false, None) => refused(
                 "about",
                 "must be given for a torque on a body with three axes: `roll`, `pitch` or `yaw`; or give a `force`",
             ),
-            (None, Some(_)) if self.point.is_some() => {
+            (false, Some(_)) if self.point.is_some() => {
                 refused("point", "applies only to a `force`: a torque acts at the body's first point")
             }
-            (Some(_), Some(_)) => {
+            (true, Some(_)) => {
                 refused("about", "applies only to a torque: a `force` has a direction of its own")
             }
-            (Some(_), None) if !self.sines.is_empty() => {
+            (true, None) if !self.sines.is_empty() => {
                 refused("sines", "apply only to a torque: give `about`, without a `force`")
             }
-            (Some(_), None) if self.torque.get() != 0.0 || noisy => refused(
+            (true, None) if self.torque.get() != 0.0 || noisy => refused(
                 "force",
                 "must be alone: give a `torque`, or `noise`, as a `[[disturbance]]` of its own",
             ),

@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn a_line_loses_contrast_by_bessel_functions() {
         let lines = [line(50.0)];
-        close(ImageBlur::long(0.0).contrast(FREQUENCY, &lines), 0.642_511_836_577_573_1, 1e-15);
+        close(ImageBlur::long(0.0).contrast(FREQUENCY, &lines), 0.642_511_836_577_573, 1e-15);
         let blur = ImageBlur::over_exposure(EXPOSURE, lines[0].frequency_rad_s, |_| 0.0);
         close(blur.contrast(FREQUENCY, &lines), 0.951_749_337_277_069_1, 1e-14);
         // Beyond the first zero of J0 light and dark change places.

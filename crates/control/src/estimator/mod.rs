@@ -129,7 +129,7 @@ pub struct FilterHealth {
     pub age: f64,
     /// Size of the innovation of the last correction (rad).
     pub innovation: f64,
-    /// Standard deviation of the attitude about all axes together, as the filter believes it (rad).
+    /// Standard deviation of the attitude about all axes together, by its covariance (rad).
     pub deviation: f64,
 }
 

@@ -21,11 +21,11 @@ pub enum SensorFailure {
     Stuck(Interval),
     /// It gives no measurement; the last one remains valid.
     Silent(Interval),
-    /// Its readings are off.
+    /// Readings that are off.
     Outlier(Outlier),
-    /// Its readings are all zeros, and marked as valid.
+    /// Readings of zeros, which are marked as valid.
     Zero(Interval),
-    /// Its readings are NaN, and marked as valid.
+    /// Readings that are NaN, and marked as valid.
     Invalid(Interval),
 }
 

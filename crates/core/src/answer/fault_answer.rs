@@ -73,10 +73,9 @@ impl FaultRequirement {
 
     /// Returns the decision with the least margin, and with the runs that meet it unless it is one.
     pub fn text(&self) -> String {
-        let mut text = self.decision.mark().to_owned();
-        if self.runs > 1 {
-            text.push_str(&format!(" {}/{}", self.runs_met, self.runs));
-        }
+        let mark = self.decision.mark();
+        let text =
+            if self.runs > 1 { format!("{mark} {}/{}", self.runs_met, self.runs) } else { mark.to_owned() };
         match self.margin {
             Some(margin) => format!("{text} {}", margin_text(margin, 1.0 - margin)),
             None if self.decision == Decision::Missed => format!("{text} no value"),

@@ -10,12 +10,13 @@ use super::ControlSystem;
 pub struct LeftOut {
     /// Key of the part in the scenario.
     pub key: String,
-    /// What the caller does in its place.
+    /// Task of the caller in its place.
     pub duty: String,
 }
 
 /// Contents of the code, as far as they differ between control systems.
 #[derive(Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a part that is there or not")]
 struct Included {
     has_estimator: bool,
     has_wheels: bool,
@@ -86,7 +87,7 @@ impl ControlSystem {
                     add(key, "give the commands by on-times of the jets");
                 }
                 ActuatorKind::Thrusters(_) => add(key, "give the torque by the thrusters"),
-                kind if kind.kind() == "magnetorquers" && !included.has_moments => {
+                ActuatorKind::Magnetorquers(_) if !included.has_moments => {
                     add(key, "give the torque by magnetic moments");
                 }
                 _ => {}

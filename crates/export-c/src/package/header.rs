@@ -49,8 +49,13 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
 
 /// Returns the lines of a comment by which the export can be traced.
 fn trace(plan: &Plan<'_>) -> String {
-    let changes: String =
-        plan.origin.changes.iter().map(|change| format!("\n *   changed: {change}")).collect();
+    let changes = plan
+        .origin
+        .changes
+        .iter()
+        .map(|change| format!("\n *   changed: {change}"))
+        .collect::<Vec<_>>()
+        .concat();
     format!(
         " * Scenario with all defaults: scenario.toml, SHA-256\n * {}.{changes}\n * The translated functions are part of flexsc: SPDX-License-Identifier: MIT OR Apache-2.0.",
         plan.digest

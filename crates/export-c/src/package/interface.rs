@@ -15,8 +15,7 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
         let gyro = (unit.gyro.0, "gyro", unit.gyro.1);
         let others = unit.correctors.iter().map(|own| (own.sensor, own.name.as_str(), own.latency));
         let row = |(sensor, name, latency): (usize, &str, flexsc_flight::ticks::Ticks)| {
-            let period =
-                scenario.sensor.iter().nth(sensor).and_then(|kind| kind.period(cycle)).map(Span::seconds);
+            let period = scenario.sensor.get(sensor).and_then(|kind| kind.period(cycle)).map(Span::seconds);
             json!({ "name": name, "period_s": period, "latency_s": latency.seconds() })
         };
         std::iter::once(gyro).chain(others).map(row).collect()

@@ -78,7 +78,7 @@ impl std::error::Error for ExportError {}
 pub struct ExportOrigin<'a> {
     /// File name of the scenario.
     pub file: &'a str,
-    /// What was changed of it for the export, such as a key and its value.
+    /// Changes of it for the export, such as a key and its value.
     pub changes: &'a [String],
 }
 
@@ -125,7 +125,8 @@ pub fn export(
     let calls = system.calls();
     let left_out = system.left_out(scenario);
     let effective = scenario.to_toml();
-    let digest: String = Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect();
+    let digest =
+        Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
     let plan = Plan { prefix, origin, digest: &digest, system: &system, calls: &calls, left_out: &left_out };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),

@@ -37,7 +37,8 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
     for call in plan.calls {
         let _ = writeln!(text, "| `{prefix}_{}` | {} |", call.name, call.about);
     }
-    let changes: String = plan.origin.changes.iter().map(|change| format!(", with `{change}`")).collect();
+    let changes =
+        plan.origin.changes.iter().map(|change| format!(", with `{change}`")).collect::<Vec<_>>().concat();
     let _ = writeln!(
         text,
         "\nScenario: {}{changes}; `scenario.toml` has it with all defaults, SHA-256 `{}`. The text `{prefix}_version` has the hash in flight. \

@@ -100,12 +100,15 @@ impl Flight {
     }
 }
 
+/// Change of a reading of a star tracker.
+type Spoiled<'a> = &'a dyn Fn(&mut Quaternion);
+
 #[test]
 fn a_false_reading_leaves_no_trace() {
     let wrong = |attitude: &mut Quaternion| {
-        *attitude = attitude.times(&Quaternion::rotation(&Vector3::new(2.1, 0.0, 0.0)))
+        *attitude = attitude.times(&Quaternion::rotation(&Vector3::new(2.1, 0.0, 0.0)));
     };
-    let trackers: [(&dyn Fn(&mut Quaternion), ReadingStatus); 4] = [
+    let trackers: [(Spoiled<'_>, ReadingStatus); 4] = [
         (&wrong, ReadingStatus::Improbable),
         (&|attitude| attitude.y = f64::NAN, ReadingStatus::Unsound),
         (&|attitude| *attitude = Quaternion { w: 0.0, x: 0.0, y: 0.0, z: 0.0 }, ReadingStatus::Unsound),
@@ -134,13 +137,13 @@ fn a_false_reading_leaves_no_trace() {
 
 #[test]
 fn an_attitude_that_stays_improbable_is_accepted() {
+    use ReadingStatus::{Accepted, Improbable, Reaccepted};
     let mut flight = Flight::start(0.0);
     flight.run(100);
     // A spike below the largest rate turns the estimate by 0.05 rad.
     flight.cycle(|rate| rate.y = 0.5, |_| ());
     flight.statuses.clear();
     flight.run(30);
-    use ReadingStatus::{Accepted, Improbable, Reaccepted};
     assert_eq!(flight.statuses[..4], [Improbable, Improbable, Reaccepted, Accepted]);
     flight.run(600);
     assert!(flight.error() < 1e-6, "{:e}", flight.error());

@@ -202,17 +202,16 @@ impl DisturbanceRun for Acting {
         let after = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, Truth { now, truth: *truth })?.into_any());
             method.call(py, argument, |returned| {
-                let load = match returned.cast::<Load>() {
-                    Ok(load) => load.get().clone(),
-                    Err(_) => {
-                        let torque = rows(returned, "torque").map_err(|_| {
-                            let found = shape(returned);
-                            PyValueError::new_err(format!(
-                                "disturbance: act must return a torque or a flexsc.Load, got {found}"
-                            ))
-                        })?;
-                        Load { torque, force: Vec::new(), after: None }
-                    }
+                let load = if let Ok(load) = returned.cast::<Load>() {
+                    load.get().clone()
+                } else {
+                    let torque = rows(returned, "torque").map_err(|_| {
+                        let found = shape(returned);
+                        PyValueError::new_err(format!(
+                            "disturbance: act must return a torque or a flexsc.Load, got {found}"
+                        ))
+                    })?;
+                    Load { torque, force: Vec::new(), after: None }
                 };
                 load.write(*axes, loads)?;
                 load.after.or(*period).ok_or_else(|| {

@@ -152,12 +152,12 @@ impl GuidanceRun for Aiming {
     fn aim(&self, now: Exact, sky: &EnvironmentObservation) -> AttitudeMotion {
         let aim = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, Sky { now, sky: *sky })?.into_any());
-            self.method.call(py, argument, |returned| match returned.cast::<Aim>() {
-                Ok(aim) => Ok(aim.get().0),
-                Err(_) => {
+            self.method.call(py, argument, |returned| {
+                let aim = returned.cast::<Aim>().map(|aim| aim.get().0);
+                aim.map_err(|_| {
                     let found = shape(returned);
-                    Err(PyValueError::new_err(format!("guidance: aim must return a flexsc.Aim, got {found}")))
-                }
+                    PyValueError::new_err(format!("guidance: aim must return a flexsc.Aim, got {found}"))
+                })
             })
         });
         aim.unwrap_or_else(|| AttitudeMotion::at_rest(Quaternion::identity()))

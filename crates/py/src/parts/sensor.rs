@@ -40,7 +40,7 @@ impl PythonSensor {
 
 /// Returns the period of a sensor (s).
 fn period(part: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let found = part.getattr("period").and_then(|period| Ok(period.extract()?));
+    let found = part.getattr("period").and_then(|period| period.extract());
     found.map_err(|_| PyTypeError::new_err("sensor: period, the time (s) between samples, must be a number"))
 }
 
