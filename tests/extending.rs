@@ -95,6 +95,7 @@ const KINDS: [Kind; 14] = [
             "actuator/allocation_role.rs",
             "actuator/capabilities.rs",
             "actuator/control_moment_gyros_state.rs",
+            "export-c/src/control_system/left_out.rs",
             "formats/src/document/suggestions.rs",
             "scenario/src/mode_checks.rs",
         ],

@@ -30,7 +30,7 @@ fn a_motion_that_grows_slowly_is_unstable_everywhere() {
     assert!(matches!(fault, NoiseError::Unstable(_)), "{fault}");
     let dir = Dir::new();
     std::fs::write(dir.path("edge.toml"), text).expect("a file");
-    let told = ["not stable", "grows by e in 238 145 s"];
+    let told = ["not stable", "grows by e in 238\u{202f}145 s"];
     dir.run("margins edge.toml").exits(2).says(&told);
     dir.run("spectrum edge.toml").exits(2).says(&told);
     dir.run("tune edge.toml --vary law.pd.k_d=20:40").exits(2).says(&["not stable"]);

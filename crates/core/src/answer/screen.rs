@@ -152,13 +152,16 @@ impl Answer {
         let mut rows = vec![heads(&unit, [has_errors, wheel, limit])];
         let shown = if options.all { usize::MAX } else { MOST_MODES };
         let speed = options.units.rotor_speed();
-        rows.extend(
-            self.by_mode
-                .iter()
-                .take(shown)
-                .map(|row| cells(row, (&unit, &speed), [has_errors, wheel, limit])),
-        );
+        let unvisited: Vec<&str> =
+            self.by_mode.iter().filter(|row| row.visits == 0).map(|row| &*row.mode).collect();
+        // Several of them are one line of a first screen.
+        let is_short = !options.all && unvisited.len() > 1;
+        let each = self.by_mode.iter().take(shown).filter(|row| !is_short || row.visits > 0);
+        rows.extend(each.map(|row| cells(row, (&unit, &speed), [has_errors, wheel, limit])));
         let mut lines = aligned(&rows, options.width);
+        if is_short {
+            lines.push(format!("  never in {}", unvisited.join(", ")));
+        }
         if self.by_mode.len() > shown {
             lines.push(format!("  {} more: --all", counted(self.by_mode.len() - shown, "mode")));
         }

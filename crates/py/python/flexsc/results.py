@@ -391,6 +391,11 @@ class OutputNoise(Data):
     reproducibility error; none without a separation.
     """
 
+    mtf: float = at("mtf", number)
+    """Modulation transfer of the noise at the Nyquist frequency of the pixels, if a pixel is given and the
+    output is an angle. NaN if there is none.
+    """
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class NoiseSpectrum(NoiseFigure, Data):

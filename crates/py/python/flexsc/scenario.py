@@ -89,6 +89,7 @@ __all__ = [
     "FilterKind",
     "Friction",
     "Gain",
+    "Gate",
     "Given",
     "Gradient",
     "GravityGradient",
@@ -102,6 +103,7 @@ __all__ = [
     "Inertial",
     "Initial",
     "Integral",
+    "Invalid",
     "Jets",
     "Kalman",
     "Kepler",
@@ -131,9 +133,12 @@ __all__ = [
     "Open",
     "OperatingMode",
     "Orbit",
+    "Outlier",
     "Output",
     "Pair",
     "Panels",
+    "PartWithFailure",
+    "PartWithFault",
     "Pd",
     "PerAxis",
     "Periodic",
@@ -158,6 +163,7 @@ __all__ = [
     "Robustness",
     "Rotor",
     "Rows",
+    "RunFault",
     "Sampled",
     "Scaled",
     "SceneSpec",
@@ -209,6 +215,7 @@ __all__ = [
     "Vector",
     "Wheel",
     "Wheels",
+    "Zero",
     "Zv",
     "Zvd",
     "Zvdd",
@@ -682,6 +689,7 @@ class AttitudeEstimator(Part):
             sensor or cells.
         earth_noise: Standard deviation of a measured direction to the planet (rad); default: the Earth
             sensor's own.
+        gate: Limits within which it accepts readings.
         initial: Standard deviations of the estimate at the start.
         prior: Initial estimate of attitude and bias. Default: "drawn".
         elastic: Elastic modes as further states; none by default.
@@ -719,6 +727,8 @@ class AttitudeEstimator(Part):
     """
     earth_noise: float | None = None
     """Standard deviation of a measured direction to the planet (rad); default: the Earth sensor's own."""
+    gate: Gate | None = None
+    """Limits within which it accepts readings."""
     initial: AttitudeFilterInitial | None = None
     """Standard deviations of the estimate at the start."""
     prior: Literal["drawn", "true"] | None = None
@@ -946,7 +956,7 @@ class Choice(Part, kw_only=False):
 
     _tag: ClassVar[str | None] = "choice"
 
-    value: Vector
+    value: Sequence[float | str]
 
 
 class ClampedMode(Part):
@@ -1755,6 +1765,39 @@ class Gain(Part, kw_only=False):
     value: float
 
 
+class Gate(Part):
+    """Limits within which an attitude filter accepts readings. It always refuses those that are not finite,
+    and quaternions and directions whose length differs from 1 by more than 1e-3.
+
+    Args:
+        deviations: Largest innovation in standard deviations, the root of its normalised square over the
+            number of components. A measurement above it is refused; with `elastic` none is. Default: 10.0.
+        refusals: Number of refusals in a row after which the next measurement is accepted: the covariance
+            grows by the innovation before the correction. Default: 5.
+        gap: Time without a correction (s) after which a measurement above the limit is accepted at once, in
+            the same way. Default: 300.0.
+        rate: Largest rate about an axis (rad/s) that it takes from the gyro; default: the gyro's `range`,
+            or 10 rad/s without one.
+    """
+
+    deviations: float | None = None
+    """Largest innovation in standard deviations, the root of its normalised square over the number of
+    components. A measurement above it is refused; with `elastic` none is. Default: 10.0.
+    """
+    refusals: int | None = None
+    """Number of refusals in a row after which the next measurement is accepted: the covariance grows by the
+    innovation before the correction. Default: 5.
+    """
+    gap: float | None = None
+    """Time without a correction (s) after which a measurement above the limit is accepted at once, in the
+    same way. Default: 300.0.
+    """
+    rate: float | None = None
+    """Largest rate about an axis (rad/s) that it takes from the gyro; default: the gyro's `range`, or 10
+    rad/s without one.
+    """
+
+
 class Given(Part):
     """Modes to track about each axis. The influence has one element per group of jets (roll, pitch, yaw),
     or a single one for the axis' own group if `cross_axis` is false.
@@ -2098,6 +2141,22 @@ class Integral(Part):
     """Largest integral (rad s). The integral also stops while the torque or the rate is at its limit and
     the error would increase it.
     """
+
+
+class Invalid(Part):
+    """Readings that are NaN, and marked as valid.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+    """
+
+    _tag: ClassVar[str | None] = "invalid"
+
+    from_: float
+    """Start time (s)."""
+    to: float | None = None
+    """End time (s); default: the end of the run."""
 
 
 class Jets(Part):
@@ -2834,6 +2893,31 @@ class Orbit(Part, kw_only=False):
     value: Vector
 
 
+class Outlier(Part):
+    """Readings that are off.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+        angle: Error of the angle (rad): a measured attitude or vector is rotated about the direction (1, 1,
+            1) of the body. Default: 0.0.
+        rate: Error of the measured rate about each axis (rad/s). Default: 0.0.
+    """
+
+    _tag: ClassVar[str | None] = "outlier"
+
+    from_: float
+    """Start time (s)."""
+    to: float | None = None
+    """End time (s); default: the end of the run."""
+    angle: float | None = None
+    """Error of the angle (rad): a measured attitude or vector is rotated about the direction (1, 1, 1) of
+    the body. Default: 0.0.
+    """
+    rate: float | None = None
+    """Error of the measured rate about each axis (rad/s). Default: 0.0."""
+
+
 class Output(Part):
     """A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes[i] x_i.
 
@@ -2909,6 +2993,36 @@ class Panels(Part):
     """Rigid angle at the start (rad). Default: 0.0."""
     rate: float | None = None
     """Rigid rate at the start (rad/s). Default: 0.0."""
+
+
+class PartWithFailure(Part):
+    """Failures of a part, besides its own.
+
+    Args:
+        part: Part by its kind, or by its kind and its place among those of the kind, such as
+            `star_tracker[1]`.
+        faults: Failures.
+    """
+
+    part: str
+    """Part by its kind, or by its kind and its place among those of the kind, such as `star_tracker[1]`."""
+    faults: Sequence[FailureKind]
+    """Failures."""
+
+
+class PartWithFault(Part):
+    """Failures of a part, besides its own.
+
+    Args:
+        part: Part by its kind, or by its kind and its place among those of the kind, such as
+            `star_tracker[1]`.
+        faults: Failures.
+    """
+
+    part: str
+    """Part by its kind, or by its kind and its place among those of the kind, such as `star_tracker[1]`."""
+    faults: Sequence[FaultKind]
+    """Failures."""
 
 
 class Pd(Part):
@@ -3504,6 +3618,23 @@ class Rotor(Part):
     """Largest speed (rad/s), beyond which the motor cannot accelerate it, and with which a `[law.relay]`
     needs a sampled sensor; no limit by default.
     """
+
+
+class RunFault(Part):
+    """Failures that occur together, in the runs of which this is the `active_fault`.
+
+    Args:
+        name: Name.
+        sensor: Failures of a sensor, or a list of several sensors.
+        actuator: Failures of an actuator, or a list of several actuators.
+    """
+
+    name: str
+    """Name."""
+    sensor: PartWithFault | Sequence[PartWithFault] | None = None
+    """Failures of a sensor, or a list of several sensors."""
+    actuator: PartWithFailure | Sequence[PartWithFailure] | None = None
+    """Failures of an actuator, or a list of several actuators."""
 
 
 class Sampled(Part):
@@ -4804,6 +4935,22 @@ class Wheels(Part):
     """Intervals in which the motors fail: all, or the `wheel` of a number from 1."""
 
 
+class Zero(Part):
+    """Readings of zeros, which are marked as valid.
+
+    Args:
+        from_: Start time (s).
+        to: End time (s); default: the end of the run.
+    """
+
+    _tag: ClassVar[str | None] = "zero"
+
+    from_: float
+    """Start time (s)."""
+    to: float | None = None
+    """End time (s); default: the end of the run."""
+
+
 class Zv(Part):
     """Zero vibration: two impulses for each mode, half a damped period apart.
 
@@ -4879,7 +5026,7 @@ ExtraKind: TypeAlias = Gain | Schedule
 """The extra loop on the dominant mode; its gain is k_d of the papers."""
 FailureKind: TypeAlias = Dead | Scaled | StuckFailure | Added
 """A failure of an actuator."""
-FaultKind: TypeAlias = StuckFault | Silent
+FaultKind: TypeAlias = StuckFault | Silent | Outlier | Zero | Invalid
 """A failure of the sensor, gyro included."""
 FilterFormKind: TypeAlias = Complementary
 """How the gains are computed."""
@@ -4989,6 +5136,12 @@ class Keys(TypedDict, total=False):
 
     requirement: Sequence[Requirement]
     """Requirements, each a limit on a pointing index or on a metric."""
+
+    fault: Sequence[RunFault]
+    """Faults, of which a run has the `active_fault`."""
+
+    active_fault: str
+    """Name of the fault that occurs, or `none`, the default."""
 
     uncertain: Mapping[str, DistributionKind]
     """Distributions of keys from which a campaign draws a value for each run."""
