@@ -66,7 +66,12 @@ def explorer(title: str, scenario: str, command: str, what: str, metric: str) ->
         "flexsc plot runs -o explorer.html",
     )
     return Tile(
-        title, scenario, commands, f"runs/{scenario}-{what}-{metric}.svg", "figures.md#campaigns", "explorer.html"
+        title,
+        scenario,
+        commands,
+        f"runs/{scenario}-{what}-{metric}.svg",
+        "figures.md#campaigns",
+        "explorer.html",
     )
 
 
@@ -246,7 +251,8 @@ def page(playground: bool) -> str:
         page_of = path.replace(".md", ".html") + (f"#{anchor}" if anchor else "")
         links.append(f'<a href="{page_of}">explained</a>')
         made.append(
-            f'<figure><a href="gallery/{tile.name}.{"html" if tile.opens else "svg"}"><img src="gallery/{tile.name}.svg" '
+            f'<figure><a href="gallery/{tile.name}.{"html" if tile.opens else "svg"}">'
+            f'<img src="gallery/{tile.name}.svg" '
             f'alt="{html.escape(tile.title)}" loading="lazy"></a>'
             f"<figcaption>{html.escape(tile.title)}<span>{' · '.join(links)}</span>"
             f"<details><summary>command</summary><pre><code>{commands}</code></pre></details></figcaption></figure>"

@@ -131,8 +131,10 @@ fn changed(change: &[(&str, &str)]) -> Result<Scenario, String> {
     Scenario::parse("boom.toml", &text).map_err(|error| error.to_string())
 }
 
-const NONE: (&str, &str) =
-    ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n", "gate = { deviations = 1e6 }\n");
+const NONE: (&str, &str) = (
+    "elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n",
+    "gate = { deviations = 1e6 }\n",
+);
 
 /// Returns the largest error from the reference about any axis while the body turns and settles (rad).
 fn worst(trace: &Trace) -> f64 {

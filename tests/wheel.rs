@@ -326,7 +326,11 @@ fn what_does_not_go_with_a_wheel_is_refused() {
             "sensor.sampled.faults=[{stuck={from=9.0,to=3.0}}]",
             "`sensor.sampled.faults[0]` must have `from` before `to`",
         ),
-        ("wheel-fixed-gain", "sensor.sampled.faults=[{bent={from=9.0}}]", "expected one of `stuck`, `silent`, `outlier`"),
+        (
+            "wheel-fixed-gain",
+            "sensor.sampled.faults=[{bent={from=9.0}}]",
+            "expected one of `stuck`, `silent`, `outlier`",
+        ),
         ("wheel-fixed-gain", "disturbance=[{noise=1e-13}]", "`disturbance[0].period` must be given"),
     ];
     for (name, set, words) in cases {

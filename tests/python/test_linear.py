@@ -346,7 +346,7 @@ def test_an_unstable_loop_is_named_by_its_worst_pole() -> None:
     opened = shipped("wheel-unstable-band").linearise(loop="command")
     radius = opened.closed().spectral_radius()
     assert radius > 1.0
-    with pytest.raises(ValueError, match=rf"magnitude {radius:.7f} at [0-9.]+ rad/s .* in `command`"):
+    with pytest.raises(ValueError, match=rf"magnitude {radius:.7f} at [0-9.]+ Hz.* in `command`"):
         opened.margins()
     # Three axes have no such metric, but the linear model has the number.
     observer = shipped("earth-observer").linearise(loop="command").closed()

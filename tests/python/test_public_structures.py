@@ -34,8 +34,8 @@ def test_msc_lumps_a_beam_with_torsional_inertia_and_no_other(keep: int | None) 
 
 
 def test_simcenter_writes_millimetres_and_kilograms() -> None:
-    files = (PUBLIC / "pynastran" / f"pn_mwe_s-solution_1.{ending}" for ending in ("op2", "dat"))
-    satellite = flexsc.appendage_from_nastran(*files, {}, damping=0.005, length_unit=1e-3, mass_unit=1.0)
+    op2, deck = (PUBLIC / "pynastran" / f"pn_mwe_s-solution_1.{ending}" for ending in ("op2", "dat"))
+    satellite = flexsc.appendage_from_nastran(op2, deck, {}, damping=0.005, length_unit=1e-3, mass_unit=1.0)
     assert satellite["mass"] == pytest.approx(5.085, abs=5e-4)
     # rad/s, as the table of eigenvalues of the file has them.
     np.testing.assert_allclose(frequencies(satellite), [562.72675, 562.72675, 6564.418], rtol=1e-6)

@@ -19,13 +19,13 @@ class Compiled(OwnPart):
     address: int
     """The address of the function.
 
-    >>> CompiledLaw(damper).address > 0
-    True
+    >>> flexsc.CompiledLaw(4096, period=0.25).address
+    4096
     """
     states: tuple[float, ...]
     """Its states at the start of a run.
 
-    >>> CompiledLaw(damper, period=0.25, states=(0.0, 1.0)).states
+    >>> flexsc.CompiledLaw(4096, period=0.25, states=(0.0, 1.0)).states
     (0.0, 1.0)
     """
 
@@ -45,7 +45,7 @@ class Compiled(OwnPart):
     def copy(self: Self_) -> Self_:
         """Return the part itself: its states are copied for each run.
 
-        >>> law = CompiledLaw(damper, period=0.25)
+        >>> law = flexsc.CompiledLaw(4096, period=0.25)
         >>> law.copy() is law
         True
         """

@@ -181,7 +181,7 @@ class Result(Topics, Exportable, Drawable):
 
     >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 100.0)
     >>> scenario.simulate(at=[12.5, 50.0]).samples["attitude"]["angle_rad"].round(9).tolist()
-    [9.298e-06, -4.32e-06]
+    [9.298e-06, 0.000514145]
     """
     metrics: Metrics
     """Metrics by name, as `flexsc.metrics()` explains them: lists as arrays, None where there is no value.

@@ -834,7 +834,7 @@ class Scenario:
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     files = flexsc.Scenario.example("relay-sampled").export_c(folder, name="relay")
         ...     [file.name for file in files if file.name.startswith("relay")]
-        ['relay.c', 'relay.h']
+        ['relay.c', 'relay.h', 'relay.icd.json']
 
         Raises:
             ValueError: The law has no code for flight, or a file exists with other content.

@@ -154,7 +154,7 @@ class Table(Columns, Drawable):
         >>> import flexsc
         >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
         >>> table = flexsc.campaign(scenario, runs=8).sorted("duty", descending=True)
-        >>> table["duty"][0] == table["duty"].max()
+        >>> bool(table["duty"][0] == table["duty"].max())
         True
 
         Raises:
