@@ -408,9 +408,9 @@ fn motion_takes_contrast_from_an_image() {
     text.says(&["over exposures of 10 ms, at the Nyquist frequency of pixels of 2 arcsec", "888.1"]);
     dir.run("spectrum wheel-run-up.toml --pixel 0")
         .exits(2)
-        .says(&["--pixel must be 1e-12 to 1 rad, got 0 rad"]);
+        .says(&["--pixel must be ", "to 57.3 deg, got 0 deg"]);
     let command = "spectrum wheel-run-up.toml --signal command_roll --pixel 1e-5";
-    dir.run(command).exits(2).says(&["--pixel needs an output in rad"]);
+    dir.run(command).exits(2).says(&["--pixel needs an output that is an angle"]);
 }
 
 /// The lines of wheels that turn near a multiple of a sampling rate have slow aliases, which the loop follows: narrow peaks. A grid

@@ -149,7 +149,9 @@ fn save_least_robust(campaign: &Campaign, least: &LeastRobust, table: &Path) -> 
     }
     let run = campaign.run(least.run)?;
     let repeat = format!("flexsc simulate {LEAST_ROBUST} --runs {0}:{1}", run.noise_run, run.noise_run + 1);
-    let text = format!("# {}\n# {repeat}\n{}", least.text(), run.scenario.self_contained().to_toml());
+    // A name with a line break would end the comment.
+    let head = least.text().replace(char::is_control, " ");
+    let text = format!("# {head}\n# {repeat}\n{}", run.scenario.self_contained().to_toml());
     files::write_within(&[(table.join(LEAST_ROBUST), text.into_bytes())])
 }
 

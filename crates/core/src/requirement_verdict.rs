@@ -139,9 +139,9 @@ impl RequirementRuns {
         is_not_exercised(self.values[requirement][row], self.shares[requirement][row])
     }
 
-    /// Returns the runs in some rows.
+    /// Returns the runs in the rows that are wanted.
     #[must_use]
-    pub fn of_rows(&self, counts: impl Fn(usize) -> bool) -> Self {
+    pub fn of_rows(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
         let empty = vec![Vec::new(); self.values.len()];
         let mut own = Self {
             requirements: self.requirements.clone(),
@@ -150,7 +150,7 @@ impl RequirementRuns {
             shares: empty,
             ..Self::default()
         };
-        for row in (0..self.runs.len()).filter(|row| counts(*row)) {
+        for row in (0..self.runs.len()).filter(|row| is_wanted(*row)) {
             let in_row = |all: &[Vec<f64>]| all.iter().map(|list| list[row]).collect::<Vec<f64>>();
             let values = if self.failed[row] { Vec::new() } else { in_row(&self.values) };
             own.add_values(self.runs[row], &values, &in_row(&self.shares));

@@ -94,7 +94,7 @@ impl Scenario {
             ("law", all.law.is_some()),
             ("estimator", all.estimator.is_some()),
             ("adaptation", all.adaptation.is_some()),
-            ("target", !all.guidance.is_empty()),
+            ("target", all.guidance.iter().any(|(mode, _)| mode.is_empty())),
         ];
         for (role, _) in replaced.into_iter().filter(|(_, is_own)| *is_own) {
             table.remove(role);
@@ -361,7 +361,10 @@ impl ScenarioSpec {
             Some(own) => own.target.is_some(),
             None => !self.target.is_empty(),
         };
-        self.own_guidance = guidance.iter().filter(|(mode, _)| !targeted(mode)).cloned().collect();
+        // That of a mode which is no more has nothing to aim.
+        let exists = |mode: &str| mode.is_empty() || self.mode.iter().any(|own| own.name == mode);
+        let stays = |mode: &str| exists(mode) && !targeted(mode);
+        self.own_guidance = guidance.iter().filter(|(mode, _)| stays(mode)).cloned().collect();
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
             self.law = law.clone().into();
         }

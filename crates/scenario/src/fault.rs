@@ -200,7 +200,7 @@ impl ScenarioSpec {
                 return Some(ConfigError::new("", "needs failures of a `sensor` or an `actuator`"));
             }
             self.failures_error("sensor", fault.sensor.as_ref(), Role::Sensor, |_, faults| {
-                errors_in("faults", faults, |failure| failure.interval().validate()).next()
+                errors_in("faults", faults, SensorFailure::validate).next()
             })
             .or_else(|| {
                 self.failures_error("actuator", fault.actuator.as_ref(), Role::Actuator, |index, faults| {

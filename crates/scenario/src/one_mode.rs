@@ -92,6 +92,8 @@ impl ScenarioSpec {
             self.actuator.retain(acts);
         }
         self.sensor.retain(|place, _| in_use[place]);
+        let own = self.guidance(&mode.name).or_else(|| self.guidance("")).cloned();
+        self.own_guidance = own.map(|own| (String::new(), own)).into_iter().collect();
         self.law = mode.law;
         self.mode.clear();
         self.mode_targets.clear();

@@ -240,6 +240,12 @@ impl Guidance {
         self.profile.as_ref()?.guidance(now)
     }
 
+    /// Returns true if the largest acceleration of the reference of three axes from an instant on is not known: that of a
+    /// planned command, a table or the guidance of a program.
+    pub fn has_unlimited_acceleration(&self, now: Instant) -> bool {
+        self.profile.as_ref().is_some_and(|way| way.has_unlimited_acceleration(now))
+    }
+
     /// Returns the start of the next target of three axes.
     pub fn next_target(&self, now: Instant) -> Option<Instant> {
         self.profile.as_ref().and_then(|way| way.next(now))

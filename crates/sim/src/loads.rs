@@ -185,6 +185,11 @@ impl Loads {
         Vector::from(*hub).norm() + torque.norm() + rotors + gimbals + sines
     }
 
+    /// Returns a bound of the modal forces (N/sqrt(kg)) of jets and of forces at points in the current segment.
+    pub fn modal_force_bound(&self) -> f64 {
+        self.wrench.forces.iter().map(|force| force * force).sum::<f64>().sqrt()
+    }
+
     /// Returns true if the loads have no part that changes by itself: neither sines nor turning gimbals.
     pub fn is_constant(&self) -> bool {
         self.wrench.sines.is_empty() && self.wrench.gimbals.is_empty()

@@ -49,13 +49,11 @@ impl MotionLimits {
     }
 
     /// Returns a bound of the second derivative (rad/s³) of the rigid rate under a constant torque (N m) and that of the
-    /// environment, on a hub with this norm of its modal rotations.
-    pub fn bend(&self, plant: &Plant, hub_rotation: f64, torque: f64, now: Instant) -> f64 {
+    /// environment, given bounds of the elastic rate (rad/s) and of the acceleration (rad/s²) of the hub.
+    pub fn bend(&self, plant: &Plant, [elastic, acceleration]: [f64; 2], torque: f64, now: Instant) -> f64 {
         let Some(motion) = plant.quantities().three_axis() else { return 0.0 };
-        let elastic = Self::elastic_rate(plant, hub_rotation);
         let rate = Vector::from(plant.truth().rigid_rate).norm() + elastic;
         let (_, momentum) = motion.rotational_energy();
-        let acceleration = self.growth(plant, hub_rotation, torque) + motion.fastest_frequency() * elastic;
         let [environment, varies] = motion.surroundings().map_or([0.0; 2], |surroundings| {
             [surroundings.bound(), surroundings.frequency_at(now.seconds())]
         });

@@ -76,7 +76,8 @@ impl OwnDisturbance {
 
     /// Acts at the start of the run, and where it is due.
     pub fn update(&mut self, now: Instant, truth: &Truth) {
-        if now > Instant::START && self.run.due() != Some(now) {
+        let due = self.run.due();
+        if (now > Instant::START && due != Some(now)) || due.is_some_and(|due| due > now) {
             return;
         }
         self.run.act(now, truth, &mut self.loads);

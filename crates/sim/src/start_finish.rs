@@ -40,6 +40,7 @@ impl Simulation {
             self.plant.record_pieces(now, &self.loads.applied, record)?;
             self.end_requirement_segment();
             self.requirements.finish(now, record)?;
+            self.check_custom_parts()?;
             self.recorder.journal_end(now, record)?;
         }
         Ok(())

@@ -17,7 +17,7 @@ use flexsc_scenario::Scenario;
 
 /// Largest number of speeds of the wheels.
 const MOST_SPEEDS: usize = 2000;
-/// Angles of a pixel (rad).
+/// Smallest and largest angle of a pixel (rad).
 const LEAST_PIXEL: f64 = 1e-12;
 const MOST_PIXEL: f64 = 1.0;
 
@@ -28,8 +28,8 @@ pub struct NoiseRequest {
     pub signals: Vec<String>,
     /// Window of the indices, if there is one.
     pub window: Option<Window>,
-    /// Angle of a pixel (rad), at whose Nyquist frequency the contrast of the image is wanted; over the window as exposure, or without one
-    /// over one without end.
+    /// Angle of a pixel (rad), at whose Nyquist frequency the contrast of the image is wanted: over an exposure as long as the
+    /// window, or without a window over one without end.
     pub pixel: Option<f64>,
     /// Speeds of the wheels (rad/s) for the lines of their imbalance; none for steps up to their largest and the peaks between.
     pub speeds: Option<Vec<f64>>,
@@ -121,7 +121,9 @@ impl NoiseReport {
     /// there are any: of the noise, and of the noise and the lines of the wheels at each speed.
     fn add_contrast(&mut self, noisy: &NoisyLoop, outputs: &[usize], pixel: f64) -> Result<(), String> {
         if !(LEAST_PIXEL..=MOST_PIXEL).contains(&pixel) {
-            return Err(format!("pixel must be {LEAST_PIXEL:e} to {MOST_PIXEL} rad, got {pixel} rad"));
+            let [least, most, got] =
+                [LEAST_PIXEL, MOST_PIXEL, pixel].map(|angle| ReaderUnits::Engineering.quantity(angle, "rad"));
+            return Err(format!("pixel must be {least} to {most}, got {got}"));
         }
         let nyquist = 0.5 / pixel;
         let fastest = self.wheels.as_ref().map_or(0.0, WheelSpectrum::highest_frequency);
@@ -133,7 +135,7 @@ impl NoiseReport {
             over_speed.push((place, blur));
         }
         if over_speed.is_empty() {
-            return Err("pixel needs an output in rad, such as a line of sight".to_owned());
+            return Err("pixel needs an output that is an angle, such as a line of sight".to_owned());
         }
         if let Some(wheels) = &mut self.wheels {
             wheels.add_contrast(nyquist, &over_speed);

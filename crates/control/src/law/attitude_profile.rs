@@ -208,6 +208,18 @@ impl AttitudeProfile {
         self.legs.iter().map(|leg| leg.begins).find(|begins| *begins > now)
     }
 
+    /// Returns true if an instant is in a motion that no acceleration of a target limits: a planned command, a table, or the
+    /// guidance of a program.
+    pub fn has_unlimited_acceleration(&self, now: Instant) -> bool {
+        self.leg(now).is_some_and(|leg| match &leg.path {
+            SegmentPath::Own(_) => true,
+            SegmentPath::Shaped(..) | SegmentPath::Table(_) => {
+                now.since(leg.begins).seconds() < leg.path.duration()
+            }
+            SegmentPath::Turn(_) | SegmentPath::Moving(..) => false,
+        })
+    }
+
     /// Returns true if the reference moves at an instant.
     pub fn is_moving(&self, now: Instant) -> bool {
         self.leg(now).is_some_and(|leg| {

@@ -30,7 +30,7 @@ pub struct FaultRequirement {
     pub name: String,
     /// Decision over the runs of the fault.
     pub decision: Decision,
-    /// Number of runs in which something was to meet it, and of those that do.
+    /// Number of runs in which something was to meet it.
     pub runs: u64,
     /// Number of runs that meet it.
     pub runs_met: u64,

@@ -8,7 +8,8 @@ use flexsc_scenario::Scenario;
 
 impl Campaign {
     /// Returns the campaign of a scenario whose runs have the uncertain keys at given points, in the order of the keys, but
-    /// for those that hold a text, all with the noise of run 0. A manoeuvre that a campaign plans for the body as it is written is planned so here too.
+    /// for those that hold a text, all with the noise of run 0. A manoeuvre that a campaign plans for the body as it is written
+    /// is planned so here too.
     ///
     /// # Errors
     /// A scenario without a model of its own body for the manoeuvre.

@@ -4,9 +4,8 @@ use toml::Value;
 
 use super::{Campaign, ColumnCells, ERROR, RUN, RowMaker};
 use crate::metrics::{MetricDescription, Metrics, Selection, goal, meaning};
-use flexsc_scenario::ACTIVE_FAULT;
-
 use crate::requirement_verdict::{RequirementRuns, RequirementVerdict};
+use flexsc_scenario::ACTIVE_FAULT;
 
 /// Name of the metric that says whether a run meets its goal.
 const GOAL: &str = goal::NAMES[0];
@@ -123,14 +122,15 @@ impl CampaignRuns {
         let main = MAIN_METRICS.into_iter().filter(|_| !is_asked).filter_map(metric);
         let is_number =
             |cells: &ColumnCells| matches!(cells, ColumnCells::Numbers(_) | ColumnCells::Integers(_));
+        let fault_place = campaign.keys().position(|key| key == ACTIVE_FAULT);
         Self {
             main_metrics: main.filter(|own| is_number(&own.1)).map(|own| (own.0, Vec::new())).collect(),
             answer_metrics: ANSWER_METRICS.into_iter().filter_map(metric).collect(),
             requirements: RequirementRuns::new(scenario),
             designed: campaign.keys().count() - keys.len(),
             keys,
-            faults: campaign.keys().any(|key| key == ACTIVE_FAULT).then(Vec::new),
-            fault_place: campaign.keys().position(|key| key == ACTIVE_FAULT),
+            faults: fault_place.map(|_| Vec::new()),
+            fault_place,
             goals: [0; 2],
             runs: 0,
             failed: 0,

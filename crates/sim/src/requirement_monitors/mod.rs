@@ -63,9 +63,12 @@ struct SegmentEnd {
     turning: f64,
     /// Size of the acceleration of the reference (rad/s²).
     reference: f64,
-    /// Bounds of the acceleration (rad/s²) without and with the modes.
+    /// Bounds of the acceleration (rad/s²) by loads, without and with their effect on the modes.
     growth: [f64; 2],
-    /// Bound of the second derivative of the rate (rad/s³).
+    /// Bound of the acceleration (rad/s²) of the hub by free vibrations, and the highest frequency (rad/s).
+    oscillation: f64,
+    fastest: f64,
+    /// Bound of the second derivative of the rigid rate (rad/s³).
     bend: f64,
 }
 

@@ -15,8 +15,12 @@ use super::{Observed, RequirementMonitors, SegmentEnd, curve, join, parts};
 
 /// Radians of the fastest motion in a part that is fitted first: at least eight points in a period.
 const REACH: f64 = 4.0;
-/// Largest error (rad) for which the second derivative of its rotation vector is bounded.
+/// Largest error (rad) over a segment for which the second derivative of its rotation vector is bounded, and the parts of that
+/// bound: of accelerations, and of the square of the rate. Up to 1 rad, the vector's derivatives are 1.05 times those of the
+/// error's rate, and 0.7 times its square; the rate changes by accelerations, and by its product with the reference's rate,
+/// which is at most the sum of the rates of error and body.
 const BENT: f64 = 1.0;
+const BENT_BY: [f64; 2] = [2.0, 3.0];
 
 impl RequirementMonitors {
     /// Adds the pieces of the true motion. Where none of its possible values changes a result, one of them stands for it.
@@ -43,7 +47,8 @@ impl RequirementMonitors {
         let mut is_ignored = self.ignore(to, &ranges);
         let (start, copy) = (self.start.take(), self.copy.take());
         let jumps = guidance.next_target(span[0]).is_some_and(|next| next <= span[1]);
-        if let Some(start) = start.as_ref().filter(|_| !is_ignored && !jumps) {
+        let is_free = jumps || guidance.has_unlimited_acceleration(span[0]);
+        if let Some(start) = start.as_ref().filter(|_| !is_ignored && !is_free) {
             let end = self.at_end(plant, guidance, loads, span[1]);
             for (number, range) in ranges.iter_mut().enumerate() {
                 if is_bounded(&self.quantities[number]) {
@@ -111,17 +116,23 @@ impl RequirementMonitors {
             if is_bounded(observed) { self.error(observed.quantity, plant, guidance, now) } else { [0.0; 3] }
         };
         let torque = loads.torque_bound();
+        let elastic = MotionLimits::elastic_rate(plant, self.hub_rotation);
+        let mut growth = [0.0, self.hub_rotation].map(|rotation| self.limits.growth(plant, rotation, torque));
+        growth[1] += self.hub_rotation * loads.modal_force_bound();
+        let fastest = plant.fastest_frequency();
+        let oscillation = fastest * elastic;
         let turns =
             self.quantities.iter().any(|own| own.counts && own.quantity == ModeQuantity::PointingError);
         let follows = self.quantities.iter().any(|own| own.counts && own.quantity != ModeQuantity::TrueRate);
         let rate = if turns { motion_error(plant, guidance, now, true) } else { [0.0; 3] };
         SegmentEnd {
             errors: self.quantities.iter().map(|observed| Vector::from(error(observed))).collect(),
-            turning: Vector::from(rate).norm()
-                + RESERVE * MotionLimits::elastic_rate(plant, self.hub_rotation),
+            turning: Vector::from(rate).norm() + RESERVE * elastic,
             reference: if follows { guidance.reference_acceleration(now) } else { 0.0 },
-            growth: [0.0, self.hub_rotation].map(|rotation| self.limits.growth(plant, rotation, torque)),
-            bend: self.limits.bend(plant, self.hub_rotation, torque, now),
+            oscillation,
+            fastest,
+            bend: self.limits.bend(plant, [elastic, growth[1] + oscillation], torque, now),
+            growth,
         }
     }
 
@@ -141,9 +152,16 @@ impl RequirementMonitors {
         let [one, other] = vectors.map(|vector| vector.norm());
         let (middle, most) = (f64::midpoint(one, other), one.max(other));
         let [low, high] = [(middle - 0.5 * rate * h).max(0.0), middle + 0.5 * rate * h];
+        let is_steady = self.is_steady && is_constant;
         let bend = match quantity {
-            ModeQuantity::PointingError if most < BENT => 2.0 * acceleration + rate * rate,
-            ModeQuantity::TrueRate if self.is_steady && is_constant => RESERVE * largest(&|end| end.bend),
+            ModeQuantity::PointingError if high < BENT => {
+                // Loads that change can make vibrations grow; under steady ones their free part keeps its size.
+                let growth = |end: &SegmentEnd| end.fastest * (end.growth[1] - end.growth[0]);
+                let grown = if is_steady { 0.0 } else { h * largest(&growth) };
+                let oscillation = RESERVE * (largest(&|end| end.oscillation) + grown);
+                BENT_BY[0] * (acceleration + oscillation) + BENT_BY[1] * rate * rate
+            }
+            ModeQuantity::TrueRate if is_steady => RESERVE * largest(&|end| end.bend),
             _ => return [low, high],
         };
         // The vector is near the straight line between its values at both ends.
