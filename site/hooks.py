@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parents[1]
 MATH = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 # Comments that mark the numbers of a page for its test.
 MARK = re.compile(r"<!--.*?-->\n?", re.DOTALL)
+# Letters of a formula within a text that may be wider than a narrow screen.
+WIDE = 60
 KEYS = Keys(flexsc.schema())
 # Pages that end with what tests make and compare.
 WHOLE = {"combinations.md": "tests/frozen/combinations.md", "papers.md": "tests/frozen/papers.md"}
@@ -91,10 +93,6 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
         markdown = examples.linked(markdown, "../" * page.file.src_uri.count("/"))
     above = "../" * (1 + page.file.src_uri.count("/"))
     return MARK.sub("", markdown).replace(f"]({above}", "](https://github.com/flexsc/flexsc/blob/main/")
-
-
-# Letters of a formula within a text that may be wider than a narrow screen.
-WIDE = 60
 
 
 def on_page_content(content: str, **_: Any) -> str:

@@ -334,6 +334,12 @@ fn false_readings_need_a_filter_and_a_size() {
         said.contains("faults") && said.contains("must have an `angle` or a `rate` other than 0"),
         "{said}"
     );
+    let said = refused(&text("{ outlier = { from = 1.0, rate = 0.1 } }", "[estimator.attitude]"));
+    assert!(said.contains("`sensor[1].star_tracker.faults[0].outlier.rate` alters measured rates"), "{said}");
+    let gyro = text("{ outlier = { from = 1.0, angle = 0.1 } }", "[estimator.attitude]")
+        .replace("1e-6 }", "1e-6, faults = [{ outlier = { from = 1.0, angle = 0.1 } }] }");
+    let said = refused(&gyro);
+    assert!(said.contains("`sensor[0].gyro.faults[0].outlier.angle` alters a measured angle"), "{said}");
     let said = refused(&text("{ zero = { from = 1.0 } }", ""));
     assert!(said.contains("has `zero`, which an `[estimator.attitude]` refuses"), "{said}");
     let said = refused(&text("{ invalid = { from = 2.0, to = 1.0 } }", "[estimator.attitude]"));

@@ -132,6 +132,8 @@ fn which_fault_occurs_and_how_is_drawn() {
 fn what_does_not_fit_is_refused_at_its_place() {
     for (old, new, expected, key) in [
         ("name = \"push\"", "name = \"none\"", "must be a name of its own", "fault[0].name"),
+        // A comma separates the values of `--vary`.
+        ("name = \"push\"", "name = \"push, pull\"", "without brackets and commas", "fault[0].name"),
         (
             "part = \"sampled\"",
             "part = \"gyro\"",

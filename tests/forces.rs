@@ -105,6 +105,10 @@ fn what_is_no_force_is_refused() {
             "about = \"roll\"\ntorque = 1.0\npulse = { period = 1.0, on = 1.0 }",
             "`disturbance[0].pulse.on` must be shorter",
         ),
+        (
+            "about = \"roll\"\ntorque = 1.0\ntable = [[0.0, 1.0], [1.0, 2.0]]",
+            "`disturbance[0].table` takes the place of a constant `torque`",
+        ),
     ] {
         let error = scenario(&format!("{body}[[disturbance]]\n{text}\n")).expect_err(text).to_string();
         assert!(error.contains(words), "{text}: {error}");

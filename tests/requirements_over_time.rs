@@ -40,6 +40,28 @@ period = 1.0
 [law.open]
 "#;
 
+/// A free spacecraft whose panel vibrates about x: the hub starts and ends its half period near 0 rad.
+const RING: &str = r#"
+name = "ring"
+duration = 2.2
+
+[spacecraft]
+mass = 100.0
+inertia = [[70.0, 0, 0], [0, 50.0, 0], [0, 0, 60.0]]
+points = [{ name = "hub" }]
+
+[[appendage]]
+name = "panel"
+mass = 10.0
+inertia = [[30.0, 0, 0], [0, 5.0, 0], [0, 0, 30.0]]
+modes = [{ frequency = 1.2, damping = 0.005, rotation = [5.0, 0, 0], rate = 0.03 }]
+
+[sensor.sampled]
+period = 10.0
+
+[law.open]
+"#;
+
 /// Two modes of operation on one axis: `fine` from 20 s to 50 s, and from 70 s on.
 const MODES: &str = r#"
 name = "modes"
@@ -155,6 +177,28 @@ fn a_turn_about_three_axes_is_followed_exactly() {
         numbers(&metrics(&text, Some(Detail::Full)), "requirement_values"),
         numbers(&found, "requirement_values")
     );
+}
+
+#[test]
+fn the_crest_of_a_vibration_counts_between_the_ends_of_a_segment() {
+    let text = holding(RING, &["holds = \"always pointing_error < 6e-4\""]);
+    let found = metrics(&text, None);
+    // J angle + r q = 0 of the hub with the panel's mode, and 1 - r²/J of its modal mass remains.
+    let (inertia, coupling, rate) = (100.0, 5.0, 0.03);
+    let free = f64::sqrt(1.0 - coupling * coupling / inertia);
+    let (frequency, damping): (f64, f64) = (1.2 / free, 0.005 / free);
+    let root = f64::sqrt(1.0 - damping * damping);
+    let angle = |t: f64| {
+        let decay = f64::exp(-damping * frequency * t);
+        coupling / inertia * rate / (frequency * root) * decay * f64::sin(frequency * root * t)
+    };
+    let crest = damping.acos() / (frequency * root);
+    assert!(angle(2.2) < 2e-4 && angle(crest) > 1e-3, "{:e}, {:e}", angle(2.2), angle(crest));
+    assert_near(&numbers(&found, "requirement_values"), &[angle(crest)], 1e-6 * angle(crest));
+    assert_near(&numbers(&found, "requirement_times_s"), &[crest], 1e-6);
+    let dir = Dir::new();
+    dir.write("ring.toml", &text);
+    dir.run("simulate ring.toml --log none").exits(3).says(&["MISSED: 1 of 1 requirement"]);
 }
 
 #[test]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
+from typing import ClassVar
+
 import flexsc
 import numpy as np
 import pytest
@@ -46,6 +49,14 @@ def test_an_ensemble_has_a_row_for_each_run_and_time() -> None:
     threads = flexsc.campaign(scenario, 4, jobs=2, at=times, topics=["pointing"])
     assert threads.samples is not None
     assert threads.samples["pointing"] == samples["pointing"]
+    few = table[[2, 0]].samples
+    assert few is not None
+    for each in (few, pickle.loads(pickle.dumps(samples))):
+        with pytest.raises(ValueError, match="read-only"):
+            each.runs[0] = 7
+    one = flexsc.campaign(scenario, 2, at=times, topics="pointing").samples
+    assert one is not None
+    assert one.topics == ["pointing"]
 
 
 def test_an_ensemble_goes_to_other_libraries() -> None:
@@ -99,5 +110,33 @@ def test_what_cannot_be_sampled_is_refused() -> None:
         flexsc.campaign(scenario, 2, at=[3.0], progress=True)
     with pytest.raises(ValueError, match="topics needs `at`"):
         flexsc.campaign(scenario, 2, topics=["rate"])
+    with pytest.raises(ValueError, match="at needs runs of the same duration"):
+        flexsc.campaign(scenario.with_("uncertain", {"duration": {"uniform": [5.0, 15.0]}}), 2, at=[3.0])
     with pytest.raises(KeyError, match="no topic 'rat'; did you mean 'rate'"):
         flexsc.campaign(scenario, 2, at=[3.0], topics=["rat"])
+
+
+def test_what_does_not_fit_in_memory_is_refused_before_the_runs() -> None:
+    scenario = shipped("relay-fixed").with_("duration", 10.0)
+    times = np.linspace(0.0, 10.0, 1000)
+    with pytest.raises(
+        ValueError, match=r"at most 200000000 values in memory, got \d{10,} \(runs: 1000000, times: 1000,"
+    ):
+        flexsc.campaign(scenario, 1_000_000, at=times, yes=True)
+    with pytest.raises(ValueError, match=r"\(runs: 1, times: 3000000, .*\): give fewer times"):
+        shipped("earth-observer").with_("duration", 10.0).simulate(at=np.zeros(3_000_000))
+
+
+def test_an_unknown_topic_is_refused_before_the_runs() -> None:
+    class Counting(flexsc.DisturbanceModel):
+        period = 1.0
+        times: ClassVar[list[float]] = []
+
+        def act(self, truth: flexsc.parts.Truth) -> flexsc.Load:
+            self.times.append(truth.time)
+            return flexsc.Load([0.0, 0.0, 0.0])
+
+    scenario = shipped("earth-observer").with_("duration", 5.0).with_parts(disturbance=Counting())
+    with pytest.raises(KeyError, match="no topic 'pointin'; did you mean 'pointing'"):
+        flexsc.campaign(scenario, 2, at=[3.0], topics=["rates", "pointin"])
+    assert set(Counting.times) <= {0.0}

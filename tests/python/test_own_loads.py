@@ -86,6 +86,34 @@ def same(one: flexsc.Result, other: flexsc.Result, topics: tuple[str, ...]) -> N
             np.testing.assert_array_equal(one[topic][column], other[topic][column])
 
 
+@FUNCTION
+def nothing(now, since, truth, states, load):  # type: ignore[no-untyped-def]
+    """No load, and no time of the next call."""
+
+
+@FUNCTION
+def at_once(now, since, truth, states, load):  # type: ignore[no-untyped-def]
+    """No load, and a time that rounds to this instant."""
+    load[6] = 1e-16
+
+
+@pytest.mark.parametrize(
+    "load", [{"torque": [0.0, 1e-3, 0.0]}, {"force": [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], "after": 0.5}]
+)
+def test_a_pickled_load_is_the_load(load: dict[str, Any]) -> None:
+    made = flexsc.Load(**load)
+    assert pickle.loads(pickle.dumps(made)) == made
+    assert (made.torque is None, made.force is None) == ("torque" not in load, "force" not in load)
+
+
+def test_a_remark_says_that_linear_analyses_leave_out_a_disturbance() -> None:
+    own = observer().with_parts(disturbance=Steady([0.0, 1e-3, 0.0]))
+    assert [remark for remark in own.remarks if remark not in observer().remarks] == [
+        "`disturbance` acts in runs alone: margins, noise, linear models and the linear part of budgets "
+        "leave out one that is written in Python or compiled"
+    ]
+
+
 @pytest.mark.parametrize(
     ("own", "keys"),
     [
@@ -187,6 +215,54 @@ def test_a_mode_has_a_guidance_of_its_own() -> None:
         observer().with_parts(guidance={"point": Spin()})
 
 
+def test_a_mode_alone_keeps_its_guidance_and_the_others_their_targets() -> None:
+    scenario = shipped("safe-mode").with_("duration", 5.0).with_("spacecraft.rate", [0.0, 0.0, 0.0])
+    own = scenario.with_parts(guidance={"point": Spin()})
+    alone = own.in_mode("point")
+    assert list(alone.parts) == ["guidance"]
+    topics = ("pointing", "rates")
+    whole = scenario.in_mode("point").with_parts(guidance=Spin())
+    same(alone.simulate(log="full"), whole.simulate(log="full"), topics)
+    safe = own.in_mode("safe")
+    assert list(safe.parts) == []
+    assert safe.get("target") == scenario.in_mode("safe").get("target")
+
+    # Without targets of modes that of the scenario stays, unless the guidance is for all modes.
+    modes = [
+        {key: value for key, value in mode.items() if key != "target"} for mode in scenario.to_dict()["mode"]
+    ]
+    shared = scenario.with_("mode", modes).with_("target", [{"from": 0.0, "frame": "nadir"}])
+    of_mode, of_all = shared.with_parts(guidance={"point": Spin()}), shared.with_parts(guidance=Spin())
+    assert of_mode.get("target") == shared.get("target")
+    same(of_mode.simulate(log="full"), shared.simulate(log="full"), topics)
+    assert "target" not in of_all.to_dict()
+    assert list(of_all.parts) == ["guidance"]
+
+
+def test_an_error_at_the_last_time_or_between_samples_is_raised() -> None:
+    class Late(Spin):
+        fails_between = (20.125, math.inf)
+
+        def aim(self, sky: Sky) -> flexsc.Aim:
+            start, end = self.fails_between
+            if start < sky.time < end:
+                raise RuntimeError("late")
+            return super().aim(sky)
+
+    # No sensor and no law has a sample at these times: the rows alone call the guidance.
+    scenario = observer(20.13).with_("log.period", 0.01).with_parts(guidance=Late())
+    with pytest.raises(RuntimeError, match="late"):
+        scenario.simulate(log="full")
+    with pytest.raises(RuntimeError, match="late"):
+        scenario.simulate(log="none", at=[20.13])
+    Late.fails_between = (10.11, 10.19)
+    with pytest.raises(RuntimeError, match="late"):
+        scenario.simulate(log="none", at=[10.13])
+    run = scenario.simulate(log="none")
+    with pytest.raises(RuntimeError, match="late"):
+        run.sample([10.13])
+
+
 def test_what_cannot_be_is_refused() -> None:
     one = shipped("rotation-robust").with_("duration", 1.0)
     with pytest.raises(flexsc.ScenarioError, match=r"`guidance` gives attitudes of a body with three axes"):
@@ -222,6 +298,10 @@ def test_what_cannot_be_is_refused() -> None:
 
     with pytest.raises(ValueError, match="must give the time of its next call"):
         observer().with_parts(disturbance=Once()).simulate()
+    with pytest.raises(ValueError, match="must give the time of its next call"):
+        observer().with_parts(disturbance=flexsc.CompiledDisturbance(nothing)).simulate()
+    with pytest.raises(RuntimeError, match="a compiled disturbance gave"):
+        observer().with_parts(disturbance=flexsc.CompiledDisturbance(at_once)).simulate()
     with pytest.raises(ValueError, match=r"aim must return a flexsc\.Aim, got shape \(4,\)"):
         observer().with_parts(guidance=Wrong()).simulate()
     with pytest.raises(ValueError, match="attitude must be a unit quaternion"):

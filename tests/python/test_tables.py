@@ -325,6 +325,11 @@ def test_rows_of_a_table_are_a_table() -> None:
     assert high.samples["attitude"]["angle_rad"].shape == (4, 1)
     assert table[[3, 1]]["run"].tolist() == [3, 1]
     assert table.sorted("duty")["duty"].tolist() == sorted(table["duty"])
+    # All words are equal.
+    assert table.sorted("error", descending=True)["run"].tolist() == table["run"].tolist()
     with pytest.raises(TypeError, match="a table takes the name of a column, a slice, a mask or positions"):
         table[["duty", "goal"]]  # type: ignore[list-item]
+    with pytest.raises(TypeError, match="a table takes the name of a column"):
+        table[0]  # type: ignore[call-overload]
+    assert table[[]].rows == 0
     assert pickle.loads(pickle.dumps(high)) == high

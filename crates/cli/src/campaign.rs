@@ -26,7 +26,6 @@ use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
 use flexsc_core::requirement_verdict::{self, RequirementVerdict};
-use flexsc_core::scenario::ACTIVE_FAULT;
 use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
@@ -120,20 +119,22 @@ pub fn run(
         }
     } else {
         // A sweep over faults is judged.
-        let judges_faults = campaign.keys().any(|key| key == ACTIVE_FAULT);
-        let is_sweep = !judges_faults && !campaign.design().blocks.is_empty();
-        let answer = reported.answer(scenario, job.answer);
-        if let Some((least, table)) = answer.least_robust.as_ref().zip(reported.table.as_deref()) {
-            save_least_robust(campaign, least, table)?;
-        }
-        if !job.json {
-            reported.say(&answer, Some(took), job.answer);
-        } else if !is_sweep {
-            print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
-        }
-        let is_refused = job.answer.strict && !is_sweep && answer.verdict == RunVerdict::MetBut;
-        if is_refused && reported.failed.is_none() {
-            return Err(CliError::Requirements(format!("{}: {}", scenario.name, answer.verdict_text)));
+        let is_sweep = !reported.values.varies_faults() && !campaign.design().blocks.is_empty();
+        let is_printed = is_sweep && (job.json || reported.say_points(&scenario.name, Some(took)));
+        if !is_printed {
+            let answer = reported.answer(scenario, job.answer);
+            if let Some((least, table)) = answer.least_robust.as_ref().zip(reported.table.as_deref()) {
+                save_least_robust(campaign, least, table)?;
+            }
+            if job.json {
+                print_lines(&[with_scenario_name(&scenario.name, json!({ "answer": answer }))])?;
+            } else {
+                reported.say(&answer, Some(took), job.answer);
+            }
+            let is_refused = job.answer.strict && !is_sweep && answer.verdict == RunVerdict::MetBut;
+            if is_refused && reported.failed.is_none() {
+                return Err(CliError::Requirements(format!("{}: {}", scenario.name, answer.verdict_text)));
+            }
         }
     }
     match reported.failed {

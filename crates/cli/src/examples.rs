@@ -143,8 +143,8 @@ pub fn text(name: &str) -> Result<&'static str, CliError> {
     })
 }
 
-/// Returns the command that copies an example to a path where there is no file; `None` if it is not the name of one.
-pub fn copying(path: &Path) -> Option<String> {
+/// Returns a hint with the command that copies an example to a path; `None` if the path has a file or not the name of an example.
+pub fn copy_hint(path: &Path) -> Option<String> {
     let stem = path.file_stem()?.to_str()?;
     let is_example = EXAMPLES.iter().any(|(example, _)| *example == stem);
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());

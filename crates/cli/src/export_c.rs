@@ -109,7 +109,7 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
     let package = package::export(&scenario, origin, &prefix, args.calls as usize, &guests)
         .map_err(|error| refused(&args.scenario, error))?;
     if args.complete
-        && let Some(part) = package.left_out.first()
+        && let Some(part) = package.excluded_parts.first()
     {
         let reason = format!(
             "is not part of the exported code, and you would have to {}: without `--complete` the rest is exported",
@@ -130,7 +130,7 @@ pub fn run(args: &ExportCArgs) -> Result<(), CliError> {
         package.calls.iter().map(|call| format!("{prefix}_{}", call.name)).collect::<Vec<_>>().join(", "),
         package.vectors
     );
-    for part in &package.left_out {
+    for part in &package.excluded_parts {
         eprintln!("not part of it: {}; you must {}", part.key, part.duty);
     }
     eprintln!("`make -C {} check` compares them by bits", args.out.display());

@@ -74,7 +74,10 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
             let reported = part_files::summary(&into, &merge.manifest().runs())?;
             say!("{}: {}, {remaining} missing", path.display(), counted(reported.runs, "run"));
             let args = AnswerArgs::default();
-            reported.say(&reported.answer(merge.work().campaign.scenario(), args), None, args);
+            let scenario = merge.work().campaign.scenario();
+            if !reported.say_points(&scenario.name, None) {
+                reported.say(&reported.answer(scenario, args), None, args);
+            }
             if !missing.is_empty() {
                 return Err(incomplete(
                     &missing,

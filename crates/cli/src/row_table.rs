@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 use std::io::Write;
 
-use flexsc_core::formats::reader_units::ReaderUnits;
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -36,7 +36,8 @@ enum NumberForm<'a> {
     Named,
     /// Times a factor, in a unit that is given.
     Scaled(f64, &'a str),
-    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row, and its field `key`.
+    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row, and its field `key`, or
+    /// else the number.
     OfRow,
     /// Factor on a gain, in dB, of which there is none for 0; a list of two is a range.
     Gain,
@@ -178,12 +179,15 @@ fn lines(rows: &[Json], shown: &[Column<'_>], units: Units) -> Vec<Vec<String>> 
         lines.push(scales.iter().map(|(_, unit)| unit.clone()).collect());
     }
     let cells = |row: &Json| {
-        let (row_factor, row_unit) = row_scale(row, shown, units);
+        let largest = largest_of_row(row, shown);
         let cell = |(column, (factor, _)): (&Column<'_>, &(f64, String))| {
             let cell = column.cell(row);
-            match column.form {
-                NumberForm::OfRow if cell.is_some_and(Json::is_number) => {
-                    format!("{} {row_unit}", column.text(cell, row_factor, units)).trim_end().to_owned()
+            match (column.form, cell.and_then(Json::as_f64)) {
+                (NumberForm::OfRow, Some(number)) => {
+                    let text = quantity(number, &unit_of_row(row, largest, units));
+                    // A number far below the others of its row has a smaller unit instead of an exponent.
+                    let is_tiny = text.contains("e-");
+                    if is_tiny { quantity(number, &unit_of_row(row, number, units)) } else { text }
                 }
                 _ => column.text(cell, *factor, units),
             }
@@ -194,15 +198,23 @@ fn lines(rows: &[Json], shown: &[Column<'_>], units: Units) -> Vec<Vec<String>> 
     lines
 }
 
-/// Returns the factor and the unit of the numbers of a row that are in the unit of the row.
-fn row_scale(row: &Json, shown: &[Column<'_>], units: Units) -> (f64, String) {
+/// Returns the largest size of the numbers of a row that are in the unit of the row.
+fn largest_of_row(row: &Json, shown: &[Column<'_>]) -> f64 {
     let mut numbers = Vec::new();
     let own = shown.iter().filter(|column| matches!(column.form, NumberForm::OfRow));
     own.filter_map(|column| column.cell(row)).for_each(|cell| collect(cell, &mut numbers));
+    numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()))
+}
+
+/// Returns the unit of a row that fits numbers up to a size.
+fn unit_of_row(row: &Json, largest: f64, units: Units) -> ReaderUnit {
     let text = |name: &str| row.get(name).and_then(Json::as_str).unwrap_or_default();
-    let largest = numbers.iter().fold(0.0, |most: f64, number| most.max(number.abs()));
-    let unit = ReaderUnits::from(units).for_key(text("key"), largest, text("unit"));
-    (unit.value(1.0), unit.name.into_owned())
+    ReaderUnits::from(units).for_key(text("key"), largest, text("unit"))
+}
+
+/// Returns an SI value as text in a unit.
+fn quantity(si: f64, unit: &ReaderUnit) -> String {
+    format!("{} {}", digits(unit.value(si)), unit.name).trim_end().to_owned()
 }
 
 #[cfg(test)]
@@ -250,5 +262,9 @@ mod tests {
         let printed = lines(&rows, &shown, Units::Engineering);
         assert_eq!(printed[1], ["per minute", "%", "", ""]);
         assert_eq!(printed[2], ["30", "25", "0.2", "0.5 N"]);
+        // A number far below the others of its row.
+        let rows = [json!({"value": 1e-7, "part": 1e-10, "unit": "rad"})];
+        let shown = [column("value", "a").unit_of_row(), column("part", "b").unit_of_row()];
+        assert_eq!(lines(&rows, &shown, Units::Engineering)[1], ["0.02063 arcsec", "0.02063 mas"]);
     }
 }

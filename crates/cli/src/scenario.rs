@@ -71,8 +71,8 @@ pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, 
 /// Reads a document; `-` is stdin.
 pub fn document(path: &Path) -> Result<Document, CliError> {
     if path != Path::new("-") {
-        return Document::load(path).map_err(|fault| match examples::copying(path) {
-            Some(command) => CliError::Arguments(format!("{fault}\n\nhint: {command}")),
+        return Document::load(path).map_err(|fault| match examples::copy_hint(path) {
+            Some(hint) => CliError::Arguments(format!("{fault}\n\nhint: {hint}")),
             None => fault.into(),
         });
     }

@@ -37,7 +37,7 @@ use flexsc_scenario::{Cost, MOST_RUNS, Scenario};
 use flexsc_sim::{Simulation, SimulationError};
 
 pub(crate) use campaign_runs::UncertainValues;
-pub use campaign_runs::{CampaignRuns, MAIN_METRICS};
+pub use campaign_runs::{CampaignRuns, MAIN_METRICS, MOST_METRICS};
 pub use command_log::CommandLog;
 pub use design::{Design, DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS};
 pub use directory::{Directory, MANIFEST, STATISTICS};

@@ -141,7 +141,7 @@ impl RequirementRuns {
 
     /// Returns the runs in the rows that are wanted.
     #[must_use]
-    pub fn of_rows(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
+    pub fn in_rows(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
         let empty = vec![Vec::new(); self.values.len()];
         let mut own = Self {
             requirements: self.requirements.clone(),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, known_unit};
 
-use crate::ticks::{Form, Ticks};
+use crate::ticks::{Form, SHORT_POWERS, Ticks};
 
 /// Axis of a panel.
 #[derive(Clone, Debug)]
@@ -44,8 +44,6 @@ const MOST: f64 = 1e300;
 const MANY: usize = 20;
 /// Ratio by which the lowest values are far below the others.
 const FAR: f64 = 100.0;
-/// Powers of ten that are written as numbers.
-const SHORT_POWERS: Range<i32> = -6..5;
 
 /// Maximum ratio of the largest values of axes that share a unit, for axes of one quantity.
 const SAME: f64 = 1000.0;

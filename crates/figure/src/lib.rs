@@ -36,7 +36,7 @@ pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use strip::{Strip, StripSpan};
 pub use style::Style;
-pub use ticks::Ticks;
+pub use ticks::{Ticks, power_text};
 
 /// Colours that are distinguishable with colour blindness (Okabe and Ito).
 pub mod colour {

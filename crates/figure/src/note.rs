@@ -66,7 +66,7 @@ const LETTERS: f64 = 10.5;
 const DISTANCE: f64 = 5.0;
 const BESIDE: f64 = 8.0;
 const HEIGHT: f64 = 13.0;
-/// Length of covered curves (px) for which a place gives way to the next one.
+/// Length of covered curves (px) by which a place may exceed the next one and still be preferred.
 const PREFERENCE: f64 = 4.0;
 /// Opacity of the ground under the words.
 const GROUND: f64 = 0.7;
@@ -122,9 +122,8 @@ pub fn draw<'a>(
             curves.iter().map(|curve| place.covered(curve)).sum::<f64>() + PREFERENCE * index as f64
         };
         let ranked = allowed.into_iter().filter(|place| !is_any_free || free(place)).enumerate();
-        let place = ranked
-            .min_by(|(i, one), (j, other)| covered(*i, one).total_cmp(&covered(*j, other)))
-            .map(|(_, place)| *place);
+        let ranked = ranked.map(|(index, place)| (covered(index, place), *place));
+        let place = ranked.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place);
         let held = |top: f64| top.clamp(plot.top, (plot.bottom - height).max(plot.top));
         let place = place.unwrap_or_else(|| boxed((x + offsets[0].0, held(places[0].top) + height / 2.0)));
         let at =

@@ -1,6 +1,11 @@
 //! Ticks of an axis, and the texts of their numbers.
 
+use std::ops::Range;
+
 use flexsc_formats::reader_units::grouped;
+
+/// Powers of ten that are written as numbers.
+pub(crate) const SHORT_POWERS: Range<i32> = -6..5;
 
 /// Ticks of an axis.
 #[derive(Clone, Debug)]
@@ -37,6 +42,12 @@ impl Ticks {
         let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
         if zero { "0".to_owned() } else { grouped(&text).replace('-', "−") }
     }
+}
+
+/// Returns a power of ten as text: a number from 0.000001 to 10 000, else 10 with an exponent.
+pub fn power_text(power: i32) -> String {
+    let form = if SHORT_POWERS.contains(&power) { Form::Short } else { Form::Power };
+    Ticks { at: Vec::new(), factor: 1.0, form }.text(10_f64.powi(power))
 }
 
 /// Formats an integer as a superscript.

@@ -39,7 +39,16 @@ fn is_unit(square: f64) -> bool {
 }
 
 impl AttitudeObservation {
-    /// Returns true if a measurement is finite, and of unit length if it is an attitude or a direction.
+    /// Returns the sum of the variances of the measurement error about the axes (rad²); of a vector, relative to its length.
+    pub fn angle_variance(&self) -> f64 {
+        let variance: f64 = self.noise.rows[0][0] + self.noise.rows[1][1] + self.noise.rows[2][2];
+        if self.kind == ObservationKind::Attitude {
+            return variance;
+        }
+        variance / self.vector.norm_squared()
+    }
+
+    /// Returns true if a measurement is finite, and of unit length if it is an attitude or a direction; a vector is not 0.
     pub fn is_sound(&self) -> bool {
         match self.kind {
             ObservationKind::Attitude => is_unit(self.attitude.norm_squared()),
@@ -48,6 +57,7 @@ impl AttitudeObservation {
             }
             ObservationKind::Vector => {
                 self.vector.norm_squared().is_finite()
+                    && self.vector.norm_squared() > 0.0
                     && self.inertial.norm_squared().is_finite()
                     && self.inertial.norm_squared() > 0.0
             }

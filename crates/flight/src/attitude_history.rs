@@ -13,6 +13,10 @@ use crate::reading_status::ReadingStatus;
 use crate::ticks::Ticks;
 use crate::vector3::Vector3;
 
+/// Largest ratio of the variance of an accepted measurement to that of the refused ones before it, at which it shows that they were
+/// false: twice the standard deviation.
+const MOST_VARIANCE_RATIO: f64 = 4.0;
+
 /// Attitude filter at one instant of its recent past.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct AttitudeHistoryEntry {
@@ -70,8 +74,12 @@ pub struct AttitudeHistory {
     pub reach: Ticks,
     /// Limits of the readings.
     pub gate: AttitudeGate,
-    /// Number of improbable measurements since the last correction.
+    /// Number of improbable measurements in a row, which a correction by one that is about as accurate ends.
     pub improbable: u32,
+    /// Least variance (rad²), summed over the axes, of the improbable measurements in a row.
+    pub least_variance: f64,
+    /// Exposure of the last correction that left no improbable measurements to count; before the first one, the start.
+    pub confirmed: Ticks,
     /// True after the clock was set back, until a measurement has corrected the filter with an inflated covariance.
     pub is_unsure: bool,
     /// Number of gyro readings in a row that were older than the last one.
@@ -110,6 +118,8 @@ impl AttitudeHistory {
             reach,
             gate,
             improbable: 0,
+            least_variance: 0.0,
+            confirmed: time,
             is_unsure: false,
             setbacks: 0,
             refused: 0,
@@ -169,10 +179,11 @@ impl AttitudeHistory {
         // The rotation since the last reading is not known.
         self.is_unsure = true;
         self.corrected = now;
+        self.confirmed = now;
         ReadingStatus::Accepted
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the result of the last measurement that
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by a measurement that
     /// waited for it. If the storage is full, the oldest entry is dropped.
     pub fn add_gyro(
         &mut self,
@@ -204,8 +215,7 @@ impl AttitudeHistory {
         correction
     }
 
-    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the result of the last
-    /// one.
+    /// Corrects by the measurements that a gyro reading until `now` covers, in the order of arrival. Returns the last correction.
     fn apply_waiting(
         &mut self,
         now: Ticks,
@@ -220,7 +230,7 @@ impl AttitudeHistory {
                 early += 1;
             } else {
                 let result: Correction = self.apply(index, entries, observations);
-                if result.status != ReadingStatus::None {
+                if result.status.has_corrected() {
                     correction = result;
                 }
             }
@@ -272,7 +282,7 @@ impl AttitudeHistory {
         let mut correction: Correction = self.correct_at_exposure(&observation, most_nis, entries);
         if correction.status == ReadingStatus::Improbable && self.is_reaccepted(&observation) {
             // As uncertain as the innovation shows, and the bias as if it had drifted since the last correction.
-            let seconds: f64 = observation.exposed.since(self.corrected).seconds();
+            let seconds: f64 = observation.exposed.since(self.confirmed).seconds();
             observation.angle_inflation = correction.innovation.norm_squared();
             if seconds > 0.0 && !self.is_unsure {
                 observation.bias_inflation = observation.angle_inflation / (seconds * seconds);
@@ -283,14 +293,20 @@ impl AttitudeHistory {
             }
         }
         if correction.status == ReadingStatus::Improbable {
-            self.improbable += 1;
+            let variance: f64 = observation.observation.angle_variance();
+            self.count_improbable(variance);
         }
         if correction.status.is_refusal() {
             self.refused += 1;
         }
         if correction.status.has_corrected() {
-            self.improbable = 0;
             self.is_unsure = false;
+            if correction.status == ReadingStatus::Reaccepted || self.ends_row(&observation.observation) {
+                self.improbable = 0;
+                if self.confirmed.is_before(observation.exposed) {
+                    self.confirmed = observation.exposed;
+                }
+            }
             if self.corrected.is_before(observation.exposed) {
                 self.corrected = observation.exposed;
             }
@@ -319,7 +335,20 @@ impl AttitudeHistory {
     fn is_reaccepted(&self, observation: &DelayedObservation) -> bool {
         self.is_unsure
             || self.improbable >= self.gate.most_refusals
-            || self.gate.gap.is_before(observation.exposed.since(self.corrected))
+            || self.gate.gap.is_before(observation.exposed.since(self.confirmed))
+    }
+
+    /// Counts an improbable measurement with a variance (rad²).
+    fn count_improbable(&mut self, variance: f64) {
+        if self.improbable == 0 || variance < self.least_variance {
+            self.least_variance = variance;
+        }
+        self.improbable += 1;
+    }
+
+    /// Returns true if a measurement that corrects the filter ends the row of improbable ones: it is about as accurate.
+    fn ends_row(&self, observation: &AttitudeObservation) -> bool {
+        self.improbable == 0 || observation.angle_variance() <= MOST_VARIANCE_RATIO * self.least_variance
     }
 
     /// Corrects the filter at the exposure of a measurement, for which it inserts an entry if there is none.

@@ -20,14 +20,14 @@ pub struct JetPair {
 }
 
 impl JetPair {
-    /// Returns the on-time (s) for a demanded length (s), with the sign of the demand; 0 for a demand of 0.
+    /// Returns the on-time (s) for a demanded length (s), with the sign of the demand; 0 for a demand of 0 or NaN.
     #[inline]
     fn signed_on_time(&self, demand: f64, length: f64) -> f64 {
-        if demand == 0.0 {
+        if demand == 0.0 || demand.is_nan() {
             return 0.0;
         }
         let on: f64 = self.quantum.on_time(length, self.period);
-        let sign: f64 = if demand.is_nan() { demand } else { 1.0_f64.copysign(demand) };
+        let sign: f64 = 1.0_f64.copysign(demand);
         sign * on
     }
 

@@ -159,6 +159,9 @@ impl ModeSupervisor {
         modes: &mut [SupervisedMode],
         exits: &mut [SupervisedExit],
     ) {
+        if now.is_before(self.tested) {
+            self.follow_clock(now, exits);
+        }
         self.active = to;
         self.entered = now;
         self.next = now.plus(modes[to].period);

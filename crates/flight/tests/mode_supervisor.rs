@@ -91,6 +91,17 @@ fn more_than_32_changes_in_a_second_wait() {
 }
 
 #[test]
+fn a_mode_that_is_entered_after_the_clock_was_set_back_begins_then() {
+    let mut pair = Pair::new(1.0, 0.0);
+    for _ in 0..5 {
+        pair.test(1.5);
+    }
+    pair.supervisor.enter(at(2.0), 1, &mut pair.modes, &mut pair.exits);
+    pair.supervisor.test(at(2.5), &[1.5], &mut pair.modes, &mut pair.exits, &pair.steps);
+    assert_eq!((pair.supervisor.active, pair.supervisor.entered), (1, at(2.0)));
+}
+
+#[test]
 fn a_number_that_is_not_known_meets_no_comparison() {
     let (met, unmet) = (CONDITION_MET, CONDITION_UNMET);
     let holds =

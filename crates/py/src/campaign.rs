@@ -25,6 +25,7 @@ use super::aside::aside;
 use super::columns::topics_to_dict;
 use super::design::Design;
 use super::error::{allowed, no_file, scenario_error};
+use super::instants::sizes;
 use super::parts::known_thread;
 use super::run_logs;
 use super::table::column;
@@ -34,6 +35,9 @@ use super::{Scenario, detail};
 type Summary = (String, &'static str, usize, f64, f64, Vec<(f64, f64)>);
 /// First run, and the one after the last.
 type Span = (u64, u64);
+
+/// Largest number of runs that are started to find one with a sample of the motion.
+const MOST_STARTED: usize = 16;
 
 fn failed(error: DirectoryError) -> PyErr {
     match error {
@@ -247,6 +251,19 @@ impl Work {
         let (rows, statistics) =
             aside(py, move |stop| made(&work, rows(&work, runs, jobs, stop)?))?.map_err(failed)?;
         Ok((columns_to_dict(py, rows)?, statistics.into_iter().map(summary).collect()))
+    }
+
+    /// The number of values in a sample of the motion of a run, by topic; empty if the first runs fail at their start.
+    fn sample_sizes(&self, py: Python<'_>) -> PyResult<BTreeMap<String, usize>> {
+        let work = self.0.clone();
+        aside(py, move |stop| {
+            (work.manifest.from..work.manifest.to)
+                .take(MOST_STARTED)
+                .filter_map(|number| work.campaign.run(number).ok())
+                .map(|run| sizes(&run, stop.clone()))
+                .find(|sizes| !sizes.is_empty())
+                .unwrap_or_default()
+        })
     }
 
     /// Makes runs one by one with their motion at increasing times (s): columns by name, statistics, and for each run that did

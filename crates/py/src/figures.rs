@@ -1,9 +1,9 @@
 //! The figures of the command, as SVG and as what they consist of.
 
 use std::collections::HashMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::{fs, io};
 
 use flexsc_cli::figures;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
@@ -71,8 +71,12 @@ impl Figure {
         let style = Style::new(width, font).map_err(PyValueError::new_err)?;
         let figure = Arc::clone(&self.0);
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        let kept = fs::read(&path).is_ok_and(|bytes| !flexsc_figure::is_figure(&bytes));
-        if kept && !force {
+        // What cannot be read stays as well: it may be another file.
+        let is_free = match fs::read(&path) {
+            Ok(bytes) => flexsc_figure::is_figure(&bytes),
+            Err(error) => error.kind() == io::ErrorKind::NotFound,
+        };
+        if !is_free && !force {
             let why = format!(
                 "{} is there and is no figure of flexsc: give force=True to replace it",
                 path.display()

@@ -81,7 +81,7 @@ mod _native {
     #[pymodule_export]
     use super::handover::{ExportOptions, export_fmu, export_log, export_run};
     #[pymodule_export]
-    use super::instants::MotionSampler;
+    use super::instants::{MotionSampler, sample_sizes};
     #[pymodule_export]
     use super::linear::{common_margins, linearise, sampled};
     #[pymodule_export]
@@ -230,7 +230,11 @@ impl Scenario {
     /// The remarks on values that are accepted and probably not meant, each with its key.
     #[getter]
     fn remarks(&self) -> Vec<String> {
-        self.inner.remarks().iter().map(ToString::to_string).collect()
+        let own = (!self.inner.own_disturbances.is_empty()).then(|| {
+            let why = "acts in runs alone: margins, noise, linear models and the linear part of budgets leave out one that is written in Python or compiled";
+            ConfigError::new("disturbance", why)
+        });
+        self.inner.remarks().iter().chain(&own).map(ToString::to_string).collect()
     }
 
     fn modes_json(&self) -> String {

@@ -3,7 +3,7 @@
 use flexsc_control::actuator::{Failure, FailureScope};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::interval::Interval;
-use flexsc_control::sensor::{SensorFailure, SensorKind};
+use flexsc_control::sensor::{Outlier, SensorFailure, SensorKind};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
@@ -68,6 +68,7 @@ impl ScenarioSpec {
         for (number, sensor) in self.sensor.iter().enumerate() {
             let key = format!("{}.faults", self.sensor_key(number));
             errors.extend(errors_in(&key, sensor.faults(), SensorFailure::validate));
+            errors.extend(errors_in(&key, sensor.faults(), |failure| self.outlier_error(number, failure)));
             errors.extend(self.altered_error(sensor).map(|error| error.within(&key)));
         }
         let members = self.actuator.members();
@@ -95,6 +96,23 @@ impl ScenarioSpec {
             );
             ConfigError::new("", why)
         })
+    }
+
+    /// Checks that the sensor at this index measures the quantities that its outlier alters.
+    fn outlier_error(&self, index: usize, failure: &SensorFailure) -> Option<ConfigError> {
+        let sensor = &self.sensor[index];
+        let SensorFailure::Outlier(Outlier { angle, rate, .. }) = failure else { return None };
+        if !sensor.measures_motion() || sensor.is_continuous() {
+            return None;
+        }
+        let has_angle = self.sensor.provides_attitude(index) || sensor.measures_vector();
+        if angle.get() != 0.0 && !has_angle {
+            let why = "alters a measured angle or vector, and the sensor measures rates: give a `rate`";
+            return Some(ConfigError::new("outlier.angle", why));
+        }
+        let why = "alters measured rates, and the sensor measures none: give an `angle`";
+        let is_idle = rate.get() != 0.0 && sensor.rate_noise(0).is_none();
+        is_idle.then(|| ConfigError::new("outlier.rate", why))
     }
 
     /// Checks that the motion under sinusoidal torques has a closed form, or is integrated with steps that resolve

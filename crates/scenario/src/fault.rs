@@ -187,11 +187,11 @@ impl ScenarioSpec {
         let error_of = |(index, fault): (usize, &Fault)| {
             let names = self.fault[..index].iter().map(|other| other.name.as_str());
             let is_taken = fault.name.is_empty()
-                || fault.name.contains([')', '('])
+                || fault.name.contains(['(', ')', ','])
                 || names.chain([NO_FAULT]).any(|name| name == fault.name);
             if is_taken {
                 let why = format!(
-                    "must be a name of its own without brackets, and not `{NO_FAULT}`, got `{}`",
+                    "must be a name of its own without brackets and commas, and not `{NO_FAULT}`, got `{}`",
                     fault.name
                 );
                 return Some(ConfigError::new("name", why));

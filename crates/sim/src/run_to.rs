@@ -44,11 +44,12 @@ impl Simulation {
     /// otherwise.
     ///
     /// # Errors
-    /// Fails if the state is no longer finite or the record cannot be written.
+    /// Fails if the state is no longer finite, a custom part cannot go on or the record cannot be written.
     pub fn record_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.evaluate(self.clock.now())?;
         let (run, recorder) = self.view();
-        Ok(recorder.record_now(&run, record)?)
+        recorder.record_now(&run, record)?;
+        self.check_custom_parts()
     }
 
     /// Returns the state of a one-axis body at the current instant.

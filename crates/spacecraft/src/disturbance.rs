@@ -153,6 +153,10 @@ impl Disturbance {
         if let Some(why) = self.table.as_ref().and_then(LoadTable::fault) {
             return Some(ConfigError::new("table", why));
         }
+        if self.table.is_some() && self.torque.get() != 0.0 {
+            let why = "takes the place of a constant `torque`: give one of them";
+            return Some(ConfigError::new("table", why));
+        }
         if self.table.is_some() && self.pulse.is_some() {
             let why = "applies to a constant torque or force: leave the `table` out";
             return Some(ConfigError::new("pulse", why));

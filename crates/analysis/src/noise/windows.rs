@@ -4,6 +4,7 @@
 //! linear in the states at the start and in the draws since, so that its variance needs no spectrum. For a stationary
 //! signal of the density S the indices are integrals of S with the weights of [`WindowWeights`].
 
+use flexsc_formats::reader_units::{self, number};
 use nalgebra::{DMatrix, RowDVector};
 
 use super::noisy_loop::NoisyLoop;
@@ -140,10 +141,9 @@ impl NoisyLoop {
         if time > 0.0 && time <= MOST_PERIODS * self.period {
             return Ok(());
         }
-        let period = self.period;
-        Err(format!(
-            "{name} must be positive and at most {MOST_PERIODS:e} periods of {period} s, got {time} s"
-        ))
+        let [period, got] = [self.period, time].map(reader_units::time);
+        let most = number(MOST_PERIODS);
+        Err(format!("{name} must be positive and at most {most} periods of {period}, got {got}"))
     }
 
     /// Returns the mean variances of an output over a window, from each source.

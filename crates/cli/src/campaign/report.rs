@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::answer::CampaignAnswer;
-use flexsc_core::campaign::{CampaignRuns, MAIN_METRICS};
+use flexsc_core::campaign::{CampaignRuns, MAIN_METRICS, MOST_METRICS};
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::reader_units::{ReaderUnits, rough_time};
 use flexsc_core::formats::text_columns::columns;
@@ -66,19 +66,22 @@ pub fn are_alike(statistics: &[Statistics]) -> bool {
 }
 
 impl CampaignReport {
-    /// Prints the points of a sweep, or the verdict, the requirements and the statistics of another campaign, which took
-    /// some real time (s).
-    pub fn say(&self, answer: &CampaignAnswer, took: Option<f64>, args: AnswerArgs) {
-        let (name, runs) = (&answer.scenario, counted(self.runs, "run"));
-        let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
-        if let (Some(points), true, true) = (&self.points, self.runs > 0, answer.by_fault.is_empty()) {
-            let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
-            say!("{name}   {runs}{took}\n{}", points.text().trim_end());
-            if let Some(table) = table {
-                say!("  {table}");
-            }
-            return;
+    /// Prints the points of a sweep, which took some real time (s). Returns false without points, and of a sweep over faults.
+    pub fn say_points(&self, name: &str, took: Option<f64>) -> bool {
+        let is_shown = self.runs > 0 && !self.values.varies_faults();
+        let Some(points) = self.points.as_ref().filter(|_| is_shown) else { return false };
+        let took = took.map_or_else(String::new, |took| format!(" in {}", rough_time(took)));
+        say!("{name}   {}{took}\n{}", counted(self.runs, "run"), points.text().trim_end());
+        if let Some(path) = &self.table {
+            say!("  table {}", path.display());
         }
+        true
+    }
+
+    /// Prints the verdict, the requirements and the statistics of a campaign, which took some real time (s).
+    pub fn say(&self, answer: &CampaignAnswer, took: Option<f64>, args: AnswerArgs) {
+        let runs = counted(self.runs, "run");
+        let table = self.table.as_ref().map(|path| format!("table {}", path.display()));
         say!("{}", answer.screen(took, args.screen()));
         if self.runs == 0 {
             return;
@@ -133,9 +136,6 @@ impl CampaignReport {
         CampaignAnswer::new(scenario, &self.values, nominal.as_ref(), directory.as_deref(), units)
     }
 }
-
-/// Number of metrics that are printed unless all are wanted.
-const MOST_METRICS: usize = 7;
 
 /// Returns the statistics as a table, each row in a unit that fits it.
 fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {

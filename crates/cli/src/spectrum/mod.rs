@@ -15,7 +15,7 @@ use flexsc_core::analysis::noise::{
     NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
+use flexsc_core::formats::reader_units::ReaderUnit;
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -204,8 +204,8 @@ impl SpectrumResults {
 /// Columns of the contrast of an image that moves with an output.
 const CONTRAST: [Column<'_>; 4] = [
     column("output", "output"),
-    column("noise", "MTF\nof noise"),
-    column("least", "least with\nlines of wheels"),
+    column("noise", "MTF\nof noise").decimals(4),
+    column("least", "least with\nlines of wheels").decimals(4),
     column("speed_rad_s", "at"),
 ];
 
@@ -239,7 +239,7 @@ impl SpectrumResults {
         };
         say!(
             "  contrast (MTF) that the motion leaves an image over {exposure}, at the Nyquist frequency of pixels of {}",
-            ReaderUnits::Engineering.fitting(pixel, "rad").quantity(pixel)
+            self.units.quantity(pixel, "rad")
         );
         let columns =
             if rows.iter().any(|row| row["least"].is_number()) { &CONTRAST[..] } else { &CONTRAST[..2] };

@@ -4,10 +4,11 @@
 use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, SpectralLine, WheelSpectrum};
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, four_digits, number};
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, number};
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{
     Bar, Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
+    power_text,
 };
 
 use super::named_mode::NamedMode;
@@ -167,7 +168,7 @@ impl<'a> OutputWaterfall<'a> {
         let mtf = self.wheels.mtf.get(self.index).filter(|mtf| !mtf.is_empty())?;
         let points: Vec<Point> = self.wheels.speed_rad_s.iter().copied().zip(mtf.iter().copied()).collect();
         let (speed, least) = points.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let text = format!("{} at {:.0} rpm", four_digits(least), speed * 30.0 / PI);
+        let text = format!("{least:.4} at {:.0} rpm", speed * 30.0 / PI);
         let note = Note::new(text, (speed, least), colour::BLUE).on(NoteSide::Below);
         // Room for the note below.
         let low = (least - 0.25 * (1.0 - least)).min(0.9);
@@ -255,7 +256,7 @@ impl<'a> OutputWaterfall<'a> {
         }
         let edge = |class: usize| {
             let power = top - DECADES as f64 + (class / PER_DECADE) as f64;
-            if class.is_multiple_of(PER_DECADE) { four_digits(10_f64.powf(power)) } else { String::new() }
+            if class.is_multiple_of(PER_DECADE) { power_text(power as i32) } else { String::new() }
         };
         let bar = Bar {
             name: format!(

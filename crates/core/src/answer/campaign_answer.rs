@@ -68,7 +68,7 @@ pub struct CampaignAnswer {
 /// Metric over the runs of a campaign that have a value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MetricSpread {
-    /// Name.
+    /// Name of the metric.
     pub name: &'static str,
     /// SI unit of all values.
     pub unit: &'static str,
@@ -81,11 +81,10 @@ pub struct MetricSpread {
 }
 
 impl MetricSpread {
-    /// Returns the main metrics of runs that vary.
+    /// Returns the main metrics that vary from run to run.
     fn all(runs: &CampaignRuns) -> Vec<Self> {
         let spread = |(meaning, values): &(&'static MetricDescription, Vec<f64>)| {
-            let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-            sorted.sort_by(f64::total_cmp);
+            let sorted = sorted_finite(values);
             let (least, largest) = (*sorted.first()?, *sorted.last()?);
             let [median, p95] = [0.5, 0.95].map(|part| quantile(&sorted, part));
             (least < largest).then_some(Self { name: meaning.name, unit: meaning.unit, median, p95, largest })
@@ -328,6 +327,13 @@ fn verdict(
     }
 }
 
+/// Returns the finite ones of some values in ascending order.
+fn sorted_finite(values: &[f64]) -> Vec<f64> {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
 fn requirement(
     scenario: &Scenario,
     runs: &CampaignRuns,
@@ -340,8 +346,7 @@ fn requirement(
     let written = requirement.written_limit.as_deref();
     let unit = units.as_written(written, limit, requirement.unit);
     let values = runs.requirements.values(index);
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
+    let sorted = sorted_finite(values);
     let quantile = |q: f64| Some(quantile(&sorted, q)).filter(|value| value.is_finite());
     let margin_of = |value: f64| (limit - value) / limit;
     // A run without a value is the worst, and has no margin.

@@ -7,9 +7,7 @@ use super::campaign_answer::{CampaignAnswer, CampaignRequirement};
 use super::key_difference::KeyDifference;
 use super::run_comparison::{SIDES, heads, key_lines, paired};
 use super::screen::{ScreenOptions, indented};
-
-/// Number of metrics that are compared unless all are wanted.
-const MOST_METRICS: usize = 7;
+use crate::campaign::MOST_METRICS;
 
 /// Two campaigns, and in what they differ.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,7 +49,7 @@ impl CampaignComparison {
             for (side, own) in both.into_iter().enumerate() {
                 let head = if side == 0 { name } else { "" };
                 let cells = own.map_or_else(
-                    || vec!["does not vary".to_owned()],
+                    || vec!["constant or none".to_owned()],
                     |own| [own.median, own.p95, own.largest].map(|value| unit.quantity(value)).to_vec(),
                 );
                 rows.push([head, SIDES[side]].map(str::to_owned).into_iter().chain(cells).collect());

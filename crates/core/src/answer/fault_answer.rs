@@ -103,7 +103,7 @@ impl CampaignRuns {
         let place = |name: &str| scenario.fault.iter().position(|fault| fault.name == name);
         known.sort_by_key(|name| place(name).map_or(0, |place| place + 1));
         let answer = |fault: &str| {
-            let own = self.requirements.of_rows(|row| names[row] == fault);
+            let own = self.requirements.in_rows(|row| names[row] == fault);
             let runs = own.numbers().len() as u64;
             let verdicts = own.finish();
             let requirements = verdicts.iter().enumerate();

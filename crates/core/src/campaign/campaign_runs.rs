@@ -39,6 +39,8 @@ const ANSWER_METRICS: [&str; 22] = [
     "lock_lost_at_s",
 ];
 
+/// Largest number of metrics of campaigns that are printed and compared unless all are wanted.
+pub const MOST_METRICS: usize = 7;
 /// Metrics that a campaign prints, draws and compares if none is named: the first ones of this list that vary.
 pub const MAIN_METRICS: [&str; 24] = [
     "goal",
@@ -104,6 +106,11 @@ fn number(value: &Value) -> f64 {
 }
 
 impl CampaignRuns {
+    /// Returns true if the active fault varies from run to run.
+    pub fn varies_faults(&self) -> bool {
+        self.faults.is_some()
+    }
+
     /// Creates an empty collector for runs of a campaign.
     pub fn new(campaign: &Campaign) -> Self {
         let scenario = campaign.scenario();

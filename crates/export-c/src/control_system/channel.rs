@@ -70,11 +70,16 @@ impl Channel {
         inside.map_or("", |(unit, _)| unit)
     }
 
-    /// Returns the frame of a vector or a quaternion; `None` of other numbers.
+    /// Returns the frame of a vector or a quaternion; `None` of other numbers, such as those of three wheels.
     pub fn frame(&self) -> Option<&'static str> {
         match (self.kind, self.count) {
             (NumberKind::Real, 4) if self.name.ends_with("attitude") => Some("body axes to inertial axes"),
             (NumberKind::Real, 3) if self.name.ends_with("_reference") => Some("inertial axes"),
+            (NumberKind::Real, 3)
+                if matches!(self.name.as_str(), "wheel_torque" | "wheel_speed" | "mean") =>
+            {
+                None
+            }
             (NumberKind::Real, 3) => Some("body axes"),
             _ => None,
         }

@@ -16,7 +16,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
          Units are SI.\n{}\n *\n{}\n */\n#ifndef {guard}\n#define {guard}\n\n",
         plan.origin.file,
         env!("CARGO_PKG_VERSION"),
-        left_out(plan),
+        excluded_parts(plan),
         trace(plan)
     );
     text.push_str(translation.includes.trim());
@@ -63,11 +63,11 @@ fn trace(plan: &Plan<'_>) -> String {
 }
 
 /// Returns the lines of a comment that list the parts of the control loop that are not in the code.
-fn left_out(plan: &Plan<'_>) -> String {
-    if plan.left_out.is_empty() {
+fn excluded_parts(plan: &Plan<'_>) -> String {
+    if plan.excluded_parts.is_empty() {
         return " *\n * Every part of the scenario's control loop is in this code.".to_owned();
     }
-    let parts = plan.left_out.iter().map(|part| format!("\n *   {}: {}", part.key, part.duty));
+    let parts = plan.excluded_parts.iter().map(|part| format!("\n *   {}: {}", part.key, part.duty));
     format!(" *\n * Not part of this code; the caller must:{}", parts.collect::<String>())
 }
 

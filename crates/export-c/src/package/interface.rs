@@ -21,8 +21,8 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
         std::iter::once(gyro).chain(others).map(row).collect()
     });
     let order: Vec<String> = main_loop::order(plan).map(|call| format!("{prefix}_{}", call.name)).collect();
-    let left_out: Vec<Value> =
-        plan.left_out.iter().map(|part| json!({ "key": part.key, "caller": part.duty })).collect();
+    let excluded_parts: Vec<Value> =
+        plan.excluded_parts.iter().map(|part| json!({ "key": part.key, "caller": part.duty })).collect();
     let functions: Vec<Value> = plan.calls.iter().map(|call| function(plan, call)).collect();
     let written = json!({
         "name": prefix,
@@ -39,7 +39,7 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
         "period_s": plan.system.period(),
         "order": order,
         "sensors": sensors,
-        "left_out": left_out,
+        "left_out": excluded_parts,
         "functions": functions,
     });
     format!("{written:#}\n")
@@ -59,7 +59,7 @@ fn function(plan: &Plan<'_>, call: &CallLayout) -> Value {
 
 fn channel(channel: &Channel) -> Value {
     let (kind, range) = match channel.kind {
-        NumberKind::Real if channel.is_unit => ("double", Value::from("norm within 1e-3 of 1")),
+        NumberKind::Real if channel.is_unit => ("double", Value::from("norm within 0.001 of 1")),
         NumberKind::Real if channel.largest.is_finite() => {
             ("double", json!([-channel.largest, channel.largest]))
         }

@@ -20,7 +20,7 @@ mod static_files;
 use flexsc_core::Scenario;
 use sha2::{Digest, Sha256};
 
-use crate::control_system::{CallLayout, ControlSystem, LeftOut};
+use crate::control_system::{CallLayout, ControlSystem, ExcludedPart};
 use crate::flight_sources::flight_sources;
 use crate::self_test::self_tests;
 use crate::translate::{TranslationError, translate};
@@ -50,7 +50,7 @@ pub struct Package {
     /// Number of vectors.
     pub vectors: usize,
     /// Parts of the control loop that are not in the code.
-    pub left_out: Vec<LeftOut>,
+    pub excluded_parts: Vec<ExcludedPart>,
 }
 
 /// Reason for which a control system is not exported.
@@ -93,7 +93,7 @@ struct Plan<'a> {
     system: &'a ControlSystem,
     calls: &'a [CallLayout],
     /// Parts of the control loop that are not in the code.
-    left_out: &'a [LeftOut],
+    excluded_parts: &'a [ExcludedPart],
 }
 
 impl Plan<'_> {
@@ -123,11 +123,18 @@ pub fn export(
     let system = ControlSystem::new(scenario).map_err(|error| ExportError::Vectors(error.into()))?;
     let vectors: Vec<CallVector> = vectors::record(scenario, most).map_err(ExportError::Vectors)?;
     let calls = system.calls();
-    let left_out = system.left_out(scenario);
+    let excluded_parts = system.excluded_parts(scenario);
     let effective = scenario.to_toml();
     let digest =
         Sha256::digest(&effective).iter().map(|byte| format!("{byte:02x}")).collect::<Vec<_>>().concat();
-    let plan = Plan { prefix, origin, digest: &digest, system: &system, calls: &calls, left_out: &left_out };
+    let plan = Plan {
+        prefix,
+        origin,
+        digest: &digest,
+        system: &system,
+        calls: &calls,
+        excluded_parts: &excluded_parts,
+    };
     let (functions, state) = match &system {
         ControlSystem::Modes(own) => (modes::functions(&plan, own), modes::state(&plan, own)),
         _ => (calls::functions(&plan), header::state(&plan)),
@@ -154,7 +161,7 @@ pub fn export(
         .extend(static_files::board_files().map(|(path, content)| text(path.to_owned(), content.to_owned())));
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let vectors = vectors.len();
-    Ok(Package { files, calls, vectors, left_out })
+    Ok(Package { files, calls, vectors, excluded_parts })
 }
 
 fn text(path: String, content: String) -> PackageFile {

@@ -45,11 +45,11 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
          The translated functions are part of flexsc, under MIT or Apache-2.0.",
         plan.origin.file, plan.digest
     );
-    if plan.left_out.is_empty() {
+    if plan.excluded_parts.is_empty() {
         text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
     } else {
         text.push_str("\nNot part of this code:\n\n| part of the scenario | the caller must |\n|---|---|\n");
-        for part in plan.left_out {
+        for part in plan.excluded_parts {
             let _ = writeln!(text, "| `{}` | {} |", part.key, part.duty);
         }
     }

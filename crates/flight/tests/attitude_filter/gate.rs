@@ -3,7 +3,7 @@
 use flexsc_flight::attitude_estimator::AttitudeEstimator;
 use flexsc_flight::attitude_filter::AttitudeBiasFilter;
 use flexsc_flight::attitude_gate::AttitudeGate;
-use flexsc_flight::attitude_history::{AttitudeHistoryEntry, DelayedObservation};
+use flexsc_flight::attitude_history::{AttitudeHistory, AttitudeHistoryEntry, DelayedObservation};
 use flexsc_flight::attitude_observation::{AttitudeObservation, ObservationKind};
 use flexsc_flight::matrix3::Matrix3;
 use flexsc_flight::quaternion::Quaternion;
@@ -11,12 +11,13 @@ use flexsc_flight::reading_status::ReadingStatus;
 use flexsc_flight::ticks::Ticks;
 use flexsc_flight::vector3::Vector3;
 
-use crate::forty_digits::{self, NOISE};
+use crate::forty_digits::{self, NOISE, at, first, fix, readings, vector};
 
 const RATE: f64 = 1e-3;
 const GATE: AttitudeGate = AttitudeGate { most_nis: 300.0, ..forty_digits::GATE };
 
-/// Body that turns about x at a constant rate, with a perfect gyro at 10 Hz and a perfect star tracker at 2 Hz, 0.2 s late.
+/// Body that turns about x at a constant rate, with a perfect gyro at 10 Hz and a perfect star tracker at 2 Hz, 0.2 s late. A
+/// coarse Sun sensor may follow each attitude.
 struct Flight {
     estimator: AttitudeEstimator,
     entries: [AttitudeHistoryEntry; 40],
@@ -25,6 +26,7 @@ struct Flight {
     k: u32,
     /// Difference of the clock from the true time (s).
     clock: f64,
+    has_sun: bool,
     statuses: Vec<ReadingStatus>,
 }
 
@@ -44,6 +46,7 @@ impl Flight {
             observations: [DelayedObservation::NONE; 8],
             k: 0,
             clock: at,
+            has_sun: false,
             statuses: Vec::new(),
         }
     }
@@ -84,6 +87,18 @@ impl Flight {
             };
             second = estimator.take_observation(now, late, &observation, entries, observations);
             self.statuses.push(second);
+            if self.has_sun {
+                // Along the axis of the rotation it stays where it is.
+                let sun = AttitudeObservation {
+                    kind: ObservationKind::Direction,
+                    vector: Vector3::new(1.0, 0.0, 0.0),
+                    inertial: Vector3::new(1.0, 0.0, 0.0),
+                    noise: Matrix3 { rows: [[4e-4, 0.0, 0.0], [0.0, 4e-4, 0.0], [0.0, 0.0, 4e-4]] },
+                    ..AttitudeObservation::NONE
+                };
+                let third = estimator.take_observation(now, Ticks::default(), &sun, entries, observations);
+                assert_eq!(third, ReadingStatus::Accepted, "{}", self.k);
+            }
         }
         [first, second]
     }
@@ -136,6 +151,37 @@ fn a_false_reading_leaves_no_trace() {
 }
 
 #[test]
+fn a_refused_measurement_does_not_hide_the_correction_before_it() {
+    let read = readings();
+    let mut entries = [AttitudeHistoryEntry::NONE; 8];
+    let mut observations = [DelayedObservation::NONE; 4];
+    let mut history = AttitudeHistory::start(at(0), first(), NOISE, at(8), GATE, &mut entries);
+    let sound = fix(&read, 4);
+    let mut wrong = sound;
+    let turn = Quaternion::rotation(&Vector3::new(2.1, 0.0, 0.0));
+    wrong.observation.attitude = sound.observation.attitude.times(&turn);
+    for waiting in [sound, wrong] {
+        let result = history.add_observation(waiting, &mut entries, &mut observations);
+        assert_eq!(result.status, ReadingStatus::Waiting);
+    }
+    let corrections: Vec<ReadingStatus> = (1..5)
+        .map(|k| history.add_gyro(at(k), vector(&read[k][2..5]), &mut entries, &mut observations).status)
+        .collect();
+    assert_eq!((corrections[3], history.applied, history.refused), (ReadingStatus::Accepted, 1, 1));
+}
+
+#[test]
+fn a_vector_of_zeros_is_refused() {
+    let zeros = AttitudeObservation {
+        kind: ObservationKind::Vector,
+        inertial: Vector3::new(2e-5, 0.0, 3e-5),
+        ..AttitudeObservation::NONE
+    };
+    assert!(!zeros.is_sound());
+    assert!(AttitudeObservation { vector: Vector3::new(3e-5, 0.0, 2e-5), ..zeros }.is_sound());
+}
+
+#[test]
 fn an_attitude_that_stays_improbable_is_accepted() {
     use ReadingStatus::{Accepted, Improbable, Reaccepted};
     let mut flight = Flight::start(0.0);
@@ -154,6 +200,21 @@ fn an_attitude_that_stays_improbable_is_accepted() {
     flight.statuses.clear();
     flight.run(20);
     assert_eq!(flight.statuses[..2], [Reaccepted, Accepted]);
+    assert!(flight.error() < 1e-6, "{:e}", flight.error());
+}
+
+#[test]
+fn a_coarse_sensor_does_not_keep_a_precise_one_refused() {
+    use ReadingStatus::{Accepted, Improbable, Reaccepted};
+    let mut flight = Flight::start(0.0);
+    flight.has_sun = true;
+    flight.run(100);
+    // 0.05 rad are 2.5 standard deviations of the Sun sensor, and 2000 of the star tracker.
+    flight.cycle(|rate| rate.y = 0.5, |_| ());
+    flight.statuses.clear();
+    flight.run(30);
+    assert_eq!(flight.statuses[..4], [Improbable, Improbable, Reaccepted, Accepted]);
+    flight.run(600);
     assert!(flight.error() < 1e-6, "{:e}", flight.error());
 }
 

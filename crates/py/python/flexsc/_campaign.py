@@ -8,7 +8,6 @@ from operator import index
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
-from flexsc._analysis import analysis
 from flexsc._design import Noise, Points, Sample, design
 from flexsc._missing import reading
 from flexsc._named import no_such
@@ -41,7 +40,7 @@ def campaign(
     force: bool = False,
     progress: Progress = None,
     at: npt.ArrayLike | None = None,
-    topics: Sequence[str] | None = None,
+    topics: str | Sequence[str] | None = None,
 ) -> Table:
     """Simulate many runs of a scenario, with new noise and newly drawn `[uncertain]` keys for each.
 
@@ -75,8 +74,8 @@ def campaign(
         force: Replace another campaign in `out`, one with more runs, a file, and logs of other runs.
         progress: True to print a line with the finished runs and the remaining time to standard error, or a
             function that is called after each task with the number of finished runs and the total number.
-        at: Times (s) at which the exact motion of each run is kept, as `Table.samples`, in the same run. It
-            stays in memory: without `out`, `executor` and `progress`.
+        at: Times (s), of shape (times,) and in any order, at which the exact motion of each run is kept, as
+            `Table.samples`, in the same run. It stays in memory: without `out`, `executor` and `progress`.
         topics: The topics of the motion that are kept, such as `["pointing"]`; if omitted, all.
 
     Raises:
@@ -84,7 +83,8 @@ def campaign(
         SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
         ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign,
             more runs of this one or a log of another run, or is a file that exists, `log` has no directory,
-            or parts written in Python cannot be pickled.
+            parts written in Python cannot be pickled, or the motion at `at` has more than 200 000 000 values.
+        KeyError: The scenario has no topic of `topics`.
         OSError: `out` cannot be written, or another process is using it.
 
     >>> import flexsc
@@ -256,7 +256,7 @@ class _Study(NamedTuple):
         force: bool,
         progress: Progress,
         at: npt.ArrayLike | None = None,
-        topics: Sequence[str] | None = None,
+        topics: str | Sequence[str] | None = None,
     ) -> Table:
         """Simulate the runs: on threads here, on an executor, or into a directory."""
         if not task_s > 0.0:
@@ -303,18 +303,30 @@ def _sampled(
     work: engine.Work,
     threads: int,
     at: npt.ArrayLike,
-    topics: Sequence[str] | None,
+    topics: str | Sequence[str] | None,
 ) -> Table:
     """Simulate runs on threads here, with their motion at some times."""
     from flexsc._ensemble import Ensemble
     from flexsc._sample_times import SampleTimes
 
+    if "duration" in scenario.to_dict().get("uncertain", {}):
+        raise ValueError("at needs runs of the same duration, and `uncertain` draws it for each run")
     times = SampleTimes(at, scenario.duration)
-    names = None if topics is None else [name.removeprefix("/") for name in topics]
+    chosen = [topics] if isinstance(topics, str) else topics
+    names = None if chosen is None else [name.removeprefix("/") for name in chosen]
+    sizes = work.sample_sizes()
+    for name in names or ():
+        if sizes and name not in sizes:
+            raise no_such("no topic", name, sizes)
+    first, end = work.runs
+    # A run has all topics while it is simulated.
+    times.check_size(sizes, min(end - first, threads or os.cpu_count() or 1))
+    kept = sizes if names is None else {name: sizes.get(name, 0) for name in names}
+    times.check_size(kept, end - first)
     columns, summaries, seen = work.make_at(work.runs, threads, times.grown, names)
     for name in names or ():
         if seen and name not in seen[0][1]:
-            raise no_such("no topic", name, analysis("topics"))
+            raise no_such("no topic", name, seen[0][1])
     table = _checked(Table(work, columns.__getitem__, lambda: summaries))
     table.samples = Ensemble(scenario, table["run"], times, seen)
     return table

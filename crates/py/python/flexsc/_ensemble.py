@@ -87,7 +87,7 @@ class _FlatTopic(Topic):
 class Ensemble(Topics):
     """The motion of all runs of a campaign at the same times: topics of columns of shape (runs, times).
 
-    A run that failed has NaN.
+    A run that failed has NaN, and empty texts.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 60.0)
@@ -126,6 +126,11 @@ class Ensemble(Topics):
         }
         read_only([self.runs, self.times])
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        # A pickle does not keep that they are.
+        read_only([self.runs, self.times])
+
     def _stacked(
         self, topic: str, columns: dict[str, npt.NDArray[Any]], found: dict[int, Any]
     ) -> dict[str, npt.NDArray[Any]]:
@@ -157,6 +162,7 @@ class Ensemble(Topics):
             )
             for name, topic in self._topics.items()
         }
+        read_only([taken.runs])
         return taken
 
     @property
@@ -177,7 +183,7 @@ class Ensemble(Topics):
 
 
 def _missing(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return as many values that stand for no value."""
-    if values.dtype.kind == "f":
-        return np.full_like(values, np.nan)
+    """Return an array of the same shape that stands for no values: NaN for numbers and counts."""
+    if values.dtype.kind in "fiu":
+        return np.full(values.shape, np.nan)
     return np.zeros_like(values)

@@ -47,6 +47,11 @@ def without(
     values = scenario.to_dict()
     for key, value in changes.items():
         *above, last = steps(key)
+        for place, step in enumerate(above):
+            # A table that is missing is created, as `with_` does.
+            table = value_at(values, above[:place])
+            if isinstance(table, dict) and isinstance(step, str):
+                table.setdefault(step, {})
         value_at(values, above)[last] = value
     tables: dict[str, list[str | int]] = {}
     # From the last element of an array to the first, so that the others keep their positions.

@@ -72,6 +72,7 @@ __all__ = [
     "parts_of",
     "persistence",
     "plan_torque",
+    "sample_sizes",
     "sampled",
     "simulate",
     "table_ending",
@@ -1191,15 +1192,15 @@ class Load:
         after: float | None = None,
     ) -> Load: ...
     @property
-    def torque(self) -> list[list[float]]:
-        """Torque at each point (N m).
+    def torque(self) -> list[list[float]] | None:
+        """Torque at each point (N m), of shape (points, 3), if it is given.
 
         >>> flexsc.Load([0.01, 0.0, 0.0]).torque
         [[0.01, 0.0, 0.0]]
         """
     @property
-    def force(self) -> list[list[float]]:
-        """Force at each point (N).
+    def force(self) -> list[list[float]] | None:
+        """Force at each point (N), of shape (points, 3), if it is given.
 
         >>> flexsc.Load(force=[[0.0, 0.0, 0.1], [0.0, 0.0, -0.1]]).force
         [[0.0, 0.0, 0.1], [0.0, 0.0, -0.1]]
@@ -1366,6 +1367,7 @@ class Work:
     def run(self, number: int) -> tuple[Scenario, int]: ...
     def missing(self, files: list[str]) -> list[tuple[int, int]]: ...
     def make(self, runs: tuple[int, int], jobs: int) -> tuple[dict[str, Any], list[_Summary]]: ...
+    def sample_sizes(self) -> dict[str, int]: ...
     def make_at(
         self, runs: tuple[int, int], jobs: int, times: list[float], topics: list[str] | None
     ) -> tuple[dict[str, Any], list[_Summary], list[tuple[int, dict[str, dict[str, _Column]]]]]: ...
@@ -1549,6 +1551,7 @@ def log_figure(log: Log, name: str, scenario: Scenario | None) -> Figure: ...
 def log_figures(log: Log, scenario: Scenario | None) -> list[str]: ...
 def log_of(scenario: Scenario, run: int, log: str, stepped: Commands | None) -> Log: ...
 def modes_figure(scenario: Scenario) -> Figure | None: ...
+def sample_sizes(scenario: Scenario, run: int) -> dict[str, int]: ...
 def simulate(
     scenario: Scenario, run: int, log: str, yes: bool, stepped: Commands | None, at: list[float] | None
 ) -> tuple[

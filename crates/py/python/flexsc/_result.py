@@ -202,12 +202,12 @@ class Result(Topics, Exportable, Drawable):
         stepped: engine.Commands | None = None,
         until: float = inf,
         answer: Answer | None = None,
+        sampled: tuple[SampleTimes, dict[str, dict[str, Any]]] | None = None,
     ) -> None:
         self.scenario = scenario
         self.run = run
         self._answer = answer
         self.metrics = Metrics(metrics, scenario)
-        read_only(value for value in metrics.values() if hasattr(value, "flags"))
         self._log = log
         self._topics = self._named(topics)
         self._took = took
@@ -215,11 +215,11 @@ class Result(Topics, Exportable, Drawable):
         self._until = min(until, scenario.duration)
         self._drawn: engine.Log | None = None
         self._motion: engine.MotionSampler | None = None
-        self.samples = None
+        self.samples = None if sampled is None else self._sampled(*sampled)
 
     def __setattr__(self, name: str, value: object) -> None:
         # What a result says of its run stays as it is.
-        if not name.startswith("_") and self.__dict__.get(name) is not None:
+        if not name.startswith("_") and name in self.__dict__:
             raise AttributeError(f"cannot assign to {name!r}: results are read-only")
         object.__setattr__(self, name, value)
 

@@ -7,6 +7,9 @@ from typing import Any
 from flexsc._numpy import np, npt
 from flexsc._values import arrays
 
+_MOST_VALUES = 200_000_000
+"""Largest number of values that the samples of a call keep in memory."""
+
 
 class SampleTimes:
     """Times (s) in the order in which they were asked, and as a run passes them.
@@ -27,6 +30,20 @@ class SampleTimes:
         self.grown: list[float] = self.asked[order].tolist()
         # The times of most calls grow.
         self._back = None if (order[1:] > order[:-1]).all() else np.argsort(order, kind="stable")
+
+    def check_size(self, sizes: dict[str, int], runs: int = 1) -> None:
+        """Check that the samples of runs fit in memory, from the number of values in each by topic.
+
+        Raises:
+            ValueError: There are more than 200 000 000 values.
+        """
+        each, times = sum(sizes.values()), len(self.asked)
+        count = runs * times * each
+        if count > _MOST_VALUES:
+            raise ValueError(
+                f"at must keep at most {_MOST_VALUES} values in memory, got {count} (runs: {runs}, "
+                f"times: {times}, values of a run at a time: {each}): give fewer times, runs or topics"
+            )
 
     def rows(self, topics: dict[str, dict[str, Any]]) -> dict[str, dict[str, npt.NDArray[Any]]]:
         """Return the columns of topics with a row for each time, in the order in which they were asked."""

@@ -174,7 +174,8 @@ class Scenario:
 
     @property
     def remarks(self) -> list[str]:
-        """Remarks on values that are accepted and probably not meant, such as a damping ratio above 1.
+        """Remarks on values that are accepted and probably not meant, such as a damping ratio above 1, and on
+        own disturbances, which linear analyses leave out.
 
         The command prints them as notes before a run.
 
@@ -532,7 +533,8 @@ class Scenario:
                 each period of the scenario's log and at every switching. `none` records the metrics only.
                 `scene` has the columns of `full`; a file written from it also has the scene for viewers.
             yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
-            at: Times (s) at which the exact motion is kept as `samples`, in the same run.
+            at: Times (s), of shape (times,) and in any order, at which the exact motion is kept as `samples`,
+                in the same run.
 
         >>> import flexsc
         >>> run = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0).simulate(log="full")
@@ -541,13 +543,16 @@ class Scenario:
 
         Raises:
             SimulationError: The state is no longer finite, or the law switches without end.
-            ValueError: The estimate exceeds these limits, and `yes` is not given.
+            ValueError: The estimate exceeds these limits, and `yes` is not given, a time is not within the
+                run, or the motion at `at` has more than 200 000 000 values.
         """
         if at is None:
             return self._simulate(run_number(run), log, yes)
         from flexsc._sample_times import SampleTimes
 
-        return self._simulate(run_number(run), log, yes, times=SampleTimes(at, self.duration))
+        times = SampleTimes(at, self.duration)
+        times.check_size(engine.sample_sizes(self._native, run_number(run)))
+        return self._simulate(run_number(run), log, yes, times=times)
 
     def linearise(
         self,
@@ -890,10 +895,8 @@ class Scenario:
         metrics, topics, answer, seen = engine.simulate(self._native, run, log, yes, stepped, at)
         took = time.perf_counter() - began
         final = {name: arrays(columns) for name, columns in topics.items()}
-        result = Result(self, run, log, metrics, final, took, stepped, until, Answer(answer))
-        if times is not None and seen is not None:
-            result.samples = result._sampled(times, seen)
-        return result
+        sampled = None if times is None or seen is None else (times, seen)
+        return Result(self, run, log, metrics, final, took, stepped, until, Answer(answer), sampled)
 
     def __reduce__(self) -> tuple[Any, ...]:
         parts = engine.parts_of(self._native)

@@ -112,6 +112,8 @@ class Table(Columns, Drawable):
 
         Raises:
             KeyError: There is no such column.
+            TypeError: It is neither a name nor a slice, a mask or positions.
+            IndexError: There is no such row, or a mask has another length.
         """
         if not isinstance(column, str):
             return self._taken(column)
@@ -130,12 +132,13 @@ class Table(Columns, Drawable):
 
     def _taken(self, places: slice | Sequence[int] | npt.NDArray[Any]) -> Table:
         """Return a table of the rows at some places."""
-        chosen = places if isinstance(places, slice) else np.asarray(places)
-        if not isinstance(chosen, slice) and chosen.dtype.kind not in "biu":
+        chosen = np.arange(self.rows)[places] if isinstance(places, slice) else np.asarray(places)
+        if chosen.ndim != 1 or (chosen.size and chosen.dtype.kind not in "biu"):
             raise TypeError(
                 f"a table takes the name of a column, a slice, a mask or positions, got {places!r}"
             )
-        at = np.arange(self.rows)[chosen]
+        # An empty list has no integers.
+        at = np.arange(self.rows)[chosen if chosen.size else slice(0)]
         work = self._recreated_work() if not self.scenario.parts else self._campaign()
         columns = {name: values[at] for name, values in self.items()}
 
@@ -149,7 +152,8 @@ class Table(Columns, Drawable):
         return taken
 
     def sorted(self, column: str, *, descending: bool = False) -> Table:
-        """Return a table with its rows in the order of a column; rows without a value come last.
+        """Return a table with its rows in the order of a column; rows without a value come last, and equal
+        ones keep their order.
 
         >>> import flexsc
         >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
@@ -161,10 +165,12 @@ class Table(Columns, Drawable):
             KeyError: There is no such column.
         """
         values = self[column]
-        if descending and values.dtype.kind in "iuf":
+        if descending and values.dtype.kind == "f":
             return self[np.argsort(-values, kind="stable")]
-        order = np.argsort(values, kind="stable")
-        return self[order[::-1] if descending else order]
+        if descending:
+            # The rows from the last one on, sorted and turned round, keep the order of equal ones.
+            return self[len(values) - 1 - np.argsort(values[::-1], kind="stable")[::-1]]
+        return self[np.argsort(values, kind="stable")]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

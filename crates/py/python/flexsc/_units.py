@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc._analysis import analysis
+from flexsc._columns import read_only
 from flexsc._equality import equal
 from flexsc._named import no_such
 
@@ -133,6 +134,7 @@ class Metrics(dict[str, Any]):
 
     def __init__(self, values: dict[str, Any], scenario: Scenario) -> None:
         super().__init__(values)
+        read_only(value for value in values.values() if hasattr(value, "flags"))
         self._scenario = scenario
         self._meanings: dict[str, dict[str, str]] | None = None
 

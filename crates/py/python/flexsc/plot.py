@@ -172,7 +172,7 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
 
 
 def at_a_glance(source: Source, name: str | None) -> str:
-    """Return the name of a figure, or if there is none that of the figure that shows it at a glance."""
+    """Return the name of a figure; None stands for the figure that shows the source at a glance."""
     if name is not None:
         return name
     there = figures(source)
@@ -215,7 +215,7 @@ def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> di
 
 
 def drawn(source: Source, name: str) -> engine.Figure:
-    """Return a figure of the engine."""
+    """Return the figure of this name as the engine draws it."""
     log = _log(source)
     if log is not None:
         try:

@@ -1767,7 +1767,7 @@ class Gain(Part, kw_only=False):
 
 class Gate(Part):
     """Limits within which an attitude filter accepts readings. It always refuses those that are not finite,
-    and quaternions and directions whose length differs from 1 by more than 1e-3.
+    and quaternions and directions whose length differs from 1 by more than 0.001.
 
     Args:
         deviations: Largest innovation in standard deviations, the root of its normalised square over the

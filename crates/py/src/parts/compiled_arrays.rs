@@ -1,5 +1,7 @@
 //! Compiled parts about three axes: functions with arrays of numbers, called by their address.
 
+use std::sync::OnceLock;
+
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::disturbance::{DisturbanceRun, DisturbanceSpec, PointLoad};
 use flexsc_core::control::guidance::{GuidanceRun, GuidanceSpec};
@@ -21,7 +23,7 @@ use nalgebra::Quaternion;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::disturbance::points_and_period;
+use super::disturbance::{no_next_call, points_and_period};
 use super::hold::{PHASES, never};
 use super::law::positive;
 
@@ -83,9 +85,10 @@ fn next(now: Instant, after: f64, period: Option<Span>) -> Option<Instant> {
     after.map(|after| now + after)
 }
 
-/// Returns true if a time (s) to the next call is left out, or in the future.
+/// Returns true if a time (s) to the next call is left out, or is at least half a femtosecond: a shorter one would be a call at
+/// the same instant, without end.
 fn is_time(after: f64) -> bool {
-    after.is_nan() || after > 0.0 && after.is_finite()
+    after.is_nan() || after.is_finite() && Span::from_seconds(after) > Span::ZERO
 }
 
 /// A law about three axes as a scenario has it.
@@ -279,15 +282,18 @@ impl DisturbanceRun for Acting {
         self.compiled.call(now, &input, &mut self.output);
         let Some((&after, values)) = self.output.split_last() else { return };
         let is_pushed = self.axes == 1 && values[1..].iter().any(|value| *value != 0.0);
-        self.due = next(now, after, self.period).filter(|_| is_time(after));
-        if self.due.is_none() || is_pushed || values.iter().any(|value| !value.is_finite()) {
+        self.due = None;
+        if !is_time(after) || is_pushed || values.iter().any(|value| !value.is_finite()) {
             let why = format!(
                 "a compiled disturbance gave {values:?} and a time of {after} s{}",
                 if is_pushed { ", and a body with one angle has a torque alone" } else { "" }
             );
             self.compiled.halt(why);
-            self.due = None;
             return;
+        }
+        self.due = next(now, after, self.period);
+        if self.due.is_none() {
+            self.compiled.halted = Some(PartError::new(no_next_call()));
         }
         for (load, numbers) in loads.iter_mut().zip(values.chunks_exact(6)) {
             load.torque.copy_from_slice(&numbers[..3]);
@@ -305,13 +311,13 @@ impl DisturbanceRun for Acting {
 pub struct CompiledGuidance {
     function: Function,
     states: Vec<f64>,
-    halted: std::sync::OnceLock<PartError>,
+    halted: OnceLock<PartError>,
 }
 
 impl CompiledGuidance {
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let Compiled { function, states, .. } = Compiled::from_python(part, "guidance")?;
-        Ok(Self { function, states, halted: std::sync::OnceLock::new() })
+        Ok(Self { function, states, halted: OnceLock::new() })
     }
 }
 
@@ -336,7 +342,9 @@ impl GuidanceRun for CompiledGuidance {
         let attitude = Quaternion::new(w, x, y, z);
         let is_unit = (attitude.norm() - 1.0).abs() < 1e-6;
         if !is_unit || rates.iter().any(|value| !value.is_finite()) {
-            let why = format!("a compiled guidance gave {aim:?}: a unit quaternion, rates and accelerations");
+            let why = format!(
+                "a compiled guidance gave {aim:?}, and must give a unit quaternion, a rate and an acceleration"
+            );
             self.halted.get_or_init(|| PartError::new(PyRuntimeError::new_err(why)));
             return AttitudeMotion::at_rest(Quaternion::identity());
         }

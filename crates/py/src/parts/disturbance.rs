@@ -28,8 +28,8 @@ use super::signals::Signals;
 #[pyclass(frozen, eq, module = "flexsc._native")]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    torque: Vec<Vec<f64>>,
-    force: Vec<Vec<f64>>,
+    torque: Option<Vec<Vec<f64>>>,
+    force: Option<Vec<Vec<f64>>>,
     after: Option<Span>,
 }
 
@@ -61,22 +61,21 @@ impl Load {
         force: Option<&Bound<'_, PyAny>>,
         after: Option<f64>,
     ) -> PyResult<Self> {
-        let each = |values: Option<&Bound<'_, PyAny>>, name| {
-            values.map_or_else(|| Ok(Vec::new()), |values| rows(values, name))
-        };
+        let each =
+            |values: Option<&Bound<'_, PyAny>>, name| values.map(|values| rows(values, name)).transpose();
         let after = after.map(|after| positive(after, "after")).transpose()?;
         Ok(Self { torque: each(torque, "torque")?, force: each(force, "force")?, after })
     }
 
-    /// Torque at each point (N m).
+    /// Torque at each point (N m), of shape (points, 3), if it is given.
     #[getter]
-    fn torque(&self) -> Vec<Vec<f64>> {
+    fn torque(&self) -> Option<Vec<Vec<f64>>> {
         self.torque.clone()
     }
 
-    /// Force at each point (N).
+    /// Force at each point (N), of shape (points, 3), if it is given.
     #[getter]
-    fn force(&self) -> Vec<Vec<f64>> {
+    fn force(&self) -> Option<Vec<Vec<f64>>> {
         self.force.clone()
     }
 
@@ -96,8 +95,8 @@ impl Load {
     fn write(&self, axes: usize, loads: &mut [PointLoad]) -> PyResult<()> {
         let points = loads.len();
         for (name, rows, width) in [("torque", &self.torque, axes), ("force", &self.force, 3)] {
-            let fits = rows.len() == points && rows.iter().all(|row| row.len() == width);
-            if !rows.is_empty() && !fits {
+            let Some(rows) = rows else { continue };
+            if rows.len() != points || rows.iter().any(|row| row.len() != width) {
                 let found = match &rows[..] {
                     [row] => format!("({},)", row.len()),
                     _ => format!("({}, {})", rows.len(), rows[0].len()),
@@ -108,20 +107,27 @@ impl Load {
                 )));
             }
         }
-        if axes == 1 && !self.force.is_empty() {
+        if axes == 1 && self.force.is_some() {
             return Err(PyValueError::new_err(
                 "disturbance: a force acts on a body with three axes: use a torque for a body with one angle",
             ));
         }
         loads.fill(PointLoad::default());
-        for (load, row) in loads.iter_mut().zip(&self.torque) {
+        for (load, row) in loads.iter_mut().zip(self.torque.iter().flatten()) {
             load.torque[..axes].copy_from_slice(row);
         }
-        for (load, row) in loads.iter_mut().zip(&self.force) {
+        for (load, row) in loads.iter_mut().zip(self.force.iter().flatten()) {
             load.force.copy_from_slice(row);
         }
         Ok(())
     }
+}
+
+/// Returns the error of a disturbance that would never be called again.
+pub fn no_next_call() -> PyErr {
+    PyValueError::new_err(
+        "a disturbance without a period must give the time of its next call: flexsc.Load(..., after=1.0)",
+    )
 }
 
 /// A disturbance as a scenario has it.
@@ -211,14 +217,10 @@ impl DisturbanceRun for Acting {
                             "disturbance: act must return a torque or a flexsc.Load, got {found}"
                         ))
                     })?;
-                    Load { torque, force: Vec::new(), after: None }
+                    Load { torque: Some(torque), force: None, after: None }
                 };
                 load.write(*axes, loads)?;
-                load.after.or(*period).ok_or_else(|| {
-                    PyValueError::new_err(
-                        "a disturbance without a period must give the time of its next call: flexsc.Load(..., after=1.0)",
-                    )
-                })
+                load.after.or(*period).ok_or_else(no_next_call)
             })
         });
         self.due = after.map(|after| now + after);

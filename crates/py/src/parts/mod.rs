@@ -114,11 +114,10 @@ fn placed(role: &str, place: &str) -> String {
 
 /// Returns the engine's law of a Python object: compiled, about three axes together, or about each axis.
 fn law(part: &Bound<'_, PyAny>, role: &str) -> PyResult<CustomLaw> {
-    if part.hasattr("address")? {
-        if is_of(part, "ThreeAxisLaw")? {
-            let law = compiled_arrays::CompiledThreeAxisLaw::from_python(part)?;
-            return Ok(custom(Arc::new(law), None, part));
-        }
+    if is_of(part, "CompiledThreeAxisLaw")? {
+        return Ok(custom(Arc::new(compiled_arrays::CompiledThreeAxisLaw::from_python(part)?), None, part));
+    }
+    if is_of(part, "CompiledLaw")? {
         return Ok(custom(Arc::new(compiled::CompiledLaw::from_python(part)?), None, part));
     }
     if is_of(part, "ThreeAxisLaw")? {
@@ -140,7 +139,7 @@ fn actuator(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn Actuato
 
 /// Returns the engine's disturbance of a Python object at a place in a list.
 fn disturbance(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn DisturbanceSpec>> {
-    if part.hasattr("address")? {
+    if is_of(part, "CompiledDisturbance")? {
         let disturbance = compiled_arrays::CompiledDisturbance::from_python(part)?;
         return Ok(custom(Arc::new(disturbance), None, part));
     }
@@ -152,7 +151,7 @@ fn disturbance(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn Dist
 
 /// Returns the engine's guidance of a Python object, for a mode of operation or for the whole run.
 fn guidance(part: &Bound<'_, PyAny>, mode: &str) -> PyResult<Custom<dyn GuidanceSpec>> {
-    if part.hasattr("address")? {
+    if is_of(part, "CompiledGuidance")? {
         return Ok(custom(Arc::new(compiled_arrays::CompiledGuidance::from_python(part)?), None, part));
     }
     let role = if mode.is_empty() { "guidance".to_owned() } else { mode_role("guidance", mode) };

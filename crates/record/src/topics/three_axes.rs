@@ -77,7 +77,7 @@ rows! {
         sensor: u64,
         /// Outcome of the reading.
         outcome: ReadingOutcome,
-        /// Normalised innovation squared, over its dimension, 3; NaN of a gyro.
+        /// Normalised innovation squared, over its dimension, 3; NaN of a gyro, and of an unsound or untimely reading.
         nis: f64,
     }
     /// Readings that an attitude filter has refused at a sample, or accepted after refusals.

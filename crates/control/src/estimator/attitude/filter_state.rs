@@ -87,10 +87,10 @@ impl AttitudeFilterRun {
                 let exposed =
                     Instant::from_ticks(gyro_exposure(now.ticks(), latency.ticks(), Instant::START.ticks()));
                 let status = history.judge_gyro(exposed, rate.into());
-                self.refusals.extend(refusal(sensor, status, f64::NAN));
+                self.refusals.extend(refusal(sensor, &Correction::unused(status)));
                 if !status.is_refusal() {
                     self.rate = rate.into();
-                    last = history.add_gyro(exposed, self.rate).filter(corrects).or(last);
+                    last = history.add_gyro(exposed, self.rate).or(last);
                     self.since = exposed;
                 }
             }
@@ -114,9 +114,8 @@ impl AttitudeFilterRun {
             let gain = gain.as_deref().copied();
             let measurement = DelayedMeasurement { exposed, measured, noise: *noise, gain, sensor };
             let result = history.add_measurement(&measurement);
-            let of = result.unwrap_or(Correction::NONE);
-            self.refusals.extend(refusal(sensor, of.status, of.nis / AttitudeEstimate::MEASUREMENTS));
-            last = result.filter(corrects).or(last);
+            self.refusals.extend(result.and_then(|result| refusal(sensor, &result)));
+            last = result.filter(|result| result.status.has_corrected()).or(last);
         }
         self.used = last.is_some();
         self.last_correction = last.unwrap_or(Correction::NONE);
@@ -151,20 +150,17 @@ impl AttitudeFilterRun {
     }
 }
 
-/// Returns true if a measurement corrected the filter.
-fn corrects(correction: &Correction) -> bool {
-    correction.status.has_corrected()
-}
-
-/// Returns the log row of a reading that was refused, or accepted after refusals; `None` of other readings.
-fn refusal(sensor: usize, status: ReadingStatus, nis: f64) -> Option<RefusedReading> {
-    let outcome = match status {
+/// Returns the log row of a reading with this result that was refused, or accepted after refusals; `None` of other readings.
+fn refusal(sensor: usize, result: &Correction) -> Option<RefusedReading> {
+    let outcome = match result.status {
         ReadingStatus::Unsound => ReadingOutcome::Unsound,
         ReadingStatus::Improbable => ReadingOutcome::Improbable,
         ReadingStatus::Untimely => ReadingOutcome::Untimely,
         ReadingStatus::Reaccepted => ReadingOutcome::Reaccepted,
         ReadingStatus::None | ReadingStatus::Accepted | ReadingStatus::Waiting => return None,
     };
+    // A reading that was refused before it was compared with the filter has no components.
+    let nis = if result.components == 0 { f64::NAN } else { result.nis / AttitudeEstimate::MEASUREMENTS };
     Some(RefusedReading { sensor: sensor as u64, outcome, nis })
 }
 

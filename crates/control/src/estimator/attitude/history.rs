@@ -154,8 +154,8 @@ impl FilterHistory {
         }
     }
 
-    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the result of the last measurement that
-    /// waited for it.
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the last correction by measurements
+    /// that waited for it.
     pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Option<Correction> {
         match self {
             Self::Rigid(history) => {
@@ -167,7 +167,8 @@ impl FilterHistory {
         }
     }
 
-    /// Adds a measurement, delayed or not; returns `None` if it waits for a gyro reading.
+    /// Adds a measurement, delayed or not. Returns its result; `None` while it waits for a gyro reading, and with elastic modes also
+    /// if it is older than the history.
     pub fn add_measurement(&mut self, measurement: &DelayedMeasurement) -> Option<Correction> {
         match self {
             Self::Rigid(history) => {

@@ -97,7 +97,7 @@ impl Default for AttitudeInitialDeviations {
 }
 
 /// Limits within which an attitude filter accepts readings. It always refuses those that are not finite, and quaternions and
-/// directions whose length differs from 1 by more than 1e-3.
+/// directions whose length differs from 1 by more than 0.001.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Gate")]
@@ -137,7 +137,7 @@ impl ReadingGate {
         let largest = (0..3).map(range).fold(0.0, f64::max);
         let deviations = self.deviations.get();
         AttitudeGate {
-            most_nis: AttitudeEstimate::MEASUREMENTS * deviations * deviations,
+            most_nis: (AttitudeEstimate::MEASUREMENTS * deviations * deviations).min(f64::MAX),
             most_refusals: self.refusals,
             gap: Span::from_seconds(self.gap.get()).ticks(),
             most_rate: self.rate.map_or(largest, Positive::get),

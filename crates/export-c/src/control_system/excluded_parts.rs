@@ -7,7 +7,7 @@ use super::ControlSystem;
 
 /// Part of the loop that is not in the code.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LeftOut {
+pub struct ExcludedPart {
     /// Key of the part in the scenario.
     pub key: String,
     /// Task of the caller in its place.
@@ -52,10 +52,10 @@ impl Included {
 
 impl ControlSystem {
     /// Returns the parts of the scenario's control loop that are not in the code.
-    pub fn left_out(&self, scenario: &Scenario) -> Vec<LeftOut> {
+    pub fn excluded_parts(&self, scenario: &Scenario) -> Vec<ExcludedPart> {
         let included = Included::new(self);
         let mut parts = Vec::new();
-        let mut add = |key: String, duty: &str| parts.push(LeftOut { key, duty: duty.to_owned() });
+        let mut add = |key: String, duty: &str| parts.push(ExcludedPart { key, duty: duty.to_owned() });
         if let Some(estimator) = &scenario.estimator {
             let is_read = !estimator.offers().is_assessed_only;
             if is_read && !included.has_estimator {
