@@ -48,13 +48,21 @@ duration = 2.2
 [spacecraft]
 mass = 100.0
 inertia = [[70.0, 0, 0], [0, 50.0, 0], [0, 0, 60.0]]
+attitude_error = [0, 0, 5e-4]
+rate = [0, 0, -1e-4]
 points = [{ name = "hub" }]
+
+# It does next to nothing, but begins a segment.
+[[disturbance]]
+torque = 1e-15
+about = "roll"
+from = 0.2
 
 [[appendage]]
 name = "panel"
 mass = 10.0
 inertia = [[30.0, 0, 0], [0, 5.0, 0], [0, 0, 30.0]]
-modes = [{ frequency = 1.2, damping = 0.005, rotation = [5.0, 0, 0], rate = 0.03 }]
+modes = [{ frequency = 1.2, damping = 0.005, rotation = [5.0, 0, 0], rate = 0.01 }]
 
 [sensor.sampled]
 period = 10.0
@@ -181,21 +189,22 @@ fn a_turn_about_three_axes_is_followed_exactly() {
 
 #[test]
 fn the_crest_of_a_vibration_counts_between_the_ends_of_a_segment() {
-    let text = holding(RING, &["holds = \"always pointing_error < 6e-4\""]);
+    let text = holding(RING, &["holds = \"always pointing_error < 5.1e-4\""]);
     let found = metrics(&text, None);
-    // J angle + r q = 0 of the hub with the panel's mode, and 1 - r²/J of its modal mass remains.
-    let (inertia, coupling, rate) = (100.0, 5.0, 0.03);
+    // J angle + r q = 0 of the hub with the panel's mode, and 1 - r²/J of its modal mass remains. About yaw the body turns steadily.
+    let (inertia, coupling, rate) = (100.0, 5.0, 0.01);
     let free = f64::sqrt(1.0 - coupling * coupling / inertia);
     let (frequency, damping): (f64, f64) = (1.2 / free, 0.005 / free);
     let root = f64::sqrt(1.0 - damping * damping);
-    let angle = |t: f64| {
+    let error = |t: f64| {
         let decay = f64::exp(-damping * frequency * t);
-        coupling / inertia * rate / (frequency * root) * decay * f64::sin(frequency * root * t)
+        let roll = coupling / inertia * rate / (frequency * root) * decay * f64::sin(frequency * root * t);
+        roll.hypot(5e-4 - 1e-4 * t)
     };
-    let crest = damping.acos() / (frequency * root);
-    assert!(angle(2.2) < 2e-4 && angle(crest) > 1e-3, "{:e}, {:e}", angle(2.2), angle(crest));
-    assert_near(&numbers(&found, "requirement_values"), &[angle(crest)], 1e-6 * angle(crest));
-    assert_near(&numbers(&found, "requirement_times_s"), &[crest], 1e-6);
+    let largest = (0..=22_000).map(|k| error(1e-4 * f64::from(k))).fold(0.0, f64::max);
+    // The largest error of the first segment, 5e-4 at its start, is above both ends of the second.
+    assert!(error(0.2) < 4.95e-4 && error(2.2) < 4e-4 && largest > 5.2e-4, "{largest:e}");
+    assert_near(&numbers(&found, "requirement_values"), &[largest], 1e-6 * largest);
     let dir = Dir::new();
     dir.write("ring.toml", &text);
     dir.run("simulate ring.toml --log none").exits(3).says(&["MISSED: 1 of 1 requirement"]);
