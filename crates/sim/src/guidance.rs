@@ -186,8 +186,11 @@ impl Guidance {
 
     /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
     pub fn target(&self, now: Instant) -> Orientation {
-        let attitude = self.profile.as_ref().map(|way| way.target(now));
-        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
+        match &self.profile {
+            Some(way) if way.slews(now) => Orientation::Attitude(way.target(now)),
+            // The reference has arrived.
+            _ => self.origin(now),
+        }
     }
 
     /// Returns the number of the current target, which changes with the target; 0 before the first one.

@@ -17,6 +17,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Oblateness;
+use super::oblateness::SecularRates;
 use super::phase::{Phase, product};
 
 /// A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
@@ -123,13 +124,9 @@ impl Kepler {
     }
 
     /// Returns the mean anomaly over time. Its rate is exact: rounded, it would err by 5e-12 rad after a year.
-    fn mean_anomaly(&self) -> Phase {
-        let (a, gravity, motion, drift) = (
-            self.semi_major_axis.get(),
-            self.gravity.get(),
-            self.mean_motion(),
-            self.secular_rates().anomaly,
-        );
+    fn mean_anomaly(&self, drift: &SecularRates) -> Phase {
+        let (a, gravity, motion, drift) =
+            (self.semi_major_axis.get(), self.gravity.get(), self.mean_motion(), drift.anomaly);
         // Step of Newton's method for n with (n a)² a = mu.
         let [speed, speed_rest] = product(motion, a);
         let [squared, squared_rest] = product(speed, speed);
@@ -152,8 +149,9 @@ impl Kepler {
     }
 
     /// Returns the ratio of the rate of the mean anomaly to the mean motion.
-    fn haste(&self) -> f64 {
-        self.anomaly_rate() / self.mean_motion()
+    fn haste(&self, drift: &SecularRates) -> f64 {
+        let motion = self.mean_motion();
+        (motion + drift.anomaly) / motion
     }
 
     /// Returns an upper bound of the rate of the local axes (rad/s), reached at the perigee about a sphere. Times the least
@@ -161,13 +159,13 @@ impl Kepler {
     pub fn fastest(&self) -> f64 {
         let e = self.eccentricity.get();
         let own = f64::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest();
-        if self.drifts() { self.haste() * own + self.plane_rate() * (1.0 + e) / (1.0 - e) } else { own }
+        if self.drifts() { self.haste(&self.secular_rates()) * own + self.plane_rate() * (1.0 + e) / (1.0 - e) } else { own }
     }
 
     /// Returns an upper bound of the speed (m/s), reached at the perigee about a sphere.
     pub fn largest_speed(&self) -> f64 {
         let own = f64::sqrt(self.gravity.get() * (1.0 + self.eccentricity.get()) / self.nearest());
-        if self.drifts() { self.haste() * own + self.plane_rate() * self.farthest() } else { own }
+        if self.drifts() { self.haste(&self.secular_rates()) * own + self.plane_rate() * self.farthest() } else { own }
     }
 
     /// Returns an upper bound of the rate of the velocity's direction (rad/s): the largest acceleration over the least
@@ -179,7 +177,7 @@ impl Kepler {
         if !self.drifts() {
             return self.gravity.get() / (nearest * nearest * least);
         }
-        let (haste, turn, farthest) = (self.haste(), self.plane_rate(), self.farthest());
+        let (haste, turn, farthest) = (self.haste(&self.secular_rates()), self.plane_rate(), self.farthest());
         let pull = haste * haste * self.gravity.get() / (nearest * nearest);
         let acceleration = pull + 2.0 * turn * (haste * largest + turn * farthest);
         acceleration / (haste * least - turn * farthest).max(0.0)
@@ -187,7 +185,10 @@ impl Kepler {
 
     /// Returns the unit vectors P, Q and along the orbit's normal at a time since the start.
     pub(super) fn plane(&self, t: SplitTime) -> [Vector; 3] {
-        let drift = self.secular_rates();
+        self.drifted_plane(&self.secular_rates(), t)
+    }
+
+    fn drifted_plane(&self, drift: &SecularRates, t: SplitTime) -> [Vector; 3] {
         let at = |start: Finite, rate: f64| Phase { start: start.get(), rate: [rate, 0.0] }.at(t);
         let (node, perigee) = (at(self.node, drift.node), at(self.perigee, drift.perigee));
         let [(si, ci), (sn, cn), (sp, cp)] = [self.inclination.get(), node, perigee].map(libm::sincos);
@@ -199,18 +200,13 @@ impl Kepler {
     /// Returns the rotation rate of P and Q in inertial axes (rad/s) at a time since the start.
     pub(super) fn plane_rotation(&self, t: SplitTime) -> Vector {
         let drift = self.secular_rates();
-        if self.drifts() {
-            Vector::z() * drift.node + self.plane(t)[2] * drift.perigee
-        } else {
-            Vector::zeros()
-        }
+        drift.rotation(&self.drifted_plane(&drift, t)[2])
     }
 
     /// Returns the orbit's normal with its first two derivatives, about an oblate planet.
     pub(super) fn normal_motion(&self, t: f64) -> [Vector; 3] {
-        let (normal, turn) = (self.plane(t.into())[2], Vector::z() * self.secular_rates().node);
-        let rate = turn.cross(&normal);
-        [normal, rate, turn.cross(&rate)]
+        let drift = self.secular_rates();
+        drift.normal_motion(self.drifted_plane(&drift, t.into())[2])
     }
 
     /// Returns the position on the orbit at `t` seconds after the start.
@@ -220,14 +216,16 @@ impl Kepler {
 
     /// Returns the position on the orbit at a time since the start.
     pub(super) fn place(&self, t: SplitTime) -> OrbitPosition {
-        let place = self.in_plane(t);
-        if self.drifts() { self.turned(place, t) } else { place }
+        let drift = self.secular_rates();
+        let place = self.in_plane(&drift, t);
+        if self.drifts() { self.turned(place, &drift) } else { place }
     }
 
     /// Returns position (m), velocity, acceleration and its rate of change in inertial axes at `t` seconds after the
     /// start.
     pub fn motion(&self, t: f64) -> [Vector; 4] {
-        let place = self.in_plane(t.into());
+        let drift = self.secular_rates();
+        let place = self.in_plane(&drift, t.into());
         let (position, velocity) = (place.position, place.velocity);
         let climb = 3.0 * position.dot(&velocity) / position.norm_squared();
         let jerk = (position * climb - velocity) * place.tide;
@@ -236,10 +234,10 @@ impl Kepler {
             return [position, velocity, acceleration, jerk];
         }
         // Derivatives along the ellipse, on which the anomaly moves by `haste`, and those of the ellipse that turns by w.
-        let haste = self.haste();
+        let haste = self.haste(&drift);
         let own = [velocity * haste, acceleration * (haste * haste), jerk * (haste * haste * haste)];
-        let (drift, w) = (self.secular_rates(), self.plane_rotation(t.into()));
-        let [_, normal_rate, normal_change] = self.normal_motion(t);
+        let [normal, normal_rate, normal_change] = drift.normal_motion(-place.local[1]);
+        let w = drift.rotation(&normal);
         let (dw, ddw) = (normal_rate * drift.perigee, normal_change * drift.perigee);
         let velocity = own[0] + w.cross(&position);
         let turned = w.cross(&own[0]);
@@ -256,11 +254,11 @@ impl Kepler {
 
     /// Returns the position on the ellipse at a time since the start, with velocity and rates as if the mean anomaly
     /// moved at the mean motion and the ellipse stood still.
-    fn in_plane(&self, t: SplitTime) -> OrbitPosition {
+    fn in_plane(&self, drift: &SecularRates, t: SplitTime) -> OrbitPosition {
         let (a, e, gravity) = (self.semi_major_axis.get(), self.eccentricity.get(), self.gravity.get());
-        let anomaly = eccentric(self.mean_anomaly().at(t), e);
+        let anomaly = eccentric(self.mean_anomaly(drift).at(t), e);
         let (sin, cos) = libm::sincos(anomaly);
-        let [p, q, normal] = self.plane(t);
+        let [p, q, normal] = self.drifted_plane(drift, t);
         let minor = f64::sqrt(1.0 - e * e);
         let radius = a * (1.0 - e * cos);
         let position = (p * (cos - e) + q * (minor * sin)) * a;
@@ -281,14 +279,14 @@ impl Kepler {
     }
 
     /// Returns a position with the velocity and rates that it has as the elements drift.
-    fn turned(&self, place: OrbitPosition, t: SplitTime) -> OrbitPosition {
-        let (drift, haste) = (self.secular_rates(), self.haste());
+    fn turned(&self, place: OrbitPosition, drift: &SecularRates) -> OrbitPosition {
+        let haste = self.haste(drift);
         let [rate, acceleration] = place.turning;
         let axis = Vector::from_iterator(place.local.iter().map(|axis| axis.z));
         let turn = axis * drift.node;
         let rate = rate * haste + turn - Vector::y() * drift.perigee;
         OrbitPosition {
-            velocity: place.velocity * haste + self.plane_rotation(t).cross(&place.position),
+            velocity: place.velocity * haste + drift.rotation(&-place.local[1]).cross(&place.position),
             // The planet's axis stands still: in the local axes it turns against them.
             turning: [rate, acceleration * (haste * haste) + turn.cross(&rate)],
             ..place

@@ -6,6 +6,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::NonNegative;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
@@ -26,6 +27,20 @@ pub(super) struct SecularRates {
     pub perigee: f64,
     /// Rate of the mean anomaly beyond the mean motion.
     pub anomaly: f64,
+}
+
+impl SecularRates {
+    /// Returns the rotation rate (rad/s) of the orbit's plane and perigee in inertial axes, with the unit vector along the normal.
+    pub fn rotation(&self, normal: &Vector) -> Vector {
+        Vector::z() * self.node + normal * self.perigee
+    }
+
+    /// Returns the unit vector along the normal with its first two derivatives.
+    pub fn normal_motion(&self, normal: Vector) -> [Vector; 3] {
+        let turn = Vector::z() * self.node;
+        let rate = turn.cross(&normal);
+        [normal, rate, turn.cross(&rate)]
+    }
 }
 
 impl Oblateness {

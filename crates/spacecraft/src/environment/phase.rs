@@ -31,7 +31,7 @@ impl Phase {
 /// Returns the product of two numbers, and what its rounding takes away.
 pub(super) fn product(a: f64, b: f64) -> [f64; 2] {
     let rounded = a * b;
-    [rounded, libm::fma(a, b, -rounded)]
+    [rounded, a.mul_add(b, -rounded)]
 }
 
 /// Returns the remainder of the product of two numbers by a period, between minus and plus half of it.
