@@ -80,6 +80,43 @@ fn a_page_for_a_review() {
     dir.run(&format!("{line} -o study.html")).exits(2).says(&["already exists", "--force"]);
 }
 
+/// A directory of runs is used, and the runs that it lacks are added; one of another scenario is refused.
+#[test]
+#[cfg(feature = "parquet")]
+fn the_campaign_of_a_directory_is_not_run_again() {
+    let dir = Dir::with(&["half-turn"]);
+    dir.run("simulate half-turn.toml --runs 12 -o made").exits(3);
+    let parts = || {
+        let all = std::fs::read_dir(dir.path("made/runs")).expect("a directory");
+        let mut parts: Vec<_> = all.map(|entry| entry.expect("a file")).collect();
+        parts.sort_by_key(std::fs::DirEntry::file_name);
+        parts
+            .iter()
+            .map(|file| file.metadata().expect("a file").modified().expect("a time"))
+            .collect::<Vec<_>>()
+    };
+    let before = parts();
+    dir.run("report half-turn.toml --campaign made -o held.html").exits(3).says(&["of 12 runs meet"]);
+    assert_eq!(parts(), before);
+    let page = plain(&dir.text("held.html"));
+    assert!(page.contains("<code>flexsc simulate half-turn.toml --runs 12 -o made</code>"));
+    assert!(page.contains("<code>flexsc simulate --from made --row"));
+    dir.run("report half-turn.toml --campaign made --runs 20 -o more.html")
+        .exits(3)
+        .says(&["of 20 runs meet"]);
+    assert_eq!(parts()[..before.len()], before);
+    // The answer of runs in memory.
+    dir.run("report half-turn.toml --runs 20 -o alone.html").exits(3);
+    let alone = plain(&dir.text("alone.html"))
+        .replace("-o campaign<", "-o made<")
+        .replace("--from campaign ", "--from made ");
+    assert_eq!(plain(&dir.text("more.html")), alone);
+    dir.run("report half-turn.toml --set seed=5 --campaign made -o other.html")
+        .exits(2)
+        .says(&["made", "seed"]);
+    assert!(!dir.path("other.html").exists());
+}
+
 /// The margins of each loop are those of `flexsc margins`.
 #[test]
 fn margins_are_those_of_the_command() {
@@ -164,7 +201,7 @@ fn what_has_no_numbers_has_a_reason() {
     for (arguments, told) in [
         ("-o page.pdf", "cannot be written as .pdf"),
         ("-o page", "must end in"),
-        ("-o other.html --runs 1000000", "--runs must be at most 100000"),
+        ("-o other.html --runs 1000000", "1000000 is not in 0..=100000"),
         ("-o other.html --set law.relay.k=1", "unknown key"),
         ("-o other.html --runs 3 --watch", "--watch"),
         ("", "--out"),

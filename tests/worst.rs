@@ -25,7 +25,7 @@ fn uncertain_wheel() -> Scenario {
 }
 
 fn worst_metric(scenario: &Scenario, quantity: RunQuantity, is_least: bool, threads: usize) -> WorstCase {
-    let search = MetricSearch { quantity, is_least, most_runs: 60, threads };
+    let search = MetricSearch { quantity, is_least, most_runs: 60, threads, starts: Vec::new() };
     let work = |run: &CampaignRun, selection: &Selection| Ok(Campaign::simulate_metrics(run, selection, ())?);
     search.run(scenario, &scenario.name, work, || false).expect("a value")
 }
@@ -116,6 +116,33 @@ fn the_verb_prints_judges_and_writes_the_witness() {
     assert!((10..=41).contains(&dir.text("points.csv").lines().count()));
     dir.run(&format!("{all} -o figures --format svg")).exits(0);
     assert!(dir.text("figures/slew-wheel-lqg-worst-2.svg").contains("stability"));
+}
+
+/// The search starts at the worst runs of a campaign, and the first point is the scenario's own.
+#[test]
+#[cfg(feature = "parquet")]
+fn a_search_starts_at_the_worst_runs_of_a_campaign() {
+    let dir = Dir::with(&["slew-wheel-lqg"]);
+    dir.run("simulate slew-wheel-lqg.toml --runs 40 -o made").exits(0);
+    let lines = dir.run("simulate slew-wheel-lqg.toml --runs 40 --json").exits(0).out;
+    let runs = lines.lines().map(|line| serde_json::from_str::<Json>(line).expect("an object"));
+    let arrival = |run: &Json| run["metrics"]["requirement_values"][0].as_f64();
+    let worst = runs
+        .filter(|run| arrival(run).is_some())
+        .max_by(|a, b| arrival(a).partial_cmp(&arrival(b)).expect("numbers"));
+    let drawn = worst.expect("a run")["drawn"].as_object().expect("keys").clone();
+    let search = "worst slew-wheel-lqg.toml --points 30 --requirement arrival --campaign made";
+    dir.run(&format!("{search} -o points.csv")).exits(0);
+    let table = dir.text("points.csv");
+    let (head, second) = (table.lines().next().expect("a head"), table.lines().nth(2).expect("a point"));
+    let cells: std::collections::BTreeMap<_, _> = head.split(',').zip(second.split(',')).collect();
+    for (key, value) in drawn {
+        let (found, drawn) =
+            (cells[key.as_str()].parse::<f64>().expect("a number"), value.as_f64().expect("a number"));
+        assert!((found - drawn).abs() <= 1e-12 * drawn.abs(), "{key}: {found} {drawn}");
+    }
+    dir.run(&format!("{search} --seed 9")).exits(2).says(&["made", "another scenario", "seed"]);
+    dir.run("worst slew-wheel-lqg.toml --metric nothing --campaign made").exits(2).says(&["nothing"]);
 }
 
 /// Kalman filter and gains of the example are for the nominal frequencies: 5 % off, a mode grows slowly.

@@ -35,12 +35,15 @@ use crate::{requirements, say, scenario};
 /// Largest number of values of all runs, by the memory that they need.
 const MOST_VALUES: u64 = 20_000_000;
 
+/// Number of runs from which budgets are computed, unless another is asked for.
+pub const DEFAULT_RUNS: u64 = 20;
+
 #[derive(clap::Args)]
 pub struct BudgetArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
     /// Number of runs of the campaign over the [uncertain] keys and the noise
-    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = DEFAULT_RUNS, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     runs: u64,
     #[command(flatten)]
     runs_with: scenario::RunArgs,

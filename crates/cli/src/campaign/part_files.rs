@@ -44,6 +44,23 @@ pub fn create(path: &Path, manifest: Manifest, job: &CampaignJob<'_>) -> Result<
     create(path, manifest, job.force).map_err(failure)
 }
 
+/// Opens the directory of a campaign's runs, of any number and with any of the metrics.
+///
+/// # Errors
+/// A directory of another campaign.
+pub fn opened_for(campaign: &Campaign, path: &Path) -> Result<Directory, CliError> {
+    let directory = Directory::open(path).map_err(failure)?;
+    let work = directory.work();
+    let same = Manifest::new(campaign, work.manifest.runs(), &work.selection)
+        .map_err(|why| CliError::Arguments(format!("{}: {why}", campaign.scenario().name)))?;
+    match work.manifest.first_difference(&same) {
+        None => Ok(directory),
+        Some(what) => {
+            Err(CliError::Arguments(format!("{}: is a campaign of another scenario: {what}", path.display())))
+        }
+    }
+}
+
 /// Makes the missing runs of a job.
 pub fn run(
     campaign: &Arc<Campaign>,

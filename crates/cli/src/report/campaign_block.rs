@@ -36,10 +36,11 @@ pub fn block(study: &Study, campaign: &StudyCampaign) -> String {
     if answer.failed > 0 {
         html += &paragraph(&format!("{} of {} runs failed.", answer.failed, answer.runs));
     }
-    html += &command(&study.command("simulate", &format!("--runs {} -o campaign", campaign.runs)));
+    html +=
+        &command(&study.command("simulate", &format!("--runs {} -o {}", campaign.runs, campaign.directory)));
     if let Some(first) = answer.requirements.first() {
-        let run = first.worst.run;
-        html += &command(&format!("flexsc simulate --from campaign --row {run} -o run-{run}"));
+        let (run, directory) = (first.worst.run, &campaign.directory);
+        html += &command(&format!("flexsc simulate --from {directory} --row {run} -o run-{run}"));
     }
     html
 }

@@ -30,7 +30,7 @@ use crate::error::CliError;
 use crate::human::Units;
 use crate::{bound, files, out, progress, say, stop};
 use page::Review;
-use study::{Study, StudyCampaign};
+use study::{CampaignSource, Study};
 
 /// Largest number of runs of the report's campaign.
 const MOST_RUNS: u64 = 100_000;
@@ -45,11 +45,14 @@ pub struct ReportArgs {
     /// Set a key of the scenario, such as law.pd.k_d=300
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Number of runs of the campaign; 0 leaves it out
-    #[arg(long, value_name = "COUNT", default_value_t = 100)]
-    runs: u64,
+    /// Number of runs of the campaign; 0 leaves it out [default: 100, or those in DIR]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(..=MOST_RUNS))]
+    runs: Option<u64>,
+    /// Directory of the campaign, as of `simulate --runs N -o DIR`: its runs are used, and missing ones are added
+    #[arg(long, value_name = "DIR")]
+    campaign: Option<PathBuf>,
     /// Write the page again, without the campaign, each time the scenario file is saved, until Ctrl-C; an open page reloads itself
-    #[arg(long, conflicts_with = "runs")]
+    #[arg(long, conflicts_with_all = ["runs", "campaign"])]
     watch: bool,
     /// Replace a FILE of other content
     #[arg(long)]
@@ -70,16 +73,17 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
         return Err(CliError::Arguments(format!("-o {}: must end in .html", args.out.display())));
     }
     files::refuse_existing(&args.out, args.force)?;
-    if args.runs > MOST_RUNS {
-        let why = format!("--runs must be at most {MOST_RUNS}, got {}", args.runs);
-        return Err(CliError::Arguments(why));
-    }
     let _files = stop::writing();
     if args.watch {
         return watch::run(args);
     }
     let study = Study::load(&args.scenario, &args.set)?;
-    let page = finished(&study, args.runs, String::new())?;
+    let directory = args.campaign.as_deref();
+    let source = match args.runs {
+        Some(0) => None,
+        runs => Some(CampaignSource { runs, directory }),
+    };
+    let page = finished(&study, source, String::new())?;
     files::write(&args.out, page.html.as_bytes(), true)?;
     say!("{} ({:.0} kB)", args.out.display(), page.html.len() as f64 / 1e3);
     if !page.refused.is_empty() {
@@ -91,8 +95,12 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
     Err(CliError::Requirements(format!("{}: {}", study.scenario.name, page.unmet.join("; "))))
 }
 
-/// Computes the page of a study with a campaign of some runs; 0 leaves it out.
-fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, CliError> {
+/// Computes the page of a study, with or without a campaign.
+fn finished(
+    study: &Study,
+    source: Option<CampaignSource<'_>>,
+    script: String,
+) -> Result<FinishedPage, CliError> {
     progress::begin_stage("the run");
     let run = study.run()?;
     // A page that is watched is to be there soon.
@@ -103,8 +111,7 @@ fn finished(study: &Study, runs: u64, script: String) -> Result<FinishedPage, Cl
         Some(bound::claims(&study.scenario, Units::default())?)
     };
     progress::begin_stage("the campaign");
-    let campaign: Option<StudyCampaign> =
-        (runs > 0).then(|| study.campaign(runs, &run.answer)).transpose()?;
+    let campaign = source.map(|source| study.campaign(source, &run.answer)).transpose()?;
     let mut unmet = Vec::new();
     if run.answer.verdict == RunVerdict::Failed || run.answer.verdict == RunVerdict::Missed {
         unmet.push(run.answer.verdict_text.clone());

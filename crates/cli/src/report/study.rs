@@ -1,10 +1,11 @@
 //! Study of a report: its scenario, the commands on it, and the results that several blocks need.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use flexsc_core::answer::{Answer, CampaignAnswer, RunObserver};
-use flexsc_core::campaign::{Campaign, ColumnCells, RowMaker, RunRows};
+use flexsc_core::campaign::{Campaign, ColumnCells, Directory, Manifest, RowMaker, RunRows};
 use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, Log};
@@ -12,10 +13,13 @@ use flexsc_core::{Document, Scenario};
 use flexsc_figure::Named;
 use sha2::{Digest, Sha256};
 
+use crate::campaign::part_files;
 use crate::error::CliError;
 use crate::stop::{self, stop_flag};
 use crate::{Cli, Verb, budget, memory_log, plot, scenario};
 
+/// Number of runs without a wish.
+const DEFAULT_RUNS: u64 = 100;
 /// Figures of requirements that a campaign draws.
 const DISTRIBUTION: &str = "distribution";
 
@@ -42,6 +46,17 @@ pub struct StudyCampaign {
     /// Budgets of pointing indices, if a requirement limits one.
     pub budgets: Option<budget::Budgets>,
     pub runs: u64,
+    /// Directory of the runs, or the name that commands give it.
+    pub directory: String,
+}
+
+/// Runs of a report's campaign.
+#[derive(Copy, Clone)]
+pub struct CampaignSource<'a> {
+    /// Number of runs; by default those in the directory.
+    pub runs: Option<u64>,
+    /// Directory whose runs are used, and to which missing ones are added; `None` for memory.
+    pub directory: Option<&'a Path>,
 }
 
 impl Study {
@@ -100,53 +115,104 @@ impl Study {
         Ok(StudyRun { answer, log })
     }
 
-    /// Makes the runs of the campaign once, for its figures, its answer and the budgets of pointing indices; `nominal` is
-    /// the answer of the scenario as it is.
-    pub fn campaign(&self, runs: u64, nominal: &Answer) -> Result<StudyCampaign, CliError> {
+    /// Returns the campaign, whose runs are made once for its figures, its answer and the budgets of pointing indices; `nominal`
+    /// is the answer of the scenario as it is.
+    pub fn campaign(&self, source: CampaignSource<'_>, nominal: &Answer) -> Result<StudyCampaign, CliError> {
         let origin = self.path.to_string_lossy();
         let campaign = Campaign::new(self.scenario.clone(), &origin, None)?;
-        let wrong = |why: String| CliError::Arguments(format!("--runs: {why}"));
-        let maker = RowMaker::in_memory(campaign, 0..runs, Selection::ALL).map_err(wrong)?;
+        let Some(path) = source.directory else {
+            let runs = source.runs.unwrap_or(DEFAULT_RUNS);
+            let wrong = |why: String| CliError::Arguments(format!("--runs: {why}"));
+            let maker = RowMaker::in_memory(campaign, 0..runs, Selection::ALL).map_err(wrong)?;
+            let (rows, budgets) = self.rows(&maker, runs)?;
+            let column = |name: &str| Ok(rows.column(name).map(Cow::into_owned));
+            return self.assessed(&maker, &column, nominal, (budgets, None));
+        };
+        let directory = filled(&campaign, path, source.runs)?;
+        // The values of a pointing index over time are not in the directory.
+        let of_index = budget::with_outcomes(
+            self.scenario.clone(),
+            origin.into_owned(),
+            budget::DEFAULT_RUNS,
+            |_, _| (),
+        );
+        uninterrupted()?;
+        let column = |name: &str| directory.column(name).map_err(part_files::failure);
+        self.assessed(directory.work(), &column, nominal, (of_index.ok(), Some(path)))
+    }
+
+    /// Makes the runs of the campaign in memory, with the budgets of pointing indices from the same runs, if there are any.
+    fn rows(&self, maker: &RowMaker, runs: u64) -> Result<(RunRows, Option<budget::Budgets>), CliError> {
         let mut rows = maker.rows();
-        let budgets =
-            budget::with_outcomes(self.scenario.clone(), origin.into_owned(), runs, |campaign, outcome| {
-                rows.push(campaign, outcome);
-            });
-        if stop::stop_requested() {
-            return Err(CliError::Interrupted(String::new()));
+        let origin = self.path.to_string_lossy().into_owned();
+        let budgets = budget::with_outcomes(self.scenario.clone(), origin, runs, |campaign, outcome| {
+            rows.push(campaign, outcome);
+        });
+        uninterrupted()?;
+        if let Ok(budgets) = budgets {
+            return Ok((rows, Some(budgets)));
         }
-        let budgets = budgets.ok();
-        if budgets.is_none() {
-            // No budget, or a run that fails: the campaign goes on without it.
-            let made = maker.make_rows(0..runs, 0, stop_flag());
-            if stop::stop_requested() {
-                return Err(CliError::Interrupted(String::new()));
-            }
-            rows = made.map_err(|error| CliError::Arguments(error.to_string()))?;
-        }
-        if stop::stop_requested() {
-            return Err(CliError::Interrupted(String::new()));
-        }
-        let values = maker.campaign_runs(|names| -> Result<_, CliError> {
-            Ok(names.iter().map(|name| column(&rows, name)).collect())
-        })?;
+        // No budget, or a run that fails: the campaign goes on without it.
+        let rows = maker.make_rows(0..runs, 0, stop_flag()).map_err(part_files::failure)?;
+        Ok((rows, None))
+    }
+
+    /// Returns the answer of a campaign's runs and their figures, from their columns.
+    fn assessed(
+        &self,
+        maker: &RowMaker,
+        column: &dyn Fn(&str) -> Result<Option<ColumnCells>, CliError>,
+        nominal: &Answer,
+        (budgets, directory): (Option<budget::Budgets>, Option<&Path>),
+    ) -> Result<StudyCampaign, CliError> {
+        let values = maker.campaign_runs(|names| names.iter().map(|name| column(name)).collect())?;
         let nominal = (!self.scenario.uncertain.is_empty()).then_some(nominal);
         let answer = CampaignAnswer::new(&self.scenario, &values, nominal, None, ReaderUnits::default());
         let count = self.scenario.study.requirements.len();
-        Ok(StudyCampaign { figures: figures(&maker, &rows, &answer, count), answer, budgets, runs })
+        let found = |name: &str| column(name).ok().flatten();
+        Ok(StudyCampaign {
+            figures: figures(maker, &found, &answer, count),
+            runs: values.count(),
+            directory: directory.map_or_else(|| "campaign".to_owned(), |path| path.display().to_string()),
+            answer,
+            budgets,
+        })
     }
 }
 
-fn column(rows: &RunRows, name: &str) -> Option<ColumnCells> {
-    rows.column(name).map(std::borrow::Cow::into_owned)
+/// Returns an error if a stop was requested.
+fn uninterrupted() -> Result<(), CliError> {
+    if stop::stop_requested() { Err(CliError::Interrupted(String::new())) } else { Ok(()) }
+}
+
+/// Returns the directory of a campaign after its missing runs are made.
+fn filled(campaign: &Campaign, path: &Path, runs: Option<u64>) -> Result<Directory, CliError> {
+    let existing = if Directory::is_campaign_directory(path) {
+        Some(Directory::open(path).map_err(part_files::failure)?)
+    } else {
+        None
+    };
+    let (held, selection) = existing.map_or((DEFAULT_RUNS, Selection::ALL), |held| {
+        (held.work().manifest.runs().end, held.work().selection.clone())
+    });
+    let manifest = Manifest::new(campaign, 0..runs.unwrap_or(held), &selection)
+        .map_err(|why| CliError::Arguments(format!("{}: {why}", campaign.scenario().name)))?;
+    let directory = Directory::create(path, manifest, false).map_err(part_files::failure)?;
+    for part in directory.missing().map_err(part_files::failure)? {
+        directory.write_part(part, 0, stop_flag()).map_err(part_files::failure)?;
+    }
+    Ok(directory)
 }
 
 /// Returns the figure of each requirement that varies from run to run, or of the main metrics without a requirement.
-fn figures(maker: &RowMaker, rows: &RunRows, answer: &CampaignAnswer, count: usize) -> Vec<Named> {
+fn figures(
+    maker: &RowMaker,
+    column: &dyn Fn(&str) -> Option<ColumnCells>,
+    answer: &CampaignAnswer,
+    count: usize,
+) -> Vec<Named> {
     let drawn = |metrics: &[String]| {
-        let kind =
-            crate::figures::column_figure(maker, &|name| column(rows, name), Some(DISTRIBUTION), metrics);
-        kind.unwrap_or_default()
+        crate::figures::column_figure(maker, column, Some(DISTRIBUTION), metrics).unwrap_or_default()
     };
     if answer.requirements.is_empty() {
         return drawn(&[]).into_iter().take(2).collect();

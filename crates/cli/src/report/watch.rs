@@ -36,7 +36,7 @@ pub fn run(args: &ReportArgs) -> Result<(), CliError> {
         let began = Instant::now();
         let script = script(&version_file, version);
         let made =
-            Study::load(&args.scenario, &args.set).and_then(|study| finished(&study, 0, script.clone()));
+            Study::load(&args.scenario, &args.set).and_then(|study| finished(&study, None, script.clone()));
         let page = match made {
             Ok(page) => {
                 say!("  {:.1} s, {}", began.elapsed().as_secs_f64(), verdict(&page.unmet));

@@ -1,9 +1,10 @@
 //! `flexsc worst`: the worst case of requirements, a metric or a stability margin over the uncertain keys.
 
+mod campaign_starts;
 mod figures;
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::open_loop::LoopBreak;
@@ -16,6 +17,7 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::bound::{self, OutputBounds};
+use crate::campaign::part_files;
 use crate::choice::choice;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
@@ -49,6 +51,9 @@ pub struct WorstArgs {
     /// Largest number of points that are assessed, each by a run or a loop
     #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     points: u32,
+    /// Directory of a campaign of the scenario, from whose worst runs the search starts [default: points spread over the ranges]
+    #[arg(long, value_name = "DIR", conflicts_with = "margin")]
+    campaign: Option<PathBuf>,
     #[command(flatten)]
     runs: scenario::RunArgs,
     #[command(flatten)]
@@ -123,6 +128,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
     }
     let origin = args.scenario.scenario.display().to_string();
     let campaign = Campaign::from_design(scenario.clone(), &origin, Design::default())?;
+    let made = args.campaign.as_deref().map(|path| part_files::opened_for(&campaign, path)).transpose()?;
     let runs = u64::from(args.points) * quantities.len() as u64;
     let cost = campaign.cost(runs, None).map_err(|why| CliError::Arguments(format!("--points: {why}")))?;
     args.consent.check(&cost)?;
@@ -135,7 +141,12 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
             }
             RunQuantity::Metric(_) => None,
         };
+        let starts = made
+            .as_ref()
+            .map(|made| campaign_starts::worst_runs(made, scenario, &quantity, args.least))
+            .transpose()?;
         let search = MetricSearch {
+            starts: starts.unwrap_or_default(),
             quantity,
             is_least: args.least,
             most_runs: most,

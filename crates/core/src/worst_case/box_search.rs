@@ -106,19 +106,21 @@ impl<E, F: FnMut(&[Vec<f64>]) -> Result<Vec<Assessed>, E>> Assessments<F> {
 }
 
 impl BoxSearch {
-    /// Searches the box, and returns all points in the order in which they were assessed, that of `own` first, and the
-    /// index of the worst one; none if no point has a value. `assess` returns the values of some points.
+    /// Searches the box from `own` and the worst of `starts`, or of points spread over it without any. Returns all points in the
+    /// order in which they were assessed, that of `own` first, and the index of the worst one; none if no point has a value.
+    /// `assess` returns the values of some points.
     ///
     /// # Errors
     /// Errors of `assess`.
     pub fn run<E>(
         &self,
         own: Vec<f64>,
+        starts: Vec<Vec<f64>>,
         assess: impl FnMut(&[Vec<f64>]) -> Result<Vec<Assessed>, E>,
     ) -> Result<(Vec<SearchPoint>, Option<usize>), E> {
         let mut found = Assessments { assess, points: Vec::new(), places: BTreeMap::new() };
         let mut first = vec![own];
-        first.extend(self.spread());
+        first.extend(if starts.is_empty() { self.spread() } else { starts });
         found.add(first)?;
         for start in found.starts() {
             self.climb(start, &mut found)?;
@@ -201,7 +203,7 @@ mod tests {
             )
         };
         let search = BoxSearch { keys, most: 1000, seed: 1 };
-        let (points, worst) = search.run(vec![0.5; keys], assess).expect("no error");
+        let (points, worst) = search.run(vec![0.5; keys], Vec::new(), assess).expect("no error");
         let worst = points[worst.expect("a value")].clone();
         (points, worst)
     }
@@ -217,13 +219,24 @@ mod tests {
     }
 
     #[test]
+    fn a_search_from_given_points_spreads_none() {
+        let assess = |points: &[Vec<f64>]| {
+            Ok::<_, ()>(points.iter().map(|x| Assessed { badness: x[0], value: x[0] }).collect::<Vec<_>>())
+        };
+        let search = BoxSearch { keys: 1, most: 100, seed: 1 };
+        let (points, worst) = search.run(vec![0.5], vec![vec![0.875]], assess).expect("no error");
+        assert_eq!((&points[1].parts[..], &points[2].parts[..]), (&[0.875][..], &[1.0][..]));
+        assert_eq!(worst, Some(2));
+    }
+
+    #[test]
     fn points_without_a_value_are_no_worst_ones() {
         let (_, worst) = search(2, |x| if x[0] > 0.5 { f64::NAN } else { x[0] + x[1] });
         assert!((worst.assessed.value - 1.5).abs() < 1e-4, "{worst:?}");
         let nothing =
             |points: &[Vec<f64>]| Ok::<_, ()>(vec![Assessed { badness: f64::NAN, value: 0.0 }; points.len()]);
         let search = BoxSearch { keys: 2, most: 20, seed: 1 };
-        assert_eq!(search.run(vec![0.5; 2], nothing).expect("no error").1, None);
+        assert_eq!(search.run(vec![0.5; 2], Vec::new(), nothing).expect("no error").1, None);
     }
 
     #[test]

@@ -138,7 +138,7 @@ impl MarginSearch {
             Ok(assessed)
         };
         let search = BoxSearch { keys: ranges.keys.len(), most: self.most_loops, seed: scenario.seed };
-        let (points, worst) = search.run(own, assess)?;
+        let (points, worst) = search.run(own, Vec::new(), assess)?;
         let Some(worst) = worst else {
             let reason = first_failure.map_or_else(String::new, |why| format!(": {why}"));
             return Err(WorstCaseFault::Request(format!("no point has a margin{reason}")));

@@ -31,6 +31,8 @@ pub struct MetricSearch {
     pub most_runs: usize,
     /// Number of threads; 0 for one per core.
     pub threads: usize,
+    /// Values of the uncertain keys at the points from which the search starts; none: points spread over the ranges.
+    pub starts: Vec<Vec<f64>>,
 }
 
 /// Quantity that was looked up in a scenario.
@@ -176,7 +178,11 @@ impl MetricSearch {
         };
         let search = BoxSearch { keys: ranges.keys.len(), most: self.most_runs, seed: scenario.seed };
         let own: Vec<f64> = ranges.keys.iter().map(UncertainKey::nominal_fraction).collect();
-        let (points, worst) = search.run(own.clone(), &mut assess)?;
+        let parts = |values: &Vec<f64>| {
+            ranges.keys.iter().zip(values).map(|(own, value)| own.fraction(*value)).collect()
+        };
+        let starts = self.starts.iter().map(parts).collect();
+        let (points, worst) = search.run(own.clone(), starts, &mut assess)?;
         let Some(worst) = worst else {
             let reason = first_failure.map_or_else(String::new, |why| format!(": {why}"));
             return Err(WorstCaseFault::Request(format!(

@@ -64,7 +64,8 @@ impl Worst {
         } else {
             let quantity =
                 if kind == "metric" { RunQuantity::Metric(name) } else { RunQuantity::Requirement(name) };
-            let search = MetricSearch { quantity, is_least, most_runs: points, threads: jobs };
+            let search =
+                MetricSearch { quantity, is_least, most_runs: points, threads: jobs, starts: Vec::new() };
             aside(on.py, move |stop: StopFlag| {
                 let record = stop.clone();
                 let work = move |run: &CampaignRun, selection: &Selection| {

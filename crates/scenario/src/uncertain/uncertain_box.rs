@@ -68,10 +68,15 @@ impl UncertainKey {
 
     /// Returns the part of the range at which the value of the scenario lies; the nearer end if it is outside.
     pub fn nominal_fraction(&self) -> f64 {
+        self.fraction(self.nominal_number())
+    }
+
+    /// Returns the part of the range at which a value lies; the nearer end if it is outside.
+    pub fn fraction(&self, value: f64) -> f64 {
         let [low, high] = self.limits();
         let part = match &self.distribution {
-            Distribution::LogUniform(_) => libm::log(self.nominal_number() / low) / libm::log(high / low),
-            _ => (self.nominal_number() - low) / (high - low),
+            Distribution::LogUniform(_) => libm::log(value / low) / libm::log(high / low),
+            _ => (value - low) / (high - low),
         };
         // A value below a positive range has no logarithm; one of a range without a width has no part.
         if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.0 }

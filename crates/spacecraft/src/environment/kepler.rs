@@ -159,13 +159,21 @@ impl Kepler {
     pub fn fastest(&self) -> f64 {
         let e = self.eccentricity.get();
         let own = f64::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest();
-        if self.drifts() { self.haste(&self.secular_rates()) * own + self.plane_rate() * (1.0 + e) / (1.0 - e) } else { own }
+        if self.drifts() {
+            self.haste(&self.secular_rates()) * own + self.plane_rate() * (1.0 + e) / (1.0 - e)
+        } else {
+            own
+        }
     }
 
     /// Returns an upper bound of the speed (m/s), reached at the perigee about a sphere.
     pub fn largest_speed(&self) -> f64 {
         let own = f64::sqrt(self.gravity.get() * (1.0 + self.eccentricity.get()) / self.nearest());
-        if self.drifts() { self.haste(&self.secular_rates()) * own + self.plane_rate() * self.farthest() } else { own }
+        if self.drifts() {
+            self.haste(&self.secular_rates()) * own + self.plane_rate() * self.farthest()
+        } else {
+            own
+        }
     }
 
     /// Returns an upper bound of the rate of the velocity's direction (rad/s): the largest acceleration over the least
