@@ -20,7 +20,7 @@ const CASES: &[Case] = &[
     ("rate = [0.3, -0.2, 0.5]", "disturbance = { period = 0 }", 4, &["`body.spatial.disturbance.period`", "must be a positive number, got 0"]),
     ("{ name = \"hub\" }]", "{ name = \"hub\" }, { name = \"hub\" }]", 5, &["`body.spatial.points[1].name`", "got `hub` again"]),
     ("{ name = \"hub\" }]", "{ name = \"hub\" }, { name = \"tip\" }]", 9, &["`body.spatial.modes[0].shapes` must have a shape at each point, and `tip` is missing"]),
-    ("frequency = 1.2566370614359172", "frequency = 0", 7, &["`body.spatial.modes[0].frequency`", "must be a natural frequency of 1e-4 to 1e3 rad/s, got 0"]),
+    ("frequency = 1.2566370614359172", "frequency = 0", 7, &["`body.spatial.modes[0].frequency`", "must be a natural frequency of 1e-4 to 1e4 rad/s, got 0"]),
     ("damping = 0.005", "damping = -1", 8, &["`body.spatial.modes[0].damping`", "must be a number of 0 or more, got -1"]),
     ("shapes.hub", "shapes.hab", 9, &["`body.spatial.modes[0].shapes.hab` must be one of the points, `hub`"]),
     ("translation = [1.0, 0.0, 0.0]", "translation = [1.0, 0.0]", 9, &["`body.spatial.modes[0].shapes.hub.translation`", "expected an array of length 3"]),
@@ -112,7 +112,7 @@ const FILES: &[(&str, &[&str])] = &[
     ("frequency,hub.tx\n1,2\n3\n", &["line 3: must have 2 numbers, as the header, got 1"]),
     ("frequency,hub.tx\n1,x\n", &["line 2: `hub.tx` must be a number, got `x`"]),
     ("frequency,hub.tx\n1,inf\n", &["line 2: `hub.tx` must be a number, got `inf`"]),
-    ("frequency,hub.tx\n0,1\n", &["line 2: `frequency` must be a natural frequency of 1e-4 to 1e3 rad/s, got 0"]),
+    ("frequency,hub.tx\n0,1\n", &["line 2: `frequency` must be a natural frequency of 1e-4 to 1e4 rad/s, got 0"]),
     ("hub.tx,frequency,damping\n1,1,-1\n", &["line 2: `damping` must be a number of 0 or more, got -1"]),
 ];
 

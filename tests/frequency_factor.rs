@@ -87,7 +87,7 @@ fn factors_are_drawn_varied_tuned_and_searched() {
     dir.run("check earth-observer.toml --set appendage[0].frequency_factor=0")
         .exits(2)
         .says(&["`appendage[0].frequency_factor`", "must be a positive number, got 0"]);
-    dir.run("check earth-observer.toml --set spacecraft.frequency_factor=30")
+    dir.run("check earth-observer.toml --set spacecraft.frequency_factor=300")
         .exits(2)
-        .says(&["`spacecraft.frequency_factor` must leave natural frequencies of 0.0001 to 1000 rad/s, got one of 1440 rad/s"]);
+        .says(&["`spacecraft.frequency_factor` must leave natural frequencies of 0.0001 to 10000 rad/s, got one of 14400 rad/s"]);
 }

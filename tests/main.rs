@@ -174,6 +174,7 @@ mod live;
 #[cfg(feature = "live")]
 mod live_limits;
 mod newcomers;
+mod optics;
 mod option_units;
 #[cfg(feature = "parquet")]
 mod paper_figures;

@@ -85,8 +85,8 @@ quantity!(
 );
 quantity!(
     /// The natural frequency of an elastic mode (rad/s).
-    Frequency, |v| (1e-4..=1e3).contains(&v), "a natural frequency of 1e-4 to 1e3 rad/s",
-    {"type": "number", "minimum": 1e-4, "maximum": 1e3}
+    Frequency, |v| (1e-4..=1e4).contains(&v), "a natural frequency of 1e-4 to 1e4 rad/s",
+    {"type": "number", "minimum": 1e-4, "maximum": 1e4}
 );
 
 quantity!(
@@ -145,7 +145,7 @@ impl Frequency {
     /// Lowest natural frequency (rad/s).
     pub const SMALLEST: f64 = 1e-4;
     /// Highest natural frequency (rad/s).
-    pub const LARGEST: f64 = 1e3;
+    pub const LARGEST: f64 = 1e4;
 }
 
 impl Fraction {

@@ -1,17 +1,24 @@
-//! Line of sight of a point of the structure: where an instrument looks, how often it is recorded, and its assessment.
+//! Line of sight of an instrument: where it looks, how often it is recorded, and its assessment.
 
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::OFF_HUB;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
+use flexsc_formats::reader_units::number;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, Positive, Time};
 use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::optics::{self, LineSensitivity, OpticalElement};
+
 /// Part of a sample by which a rounded window may miss the next one.
 const ROUNDING: f64 = 1e-9;
+/// Difference of a rotation by optics from that of the body (rad/rad) from which it is remarked.
+const DEVIATION: f64 = 1e-3;
+/// Names of the axes.
+const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// Line of sight of an instrument at a named point of a three-axis body, which is recorded and assessed. Nothing in the
 /// control loop reads it.
@@ -23,6 +30,10 @@ pub struct LineOfSight {
     /// Direction of the line of sight, of any length, in the body's axes with the structure undeformed.
     #[serde(default = "z_axis")]
     pub axis: [Finite; 3],
+    /// Mirrors, lenses and detectors whose motions add up to that of the line of sight, along an axis of the body; default: it turns
+    /// with `point`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub optics: Vec<OpticalElement>,
     /// Period of its samples (s).
     pub period: Span,
     /// Start and end (s) of the interval in which it is assessed; default: the whole run.
@@ -44,6 +55,34 @@ impl LineOfSight {
         // Scaled first: the squares of any length are finite then.
         let axis = vector(&self.axis);
         (axis / axis.amax()).normalize()
+    }
+
+    /// Returns how far small motions of the body turn the line of sight.
+    pub fn sensitivity(&self, body: &ThreeAxisModel) -> LineSensitivity {
+        let direction = self.direction();
+        if self.optics.is_empty() {
+            return LineSensitivity::of_point(body, &self.point, &direction);
+        }
+        let along = direction.iamax();
+        let about = [1, 2].map(|next| Vector::ith((along + next) % 3, 1.0));
+        LineSensitivity::of_optics(body, &self.optics, about)
+    }
+
+    /// Returns the remark that optics turn the line of sight by another angle than the rigid body turns.
+    pub(super) fn remark(&self, body: &ThreeAxisModel) -> Option<ConfigError> {
+        let exact = LineSensitivity::of_point(body, &self.point, &self.direction()).rigid;
+        let found = self.sensitivity(body).rigid;
+        let (row, column) = (found - exact).abs().iamax_full();
+        let (found, exact) = (found[(row, column)], exact[(row, column)]);
+        let (about, axis) = (AXIS_NAMES[row], AXIS_NAMES[column]);
+        ((found - exact).abs() > DEVIATION).then(|| {
+            let why = format!(
+                "turn the line of sight by {} rad about {about} where the whole body turns by 1 rad about {axis}, and a distant object \
+                 needs {exact}: is a sign wrong?",
+                number(found)
+            );
+            ConfigError::new("optics", why)
+        })
     }
 
     /// Returns true if a sample at a time (s) is assessed.
@@ -68,6 +107,15 @@ impl LineOfSight {
         }
         if self.axis.iter().all(|part| part.get() == 0.0) {
             return at("axis", "must not be zero, got [0, 0, 0]".to_owned());
+        }
+        if !self.optics.is_empty() {
+            let across = self.direction().abs();
+            if across.sum() - across.amax() > 0.0 {
+                return at("axis", "must be along x, y or z of the body with `optics`".to_owned());
+            }
+            if let Some(fault) = optics::fault(&self.optics, body) {
+                return Some(fault);
+            }
         }
         if let Some([from, to]) = self.window.map(|window| window.map(Time::get))
             && from >= to

@@ -26,6 +26,10 @@ impl Scenario {
             };
             each_table(key, value, look, &mut remarks);
         }
+        for (index, line) in self.line_of_sight.iter().enumerate() {
+            let remark = self.model.three_axis().and_then(|body| line.remark(body));
+            remarks.extend(remark.map(|own| own.within(&format!("line_of_sight[{index}]"))));
+        }
         remarks.extend(self.known_inertia());
         remarks.extend(self.environment_remarks());
         remarks

@@ -1,12 +1,12 @@
 //! Outputs of a loop: angles, rates, pointing errors, coordinates of the body, lines of sight, and commands.
 
-use flexsc_numerics::attitude::{AXES, Vector};
+use flexsc_numerics::attitude::AXES;
 use nalgebra::RowDVector;
 
 use super::motion::OutputRow;
 use crate::linear_model::Signal;
 use crate::open_loop::LoopParts;
-use flexsc_scenario::Scenario;
+use flexsc_scenario::{LineSensitivity, Scenario};
 
 /// Returns the outputs of a loop, with rows over the states of the body.
 pub fn outputs(parts: &LoopParts<'_>) -> (Vec<Signal>, Vec<OutputRow>) {
@@ -39,21 +39,17 @@ fn error_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
     AXES.iter().enumerate().map(row).collect()
 }
 
-/// Returns the error of each line of sight about the axes of the body: the rotation of its point perpendicular to it.
+/// Returns the error of each line of sight about the axes of the body.
 fn line_of_sight_rows(scenario: &Scenario, order: usize) -> Vec<(Signal, OutputRow)> {
     let Some(body) = scenario.model.three_axis() else { return Vec::new() };
     let mut all = Vec::new();
     for (index, line) in scenario.line_of_sight.iter().enumerate() {
-        let direction = line.direction();
-        let across = |rotation: &Vector| rotation - direction * direction.dot(rotation);
-        let shapes = body.shapes(&line.point);
+        let LineSensitivity { rigid, modes } = line.sensitivity(body);
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let mut row = RowDVector::zeros(order);
-            for rigid in 0..AXES.len() {
-                row[rigid] = across(&Vector::ith(rigid, 1.0))[axis];
-            }
-            for (mode, (_, rotation)) in shapes.iter().enumerate() {
-                row[6 + 2 * mode] = across(rotation)[axis];
+            row.columns_mut(0, AXES.len()).copy_from(&rigid.row(axis));
+            for (mode, own) in modes.iter().enumerate() {
+                row[6 + 2 * mode] = own[axis];
             }
             // A line along an axis has no error about it.
             if row.amax() > 1e-12 {

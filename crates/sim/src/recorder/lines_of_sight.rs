@@ -8,7 +8,8 @@ use flexsc_spacecraft::environment::to_body;
 use crate::guidance::Guidance;
 use crate::plant::Plant;
 use crate::run_view::RunView;
-use flexsc_scenario::{LineOfSight, Scenario};
+use flexsc_scenario::{LineOfSight, LineSensitivity, Scenario};
+use nalgebra::Quaternion;
 
 /// Run-time state of the lines of sight.
 #[derive(Clone, Debug, Default)]
@@ -25,6 +26,8 @@ struct MountedLine {
     /// Rotation (rad/(m sqrt(kg))) and displacement (1/sqrt(kg)) of the point relative to the hub per unit of each mode.
     rotations: Vec<Vector>,
     displacements: Vec<Vector>,
+    /// Effect of its optics; `None` if it turns with its point.
+    optics: Option<LineSensitivity>,
 }
 
 impl MountedLine {
@@ -45,18 +48,25 @@ impl MountedLine {
             offsets: difference(scenario.study.sensor_points.first()?),
             rotations: difference(hub),
             displacements: body.displacements(&line.point, &Vector::zeros()),
+            optics: (!line.optics.is_empty()).then(|| line.sensitivity(body)),
         })
     }
 
     /// Returns the rotation (rad) from the target direction to the actual one; `None` on a body with one axis.
     fn error(&self, plant: &Plant, guidance: &Guidance, now: Instant) -> Option<Vector> {
         let (truth, body) = (plant.truth(), plant.quantities().three_axis()?.body());
-        let bent = Vector::from(truth.elastic) + body.modal_rotation(&self.offsets);
-        let instrument = truth.orientation.rotated_by(bent.into()).attitude()?;
         let target = guidance.origin(now).attitude()?;
-        // The direction in the axes of the target.
-        let seen: Vector = to_body(&(instrument.conjugate() * target), &self.direction);
-        Some(rotation_between(&self.direction, &seen))
+        // Rotation of the direction in the axes of the target.
+        let turned = |instrument: Quaternion<f64>| {
+            let seen: Vector = to_body(&(instrument.conjugate() * target), &self.direction);
+            rotation_between(&self.direction, &seen)
+        };
+        if let Some(optics) = &self.optics {
+            let rigid = turned(truth.orientation.attitude()?);
+            return Some(optics.rigid * rigid + body.modal_rotation(&optics.modes));
+        }
+        let bent = Vector::from(truth.elastic) + body.modal_rotation(&self.offsets);
+        Some(turned(truth.orientation.rotated_by(bent.into()).attitude()?))
     }
 
     /// Returns the sample of the line of sight with this index; `None` on a body with one axis.

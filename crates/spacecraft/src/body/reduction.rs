@@ -19,6 +19,8 @@ use super::one_axis::HUB_FREE;
 
 /// Part of the largest load on a mode that counts as none.
 const UNLOADED: f64 = 1e-9;
+/// Highest natural frequency of the modes that are kept by default (rad/s).
+const KEPT: f64 = 1e3;
 /// Ratio x_n/f_n times sqrt(J) for a mode that a load excites and that does not turn the hub: so small that the mode is lost
 /// in the rounding of the hub's angle.
 const UNSEEN: f64 = 1e-24;
@@ -62,9 +64,9 @@ impl ModalReduction<'_> {
             CommandedQuantity::Motion => HubState::Held,
         };
         let solved = structure.modes(hub, &weights)?;
-        let within = |w: &&f64| **w <= Frequency::LARGEST;
-        let resolved = solved.frequencies.iter().take_while(within).count();
-        let count = self.keep.map_or(resolved, |keep| keep as usize);
+        let up_to = |limit: f64| solved.frequencies.iter().take_while(|w| **w <= limit).count();
+        let resolved = up_to(Frequency::LARGEST);
+        let count = self.keep.map_or_else(|| up_to(KEPT), |keep| keep as usize);
         if count > resolved {
             let why = format!(
                 "must be at most {resolved}, the number of modes up to {:e} rad/s, got {count}",

@@ -258,7 +258,7 @@ impl Appendage {
         };
         let frequency = Frequency::new(mode.frequency).ok_or_else(|| {
             let found = mode.frequency;
-            format!("must have a natural frequency of 1e-4 to 1e3 rad/s, got {found}: `keep` fewer modes")
+            format!("must have a natural frequency of 1e-4 to 1e4 rad/s, got {found}: `keep` fewer modes")
         })?;
         let mut clamped = ClampedMode::from_frequency(frequency);
         clamped.damping = damping;
