@@ -187,6 +187,10 @@ fn uninterrupted() -> Result<(), CliError> {
 
 /// Returns the directory of a campaign after its missing runs are made.
 fn filled(campaign: &Campaign, path: &Path, runs: Option<u64>) -> Result<Directory, CliError> {
+    if path.is_file() {
+        let why = "is a file, not the directory of a campaign";
+        return Err(CliError::Arguments(format!("--campaign {}: {why}", path.display())));
+    }
     let existing = if Directory::is_campaign_directory(path) {
         Some(Directory::open(path).map_err(part_files::failure)?)
     } else {
