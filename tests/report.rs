@@ -114,6 +114,7 @@ fn the_campaign_of_a_directory_is_not_run_again() {
     dir.run("report half-turn.toml --set seed=5 --campaign made -o other.html")
         .exits(2)
         .says(&["made", "seed"]);
+    dir.run("report half-turn.toml --campaign held.html -o other.html").exits(2).says(&["is a file"]);
     assert!(!dir.path("other.html").exists());
 }
 
