@@ -115,7 +115,7 @@ def differences():
             turn, way, momentum = found
             row = f"| {name} | {turn:.1e} rad | {way:.2g} m | {momentum:.1e} N m s |"
             lines.append(row.replace("e-0", "e-"))
-    return lines
+    return lines if len(lines) > 2 else []
 
 
 def table():
