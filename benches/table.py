@@ -1,8 +1,9 @@
 """Measures the engine beside its peers in one run, and writes the table of docs/benchmarks.md.
 
 pip install scipy mpmath control bsk  # python-control and Basilisk (bsk) may be left out
-python3 benches/table.py            # prints the table
-python3 benches/table.py --write    # and puts it into docs/benchmarks.md
+python3 benches/table.py              # prints the tables
+python3 benches/table.py --write      # and puts them into docs/benchmarks.md
+python3 benches/table.py --write day  # the CubeSat's day alone; FORTY_TWO as in benches/day/beside.py
 """
 
 import json
@@ -13,8 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-import station
-from loops import peers
+from day import beside
 
 ROOT = Path(__file__).resolve().parent.parent
 RUN = "run of 20000 s"
@@ -131,6 +131,7 @@ def duration(seconds):
 
 def loop():
     """The table of the sampled loop."""
+    from loops import peers
 
     def one(name):
         return criterion("sampled loop", name)
@@ -157,6 +158,7 @@ def loop():
 
 def spatial():
     """The table of the space station."""
+    import station
 
     def one(name):
         return criterion("station, 700 s", name)
@@ -251,9 +253,11 @@ def table():
 
 
 if __name__ == "__main__":
-    text = table()
-    print(text)
-    if "--write" in sys.argv[1:]:
-        page = ROOT / "docs" / "benchmarks.md"
-        pattern = re.compile(r"(<!-- table -->\n).*?(<!-- end -->)", re.S)
-        page.write_text(pattern.sub(lambda m: m[1] + text + m[2], page.read_text()))
+    made = {"table": table, "day": beside.table}
+    for name in made.keys() & set(sys.argv[1:]) or made:
+        text = made[name]()
+        print(text)
+        if "--write" in sys.argv[1:]:
+            page = ROOT / "docs" / "benchmarks.md"
+            pattern = re.compile(rf"(<!-- {name} -->\n).*?(<!-- end -->)", re.S)
+            page.write_text(pattern.sub(lambda m, text=text: m[1] + text + m[2], page.read_text()))

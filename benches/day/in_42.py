@@ -1,10 +1,9 @@
-"""The study of nadir.toml in 42: CPU time (s) of its run, pointing and wheels at its end, as JSON.
+"""The study of nadir.toml in 42: user CPU time (s) of its run and its rows, as JSON.
 
-git clone https://github.com/ericstoneking/42
-python3 benches/day/in_42.py 42 [STEP]  # STEP (s) of integration: 0.5
+python3 benches/day/in_42.py 42 DURATION STEP [without-drag]    # s, s of integration
 
-It builds 42 in that directory without graphics, with nadir_law.c in place of its SandboxFSW, writes the input
-files into 42/Day from those of 42/InOut, and runs them.
+The first argument is the directory of a built 42 whose SandboxFSW is that of nadir_law.c. It stays as it
+is: the input files are those of its InOut with the study's values, and plates, in a directory of their own.
 """
 
 import json
@@ -13,26 +12,17 @@ import resource
 import shutil
 import subprocess
 import sys
-from math import degrees, hypot, radians
+import tempfile
+from math import degrees
 from pathlib import Path
 
 import tomllib
 
 HERE = Path(__file__).resolve().parent
 STUDY = tomllib.loads((HERE / "nadir.toml").read_text())
-FLAGS = "-O2 -w -fpic -I Include/ -I Kit/Include/ -I Kit/Source/"
-
-
-def build(home):
-    """Builds 42 with the law, once."""
-    source, marked = home / "Source" / "42fsw.c", "ShippedSandboxFSW"
-    text = source.read_text()
-    if marked not in text:
-        text = text.replace("void SandboxFSW(struct SCType *S)\n{", f"void {marked}(struct SCType *S)\n{{")
-        end = text.index("void FlightSoftWare(")
-        source.write_text(text[:end] + (HERE / "nadir_law.c").read_text() + text[end:])
-    make = ["make", "-s", "GUIFLAG=", "SHADERFLAG=", f"CFLAGS={FLAGS}", "42"]
-    subprocess.run(make, cwd=home, check=True)
+# The radius of the Earth in 42 (m); the solar activity F10.7 for which its NRLMSISE-00 has the study's
+# density on the mean of an orbit, and the index Ap.
+RADIUS, ACTIVITY, DISTURBED = 6378145.0, 145.0, 8.0
 
 
 def edited(text, lines):
@@ -51,30 +41,62 @@ def blocks(text, title, count):
     return text[: found.start()] + found.group(0) * count + text[found.end() :]
 
 
-def write(home, step):
-    """Writes the input files."""
-    case, shipped = home / "Day", home / "InOut"
-    shutil.rmtree(case, ignore_errors=True)
+def geometry(plates):
+    """The plates as an .obj file and its materials: squares whose corners turn left about their normals."""
+    lines, faces = ["mtllib Day.mtl", "o plates"], []
+    for plate in plates:
+        axis = next(index for index, part in enumerate(plate["normal"]) if part)
+        one, two, half = (axis + 1) % 3, (axis + 2) % 3, plate["area"] ** 0.5 / 2
+        for left, up in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+            corner = list(plate["at"])
+            corner[one] += plate["normal"][axis] * left * half
+            corner[two] += up * half
+            lines.append("v " + " ".join(f"{part:.9f}" for part in corner))
+        first = 4 * len(faces) + 1
+        faces.append("f " + " ".join(str(first + corner) for corner in range(4)))
+    lines += ["usemtl PLATE", *faces]
+    materials = "".join(
+        f"newmtl {name}\nKd 0.5 0.5 0.5\nSpecFrac {plates[0]['specular']}\nDiffFrac 0.0\n\n"
+        for name in ("default", "PLATE")
+    )
+    return "\n".join(lines) + "\n", materials
+
+
+def write(home, place, duration, step, drag):
+    """Writes a directory like that of 42 with the input files."""
+    case, shipped = place / "Day", home / "InOut"
+    for part in home.iterdir():
+        if part.name != "Model":
+            (place / part.name).symlink_to(part)
     shutil.copytree(shipped, case)
+    (place / "Model").mkdir()
+    for part in (home / "Model").iterdir():
+        (place / "Model" / part.name).symlink_to(part)
+    plates, materials = geometry(STUDY["environment"]["solar_pressure"]["plates"])
+    (place / "Model" / "Day.obj").write_text(plates)
+    (place / "Model" / "Day.mtl").write_text(materials)
     body, wheel, orbit = STUDY["spacecraft"], STUDY["actuator"]["wheels"], STUDY["environment"]["orbit"]
     text = edited(
         (shipped / "Inp_Sim.txt").read_text(),
         [
-            ("Sim Duration", f"{STUDY['duration']} {step}"),
+            ("Sim Duration", f"{duration} {step}"),
             ("File Output Interval", STUDY["log"]["period"]),
             ("Graphics Front End", "FALSE"),
             ("Date (UTC)", f"{STUDY['epoch']:%m %d %Y}"),
             ("Time (UTC)", f"{STUDY['epoch']:%H %M} 0.0"),
             ("IGRF Degree", "10 10"),
-            ("Aerodynamic", "TRUE FALSE"),
+            ("USER-provided F10.7", ACTIVITY),
+            ("USER-provided Ap", DISTURBED),
+            ("Aerodynamic", "TRUE FALSE" if drag else "FALSE FALSE"),
             ("Gravity Gradient", "TRUE"),
+            ("Solar Pressure", "TRUE FALSE"),
             *((planet, "FALSE") for planet in ("Mercury", "Venus", "Mars and", "Jupiter", "Saturn")),
             *((planet, "FALSE") for planet in ("Uranus", "Neptune", "Pluto")),
         ],
     )
     (case / "Inp_Sim.txt").write_text(text)
     (case / "Inp_Cmd.txt").write_text("EOF\n")
-    height = (orbit["semi_major_axis"] - 6378137.0) / 1e3
+    height = (orbit["semi_major_axis"] - RADIUS) / 1e3
     text = edited(
         (shipped / "Orb_LEO.txt").read_text(),
         [
@@ -97,11 +119,11 @@ def write(home, step):
             ("FSW Sample", STUDY["law"]["attitude"]["period"]),
             ("Ang Vel wrt", "NQN"),
             ("Ang Vel (deg", "0 0 0"),
-            ("Drag Coefficient", STUDY["environment"]["drag"]["coefficient"]),
+            ("Quaternion", " ".join(map(str, (*body["attitude"][1:], body["attitude"][0])))),
+            ("Drag Coefficient", 2.2),
             ("Mass\n", body["mass"]),
             ("Moments of", " ".join(str(row[axis]) for axis, row in enumerate(body["inertia"]))),
-            ("Location of mass center", f"0 0 {-STUDY['environment']['drag']['plates'][0]['at'][2]}"),
-            ("Geometry Input", "Cubesat_6U.obj"),
+            ("Geometry Input", "Day.obj"),
             ("Number of wheels", 3),
             ("Number of MTBs", 3),
         ],
@@ -118,26 +140,24 @@ def write(home, step):
 
 
 def main():
-    home, step = Path(sys.argv[1]).resolve(), float(sys.argv[2]) if len(sys.argv) > 2 else 0.5
-    build(home)
-    write(home, step)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    subprocess.run(["./42", "Day"], cwd=home, check=True, stdout=subprocess.DEVNULL)
-    cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+    home, duration, step = Path(sys.argv[1]).resolve(), float(sys.argv[2]), float(sys.argv[3])
+    with tempfile.TemporaryDirectory() as name:
+        place = Path(name)
+        write(home, place, duration, step, "without-drag" not in sys.argv[4:])
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        subprocess.run(["./42", "Day"], cwd=place, check=True, stdout=subprocess.DEVNULL)
+        cpu = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
-    def rows(name):
-        lines = (home / "Day" / name).read_text().splitlines()
-        return [[float(value) for value in line.split()] for line in lines]
+        def rows(name):
+            lines = (place / "Day" / name).read_text().splitlines()
+            return [[float(value) for value in line.split()] for line in lines]
 
-    wheels = [hypot(*row) for row in rows("Hwhl.42")]
-    found = {
-        "cpu_s": cpu,
-        "rows": len(wheels),
-        "position_m": rows("PosN.42")[-1][:3],
-        "error_rad": radians(hypot(*rows("RPY.42")[-1])),
-        "momentum_nm_s": wheels[-1],
-        "momentum_peak_nm_s": max(wheels),
-    }
+        found = {
+            "cpu_s": cpu,
+            "attitude": [[row[3], *row[:3]] for row in rows("qbn.42")],
+            "position": [row[:3] for row in rows("PosN.42")],
+            "momentum": rows("Hwhl.42"),
+        }
     print(json.dumps(found))
 
 

@@ -1,10 +1,10 @@
-/* The law of nadir.toml for 42: it replaces SandboxFSW, which 42 offers for such uses. Three wheels along x, y and z point the
-   body to the Earth, and magnetorquers along them unload the wheels. It is compiled at the end of Source/42fsw.c. */
+/* The law of nadir.toml as SandboxFSW of 42, which 42 offers for laws of one's own: three wheels along x, y and z point the body
+   to the Earth as a sphere, and magnetorquers along them unload the wheels. */
 void SandboxFSW(struct SCType *S)
 {
-   const double bandwidth = 0.05, damping = 0.8, unload = 2.0E-3;
+   const double bandwidth = 0.05, damping = 0.8, unload = 2.0E-3, inertia = 0.5667;
    struct AcType *AC = &S->AC;
-   double CLN[3][3], CBN[3][3], q[4], wn[3], w[3], h[3], mxb[3], m[3], square = 0.0;
+   double CLN[3][3], CBN[3][3], q[4], wn[3], w[3], h[3], all[3], turn[3], mxb[3], m[3], square = 0.0;
    long i;
 
    FindCLN(AC->PosN, AC->VelN, CLN, wn);
@@ -14,9 +14,14 @@ void SandboxFSW(struct SCType *S)
    QxQT(AC->qbn, AC->qrn, q);
    RECTIFYQ(q);
    for (i = 0; i < 3; i++) {
-      AC->Tcmd[i] = -AC->MOI[i][i]*(2.0*damping*bandwidth*(AC->wbn[i] - w[i]) + bandwidth*bandwidth*2.0*q[i]);
       h[i] = AC->Whl[i].H;
+      all[i] = inertia*AC->wbn[i] + h[i];
       square += AC->bvb[i]*AC->bvb[i];
+   }
+   VxV(AC->wbn, all, turn);
+   for (i = 0; i < 3; i++) {
+      AC->Tcmd[i] = turn[i] - inertia*(2.0*damping*bandwidth*(AC->wbn[i] - w[i])
+         + bandwidth*bandwidth*4.0*q[i]/(1.0 + q[3]));
    }
    VxV(h, AC->bvb, m);
    for (i = 0; i < 3; i++) {
