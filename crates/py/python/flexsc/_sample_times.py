@@ -9,6 +9,8 @@ from flexsc._values import arrays
 
 _MOST_VALUES = 200_000_000
 """Largest number of values that the samples of a call keep in memory."""
+# Times (s) that are nearer are those of one sample.
+_SAME_TIME = 1e-9
 
 
 class SampleTimes:
@@ -46,10 +48,32 @@ class SampleTimes:
             )
 
     def rows(self, topics: dict[str, dict[str, Any]]) -> dict[str, dict[str, npt.NDArray[Any]]]:
-        """Return the columns of topics with a row for each time, in the order in which they were asked."""
-        seen = {name: arrays(columns) for name, columns in topics.items()}
+        """Return the columns of topics with a row for each time, in the order in which they were asked.
+
+        A part that acts in one mode of operation has no values at other times.
+        """
+        seen = {name: self._spread(arrays(columns)) for name, columns in topics.items()}
         for columns in seen.values():
             if self._back is not None:
                 columns.update({name: values[self._back] for name, values in columns.items()})
             columns["time_s"] = self.asked.copy()
         return seen
+
+    def _spread(self, columns: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        """Return columns of the times at which they have rows as columns of all times."""
+        there, grown = columns["time_s"], np.array(self.grown)
+        if len(there) == len(grown):
+            return columns
+        near = np.searchsorted(there, grown - _SAME_TIME)
+        has_row = near < len(there)
+        has_row[has_row] = np.abs(there[near[has_row]] - grown[has_row]) < _SAME_TIME
+        spread = {}
+        for name, values in columns.items():
+            spread[name] = missing((len(grown), *values.shape[1:]), values.dtype)
+            spread[name][has_row] = values
+        return spread
+
+
+def missing(shape: tuple[int, ...], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
+    """Return an array that stands for no values: NaN for numbers and counts, empty texts."""
+    return np.full(shape, np.nan) if dtype.kind in "fiu" else np.zeros(shape, dtype)

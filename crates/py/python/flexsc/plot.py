@@ -221,11 +221,10 @@ def drawn(source: Source, name: str) -> engine.Figure:
         try:
             return engine.log_figure(log, name, _known(source))
         except ValueError as error:
-            # A name that no figure has.
-            if "invalid variant" not in str(error):
+            names = engine.log_figures(log, _known(source))
+            if name in names:
                 raise
-        names = ", ".join(engine.log_figures(log, _known(source)))
-        raise ValueError(f"there is no figure {name!r} for it; it has {names}")
+            raise ValueError(f"there is no figure {name!r} for it; it has {', '.join(names)}") from error
     there = _of_campaign(source, None, ())
     if name not in there and isinstance(source, Table):
         kind, _, metric = name.partition("-")
