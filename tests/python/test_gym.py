@@ -1,6 +1,7 @@
 """Environments: accepted by the checkers, many as each alone, ends of episodes, a study's table."""
 
 import doctest
+import subprocess
 import sys
 import warnings
 from collections.abc import Iterator
@@ -414,3 +415,9 @@ def test_a_copy_continues_as_its_original(uncertain: flexsc.Scenario) -> None:
     assert env.reset()[1] == tried.reset()[1]
     tried.step(actions[0])
     assert env.simulators.time == 0.0
+
+
+def test_gymnasium_must_be_installed() -> None:
+    code = "import sys; sys.modules['gymnasium'] = None; import flexsc.gym"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "ModuleNotFoundError: flexsc.gym needs Gymnasium: pip install flexsc[gym]" in done.stderr

@@ -19,7 +19,10 @@ from collections.abc import Sequence
 from copy import deepcopy
 from typing import Any, NoReturn
 
-import gymnasium
+try:
+    import gymnasium
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(f"flexsc.gym needs Gymnasium: pip install flexsc[gym] ({error})") from error
 from gymnasium.vector import AutoresetMode
 
 from flexsc._episodes import (
