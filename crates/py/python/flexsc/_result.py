@@ -299,7 +299,7 @@ class Result(Topics, Exportable, Drawable):
         end = self._until
         what = "duration" if end == self.scenario.duration else "time of the run"
         asked = SampleTimes(times, end, what)
-        if len(asked.grown) > _FEW_TIMES:
+        if len(asked.asked) > _FEW_TIMES:
             asked.check_size(engine.sample_sizes(self.scenario._native, self.run))
         if self._motion is None:
             self._motion = engine.MotionSampler(self.scenario._native, self.run, self._stepped)

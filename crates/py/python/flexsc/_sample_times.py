@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 from flexsc._numpy import np, npt
@@ -28,10 +29,16 @@ class SampleTimes:
         if not within.all():
             wrong = self.asked[~within][0].item()
             raise ValueError(f"times must be from 0 to the {what}, {end:g} s, got {wrong:g}")
-        order = np.argsort(self.asked, kind="stable")
-        self.grown: list[float] = self.asked[order].tolist()
-        # The times of most calls grow.
-        self._back = None if (order[1:] > order[:-1]).all() else np.argsort(order, kind="stable")
+
+    @cached_property
+    def _order(self) -> npt.NDArray[np.intp]:
+        return np.argsort(self.asked, kind="stable")
+
+    @cached_property
+    def grown(self) -> list[float]:
+        """The times as a run passes them, once their number is known to be small enough."""
+        times: list[float] = self.asked[self._order].tolist()
+        return times
 
     def check_size(self, sizes: dict[str, int], runs: int = 1) -> None:
         """Check that the samples of runs fit in memory, from the number of values in each by topic.
@@ -54,8 +61,10 @@ class SampleTimes:
         """
         seen = {name: self._spread(arrays(columns)) for name, columns in topics.items()}
         for columns in seen.values():
-            if self._back is not None:
-                columns.update({name: values[self._back] for name, values in columns.items()})
+            # The times of most calls grow.
+            if (self._order[1:] < self._order[:-1]).any():
+                back = np.argsort(self._order, kind="stable")
+                columns.update({name: values[back] for name, values in columns.items()})
             columns["time_s"] = self.asked.copy()
         return seen
 
