@@ -23,14 +23,27 @@ class Explorer:
     """Sliders of keys, with a figure and the answer of the run at their values.
 
     A notebook shows it as the last line of a cell. `flexsc.explore` makes it.
+
+    >>> found = flexsc.explore(flexsc.Scenario.example("relay-fixed"), ["law.relay.k_t"])   # doctest: +SKIP
     """
 
     scenario: Scenario
-    """The scenario with the values of the sliders."""
+    """The scenario with the values of the sliders.
+
+    >>> found.scenario.get("law.relay.k_t")                             # doctest: +SKIP
+    0.31
+    """
     sliders: dict[str, Any]
-    """The widget of each key."""
+    """The widget of each key.
+
+    >>> found.sliders["law.relay.k_t"].value = 0.34                     # doctest: +SKIP
+    """
     shown: Any
-    """The widget of the figure and the answer, whose `value` is HTML."""
+    """The widget of the figure and the answer, whose `value` is HTML.
+
+    >>> found.shown.value[:4]                                           # doctest: +SKIP
+    '<svg'
+    """
 
     def __init__(
         self,

@@ -128,7 +128,13 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
         return self._task.observed
 
     def render(self) -> NoReturn:
-        """Raise an error: `result` has the figures of an episode."""
+        """Raise an error: `result` has the figures of an episode.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> start = env.reset(seed=1)
+        >>> env.result().svg()[:4]
+        '<svg'
+        """
         raise NotImplementedError("an episode has no frames: `result` has its log and its figures")
 
     def __deepcopy__(self, memo: dict[int, Any]) -> SpacecraftEnv:
