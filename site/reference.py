@@ -236,16 +236,17 @@ def command() -> str:
 
 # Groups of the index of Python names; what is in none stands in the last.
 GROUPS = {
-    "Scenarios and runs": "Scenario Result Samples Topic Metrics Simulator Simulators Snapshot "
+    "Scenarios and runs": "Scenario Result Answer Samples Topic Metrics Simulator Simulators Snapshot "
     "Quantities Plan Log read_log examples schema metrics topics",
-    "Campaigns and searches": "campaign sweep evaluate estimate read_campaign Table Row optimise "
-    "explore Explorer sensitivities Sensitivities WorstCase PointingBudget IndexBudget "
+    "Campaigns and searches": "campaign sweep compare evaluate estimate read_campaign Table "
+    "CampaignAnswer Comparison Row optimise explore Explorer sensitivities Sensitivities WorstCase PointingBudget IndexBudget "
     "BudgetLevel",
     "Linear models, margins and noise": "Linear Signal CommonMargins LoopMargins StabilityMargins "
     "NoiseSpectrum OutputNoise SettlingTime WheelSpectrum WheelLines OutputBound Witness TunedScenario "
     "TunedPlant TunedMeasure",
     "Your own parts": "Law ThreeAxisLaw CompiledLaw Sensor Estimator Actuator Adaptation "
-    "Reading Hold ThreeAxisHold Effort",
+    "DisturbanceModel Guidance CompiledThreeAxisLaw CompiledDisturbance CompiledGuidance "
+    "Reading Hold ThreeAxisHold Effort Load Aim",
     "Structures": "Structure StateSpace appendage_from_matrices appendage_from_nastran "
     "from_csv from_nastran from_state_space read_matrices",
     "Errors": "ScenarioError SimulationError LogError",
