@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import flexsc
+import flexsc.papers
 import flexsc.parts
 import flexsc.plot
 import flexsc.results
@@ -235,20 +236,19 @@ def command() -> str:
 
 # Groups of the index of Python names; what is in none stands in the last.
 GROUPS = {
-    "Scenarios and runs": "Scenario Result Samples Topic Metrics Simulator Simulators Snapshot "
+    "Scenarios and runs": "Scenario Result Answer Samples Topic Metrics Simulator Simulators Snapshot "
     "Quantities Plan Log read_log examples schema metrics topics",
-    "Campaigns and searches": "campaign sweep evaluate estimate read_campaign Table Row optimise "
-    "sensitivities Sensitivities WorstCase PointingBudget IndexBudget "
-    "BudgetLevel",
-    "Linear models, margins and noise": "Linear Signal Margins LoopMargins StabilityMargins NoiseSpectrum "
-    "OutputNoise SettlingTime WheelSpectrum WheelLines OutputBound Witness TunedScenario "
-    "TunedPlant TunedMeasure rigid_cycles gain_region stability_map "
-    "robust_gains",
+    "Campaigns and searches": "campaign sweep compare evaluate estimate read_campaign Table "
+    "CampaignAnswer Comparison Row optimise explore Explorer sensitivities Sensitivities WorstCase "
+    "PointingBudget IndexBudget BudgetLevel",
+    "Linear models, margins and noise": "Linear Signal CommonMargins LoopMargins StabilityMargins "
+    "NoiseSpectrum OutputNoise SettlingTime WheelSpectrum WheelLines OutputBound Witness TunedScenario "
+    "TunedPlant TunedMeasure",
     "Your own parts": "Law ThreeAxisLaw CompiledLaw Sensor Estimator Actuator Adaptation "
-    "Reading Hold ThreeAxisHold Effort",
-    "Active damping": "identify observer_margin observer_region persistence relay_damping",
+    "DisturbanceModel Guidance CompiledThreeAxisLaw CompiledDisturbance CompiledGuidance "
+    "Reading Hold ThreeAxisHold Effort Load Aim",
     "Structures": "Structure StateSpace appendage_from_matrices appendage_from_nastran "
-    "from_csv from_nastran from_state_space read_matrices write_scenario",
+    "from_csv from_nastran from_state_space read_matrices",
     "Errors": "ScenarioError SimulationError LogError",
     "Others": "",
 }
@@ -262,7 +262,14 @@ OF_A_RESULT = (
     "heading_level: 1, merge_init_into_class: false, show_attribute_values: false, show_bases: false"
 )
 # Modules of the package with a page each, and whether that has their members.
-MODULES = {"plot": True, "parts": False, "structure": False, "results": False, "scenario": False}
+MODULES = {
+    "papers": True,
+    "plot": True,
+    "parts": False,
+    "structure": False,
+    "results": False,
+    "scenario": False,
+}
 
 
 def python() -> dict[str, str]:

@@ -34,7 +34,8 @@ from scenario_classes import docstring
 
 FILE = Path(__file__).parent / "python" / "flexsc" / "results.py"
 WIDTH = 108
-UNITS = ("_rad_s", "_rad", "_nm_s", "_nm", "_hz", "_s")
+# Of those that are not of SI, names keep the unit: a frequency without one is in rad/s.
+UNITS = ("_rad_s", "_rad", "_nm_s", "_nm", "_s")
 # Classes with methods, by hand.
 BASES = {
     "IndexBudget": "BudgetFigure",

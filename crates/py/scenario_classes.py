@@ -26,7 +26,8 @@ NAMES = {
     # `flexsc.Log` is a log file.
     "Log": "LogContents",
     "Plate2": "DragPlate",
-    "Target2": "AttitudeTarget",
+    "Target": "ShapedZero",
+    "Target2": "Target",
     "Weights2": "RecurrenceWeights",
 }
 # Names that mean something else in `flexsc` and `flexsc.parts`: a kind with one of them also has the name of
@@ -45,10 +46,11 @@ HEAD = '''"""The parts of a scenario as classes, for editors and type checkers.
     >>> scenario.to_dict()["law"]["relay"]["k_t"]
     0.31
 
-Their keys, units and meanings are those of a scenario file. A key that is left out, or None, has its
-default. A table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of
-them, `LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to
-be is checked when a scenario is made of them; all mistakes are reported at once.
+Their keys, units and meanings are those of a scenario file. A key that is left out has its default: its
+field is None until a scenario is made of the part, and `Scenario.part` returns it with all defaults. A
+table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of them,
+`LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to be
+is checked when a scenario is made of them; all mistakes are reported at once.
 """
 
 # Made by crates/py/scenario_classes.py: a change here is lost.
@@ -59,7 +61,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
-from flexsc._part import Part
+from flexsc._part import DEFAULT, Part
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -69,6 +71,15 @@ Vector: TypeAlias = Union[Sequence[float], "npt.NDArray[Any]"]
 Rows: TypeAlias = Union[Sequence[Sequence[float]], "npt.NDArray[Any]"]
 """Rows of numbers: lists in a list, or an array of shape (rows, columns)."""
 '''
+OLD_NAMES = """
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        from flexsc import _deprecated
+
+        return _deprecated.of_module(__name__, name)
+"""
 
 
 def camel(name: str) -> str:
@@ -250,7 +261,7 @@ def field(schema: Schema, name: str, of: dict[str, Any], needed: bool) -> str:
     is_date = name == "epoch"
     name = python_name(name)
     kind = "datetime" if is_date else schema.type_of(of)
-    line = f"    {name}: {kind}\n" if needed else f"    {name}: {kind} | None = None\n"
+    line = f"    {name}: {kind}\n" if needed else f"    {name}: {kind} = DEFAULT\n"
     if len(line) > 110:
         # Ruff's form of a choice of many words.
         line = line.replace('Literal["', 'Literal[\n        "').replace('", "', '",\n        "')
@@ -329,7 +340,7 @@ def written(schema_of_scenarios: dict[str, Any]) -> str:
             keys += f"\n{line}" + docstring(of.get("description", ""), "    ")
     text = HEAD.replace("\nVector: TypeAlias", listed + "\nVector: TypeAlias", 1)
     bodies = "".join(body for _, body in sorted(classes))
-    return text + bodies + "\n\n" + "".join(union for _, union in sorted(unions)) + keys
+    return text + bodies + "\n\n" + "".join(union for _, union in sorted(unions)) + keys + OLD_NAMES
 
 
 if __name__ == "__main__":

@@ -184,7 +184,9 @@ assert min(before["stability"], without_slew["stability"]) > 0.5 > after["stabil
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
 for label, scenario in (("first guess", first), ("tuned", tuned.scenario)):
     drawn = scenario.spectrum([camera])
-    axes.loglog(drawn.frequency, np.sqrt(drawn.outputs[camera].density) / arcsec, linewidth=0.9, label=label)
+    axes.loglog(
+        drawn.frequency_hz, np.sqrt(drawn.outputs[camera].density) / arcsec, linewidth=0.9, label=label
+    )
 axes.set(xlabel="frequency [Hz]", ylabel="line of sight [arcsec/√Hz]", xlim=(1e-3, 2.5), ylim=(1e-3, 10))
 _ = axes.legend()
 

@@ -27,7 +27,7 @@ print(scenario.to_toml())
 # of the cycle coincides with a mode. Avoid these gains.
 
 # %%
-theory = flexsc.rigid_cycles(scenario)
+theory = flexsc.papers.rigid_cycles(scenario)
 for cycle in theory["cycles"]:
     print(
         f"period {cycle['period_s']:.2f} s, thrusters on {cycle['duty']:.0%} of the time, stable: {cycle['stable']}"

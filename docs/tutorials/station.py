@@ -38,7 +38,7 @@ assert on.metrics["energy_below_1pct_at_s"] < 0.2 * off.metrics["energy_below_1p
 frequencies = np.linspace(0.2, 12.0, 60)
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
 for delay in (0.0, 0.2):
-    rows = flexsc.relay_damping(frequencies, 5.9e-5, delay=delay)
+    rows = flexsc.papers.relay_damping(frequencies, 5.9e-5, delay=delay)
     axes.plot(frequencies / (2 * np.pi), rows["phase_factor"], label=f"delay {delay} s")
 axes.axhline(0.0, color="grey", linewidth=0.7)
 axes.set(xlabel="frequency of the mode [Hz]", ylabel="phase factor E")

@@ -38,7 +38,7 @@ _ = axes.legend()
 
 # %%
 frequencies = np.linspace(0.10, 0.36, 27)
-region = flexsc.gain_region(fixed, frequencies)
+region = flexsc.papers.gain_region(fixed, frequencies)
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
 axes.fill_between(
     frequencies, region["gain_min"], region["gain_max"], alpha=0.3, label="stable, settles within 200 s"

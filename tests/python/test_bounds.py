@@ -68,14 +68,14 @@ def test_long_work_needs_a_yes() -> None:
     with pytest.raises(flexsc.ScenarioError, match=r"`law.pd.period` makes .* at most 1.0e12 are allowed"):
         long.with_("law.pd.period", 1e-13)
     with pytest.raises(ValueError, match="horizon must be at most 1e7 samples"):
-        flexsc.stability_map(shipped("wheel-ekf"), [0.3], [1e-15], yes=True)
+        flexsc.papers.stability_map(shipped("wheel-ekf"), [0.3], [1e-15], yes=True)
     with pytest.raises(ValueError, match="runs and cycles must be from 1 to 1000000"):
-        flexsc.identify([(1.5, 2.0)], runs=10**12)
+        flexsc.papers.identify([(1.5, 2.0)], runs=10**12)
 
 
 def test_pushes_come_within_some_turns_of_a_mode() -> None:
     with pytest.raises(ValueError, match="at most 1e5 rad later than its sample"):
-        flexsc.relay_damping([1.0], 0.1, period=1e20)
+        flexsc.papers.relay_damping([1.0], 0.1, period=1e20)
 
 
 def test_work_is_estimated_beforehand() -> None:

@@ -254,8 +254,8 @@ def test_arguments_of_other_types_are_named(tmp_path: Path, fixed: Scenario) -> 
         lambda: flexsc.campaign(100),  # type: ignore[arg-type]
         lambda: flexsc.campaign("m.toml"),  # type: ignore[arg-type]
         lambda: flexsc.sweep("m.toml", "duration", [1.0]),  # type: ignore[arg-type]
-        lambda: flexsc.rigid_cycles("x"),  # type: ignore[arg-type]
-        lambda: flexsc.write_scenario("x", tmp_path / "x.toml"),  # type: ignore[arg-type]
+        lambda: flexsc.papers.rigid_cycles("x"),  # type: ignore[arg-type]
+        lambda: flexsc.structure.write_scenario("x", tmp_path / "x.toml"),  # type: ignore[arg-type]
     ):
         with pytest.raises(TypeError, match=r"scenario must be a flexsc\.Scenario, got"):
             call()

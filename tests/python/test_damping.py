@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from flexsc import identify, observer_margin, observer_region, persistence, relay_damping
+from flexsc.papers import identify, observer_margin, observer_region, persistence, relay_damping
 
 HERTZ = 2.0 * np.pi
 

@@ -64,6 +64,10 @@ def test_an_ensemble_goes_to_other_libraries() -> None:
     samples = flexsc.campaign(scenario, 3, at=[0.0, 30.0, 60.0, 45.0]).samples
     assert samples is not None
     angle = samples["attitude"]["angle_rad"]
+    pyarrow = pytest.importorskip("pyarrow")
+    rows = pyarrow.table(samples["attitude"])
+    assert rows.column("angle_rad").to_pylist() == angle.ravel().tolist()
+    assert rows.schema.field("angle_rad").metadata[b"unit"] == b"rad"
     xarray = pytest.importorskip("xarray")
     found = samples.to_xarray()["attitude"]["angle_rad"]
     assert isinstance(found, xarray.DataArray)
@@ -140,3 +144,32 @@ def test_an_unknown_topic_is_refused_before_the_runs() -> None:
     with pytest.raises(KeyError, match="no topic 'pointin'; did you mean 'pointing'"):
         flexsc.campaign(scenario, 2, at=[3.0], topics=["rates", "pointin"])
     assert set(Counting.times) <= {0.0}
+
+
+class Counting(flexsc.Guidance):
+    """A target at rest, whose signal is the time (s)."""
+
+    signals = {"seen": "s", "word": str}  # noqa: RUF012
+    seen, word = 0.0, "aim"
+
+    def aim(self, sky: flexsc.parts.Sky) -> flexsc.Aim:
+        self.seen = sky.time
+        return flexsc.Aim((1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+def test_a_part_of_one_mode_has_no_values_in_others() -> None:
+    scenario = shipped("safe-mode").with_("duration", 3000.0).with_parts(guidance={"point": Counting()})
+    times = [3000.0, 100.0, 2000.0, 100.0, 0.0]
+    samples = scenario.simulate(at=times).samples
+    assert samples is not None
+    topic = samples["own_guidance_point"]
+    assert topic["time_s"].tolist() == times
+    assert topic["word"].tolist() == ["aim", "", "aim", "", ""]
+    assert np.isnan(topic["seen"]).tolist() == [False, True, False, True, True]
+    assert abs(topic["seen"][[0, 2]] - [3000.0, 2000.0]).max() < 2.0
+    assert dict(scenario.simulate().sample(times)) == dict(samples)
+    ensemble = flexsc.campaign(scenario, 2, at=times, topics=["own_guidance_point"]).samples
+    assert ensemble is not None
+    seen = ensemble["own_guidance_point"]["seen"]
+    assert seen.shape == (2, 5)
+    assert np.isnan(seen).tolist() == [[False, True, False, True, True]] * 2

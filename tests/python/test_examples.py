@@ -13,6 +13,7 @@ import flexsc
 import flexsc._native
 import flexsc.dask
 import flexsc.gym
+import flexsc.papers
 import flexsc.plot
 import flexsc.results
 import numpy
@@ -45,10 +46,19 @@ def names_of(module: ModuleType) -> dict[str, Any]:
     return {name: thing for name, thing in public.items() if callable(thing)}
 
 
+MODULES = ("papers", "parts", "structure", "plot", "gym", "dask")
 # The classes of scenarios have their keys, whose texts are those of the schema.
 PUBLIC = {
     f"{module.__name__}.{name}": thing
-    for module in (flexsc, flexsc.parts, flexsc.structure, flexsc.plot, flexsc.gym, flexsc.dask)
+    for module in (
+        flexsc,
+        flexsc.papers,
+        flexsc.parts,
+        flexsc.structure,
+        flexsc.plot,
+        flexsc.gym,
+        flexsc.dask,
+    )
     for name, thing in names_of(module).items()
 }
 CLASSES = {thing: name for name, thing in PUBLIC.items() if inspect.isclass(thing)}

@@ -15,6 +15,7 @@ from conftest import SCENARIOS, Command, shipped
 from flexsc import Result
 
 matplotlib: Any = pytest.importorskip("matplotlib")
+pytest.importorskip("matplotlib.pyplot")
 matplotlib.use("agg")
 plot: Any = pytest.importorskip("flexsc.plot")
 

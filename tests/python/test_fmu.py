@@ -12,6 +12,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import shipped
+from flexsc._fmi_library import fmi_library
 
 fmpy = pytest.importorskip("fmpy", reason="FMPy imports FMUs: pip install fmpy")
 
@@ -235,4 +236,15 @@ def test_what_cannot_be_exported_is_refused(tmp_path: Path) -> None:
         scenario.export_fmu(path, part="controller")
     with pytest.raises(ValueError, match="library"):
         scenario.export_fmu(path, library=tmp_path / "absent.so")
+    # The library of the package is in an archive; FMUs have it as it is.
+    damaged = tmp_path / "damaged.zip"
+    damaged.write_bytes(fmi_library().read_bytes()[:1000])
+    with pytest.raises(ValueError, match="cannot unpack the library of FMUs"):
+        scenario.export_fmu(path, library=damaged)
+    with zipfile.ZipFile(fmi_library()) as archive:
+        [name] = archive.namelist()
+        (tmp_path / name).write_bytes(archive.read(name))
+    scenario.export_fmu(tmp_path / "plain.fmu", library=tmp_path / name)
+    scenario.export_fmu(tmp_path / "packed.fmu")
+    assert (tmp_path / "plain.fmu").read_bytes() == (tmp_path / "packed.fmu").read_bytes()
     assert not path.exists()

@@ -1,6 +1,6 @@
 """Control moment gyros in Python: typed parts, figures of the log, steering by hand, linear models."""
 
-from typing import Literal
+from typing import Any
 
 import flexsc
 import numpy as np
@@ -9,12 +9,12 @@ import pytest
 from conftest import shipped
 from flexsc.scenario import (
     AttitudeLaw,
-    AttitudeTarget,
     ControlMomentGyros,
     LogContents,
     NamedPoint,
     NullMotion,
     Spacecraft,
+    Target,
 )
 
 Array = npt.NDArray[np.float64]
@@ -29,19 +29,8 @@ def pyramid(cant: float, angles: Array) -> Array:
     return directions.T
 
 
-def gyros(
-    angles: list[float] | None = None,
-    steering: Literal["pseudo_inverse"] | None = None,
-    null_motion: NullMotion | None = None,
-) -> ControlMomentGyros:
-    return ControlMomentGyros(
-        arrangement="pyramid",
-        cant=0.9,
-        momentum=6.0,
-        angles=angles,
-        steering=steering,
-        null_motion=null_motion,
-    )
+def gyros(**keys: Any) -> ControlMomentGyros:
+    return ControlMomentGyros(arrangement="pyramid", cant=0.9, momentum=6.0, **keys)
 
 
 def scenario(actuator: ControlMomentGyros) -> flexsc.Scenario:
@@ -51,7 +40,7 @@ def scenario(actuator: ControlMomentGyros) -> flexsc.Scenario:
             mass=100.0, inertia=np.diag([30.0, 40.0, 35.0]).tolist(), points=[NamedPoint(name="hub")]
         ),
         law=AttitudeLaw(period=0.1, bandwidth=0.6),
-        target=[AttitudeTarget(from_=0.0, roll=0.1, pitch=-0.1, yaw=0.2)],
+        target=[Target(from_=0.0, roll=0.1, pitch=-0.1, yaw=0.2)],
         actuator=actuator,
         log=LogContents(period=0.1),
     )

@@ -1,6 +1,7 @@
 """Environments: accepted by the checkers, many as each alone, ends of episodes, a study's table."""
 
 import doctest
+import subprocess
 import sys
 import warnings
 from collections.abc import Iterator
@@ -215,7 +216,16 @@ def test_bad_arguments_are_told(uncertain: flexsc.Scenario, one_angle: flexsc.Sc
         SpacecraftEnv(uncertain, observe={"state.speed": 1.0})
     with pytest.raises(ValueError, match=r"observe must give an array of shape \(1, numbers\)"):
         SpacecraftEnv(uncertain, observe=lambda sims: np.zeros(3))
+    with pytest.raises(TypeError, match="observe must map names to what they are divided by"):
+        SpacecraftEnv(uncertain, observe=["state.rate"])  # type: ignore[arg-type]
+    for kind in (SpacecraftEnv, SpacecraftVectorEnv):
+        with pytest.raises(ValueError, match="render_mode must be None, as `result` has the figures"):
+            kind(uncertain, render_mode="human")  # type: ignore[arg-type]
+    with pytest.raises(FileNotFoundError):
+        SpacecraftEnv("nowhere.toml")
     env = SpacecraftEnv(uncertain, reward=lambda sims, actions: np.zeros((1, 2)))
+    with pytest.raises(NotImplementedError, match="`result` has its log and its figures"):
+        env.render()
     env.reset(seed=0)
     with pytest.raises(ValueError, match=r"actions must have shape \(1, 3\)"):
         env.step(np.zeros(2))
@@ -385,3 +395,29 @@ def test_scales_are_those_of_the_fastest_way_to_the_goal() -> None:
     assert observed["believed.error"] >= 0.95 * error
     assert observed["believed.rate"] >= 0.95 * rate
     assert np.sqrt(error * slowest) / 2.0 < observed["believed.rate"] < 2.0 * np.sqrt(3.0 * error * fastest)
+
+
+def test_a_copy_continues_as_its_original(uncertain: flexsc.Scenario) -> None:
+    from copy import deepcopy
+
+    env = SpacecraftEnv(uncertain, dt=0.5)
+    env.reset(seed=3)
+    actions = np.random.default_rng(1).uniform(-1.0, 1.0, (6, 3))
+    for action in actions[:2]:
+        env.step(action)
+    tried = deepcopy(env)
+    for action in actions[2:]:
+        one, other = env.step(action), tried.step(action)
+        assert one[0].tolist() == other[0].tolist()
+        assert one[1:] == other[1:]
+    assert tried.result().metrics == env.result().metrics
+    # The next episode is the same too, and a step of one is none of the other.
+    assert env.reset()[1] == tried.reset()[1]
+    tried.step(actions[0])
+    assert env.simulators.time == 0.0
+
+
+def test_gymnasium_must_be_installed() -> None:
+    code = "import sys; sys.modules['gymnasium'] = None; import flexsc.gym"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert "ModuleNotFoundError: flexsc.gym needs Gymnasium: pip install flexsc[gym]" in done.stderr

@@ -129,3 +129,6 @@ def test_times_are_within_the_run(sampled: Scenario) -> None:
             run.at(wrong)
     with pytest.raises(ValueError, match=r"times must be of shape \(times,\), got \(1, 2\)"):
         run.sample([[1.0, 2.0]])
+    # Refused before any work.
+    with pytest.raises(ValueError, match="at must keep at most 200000000 values in memory"):
+        run.sample(np.zeros(30_000_000))

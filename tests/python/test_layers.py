@@ -12,23 +12,24 @@ PACKAGE = Path(flexsc.__file__).parent
 LAYERS = {
     "engine": "_native _numpy",
     "values": """
-        _analysis _answer _arrow _columns _compiled _equality
+        _analysis _answer _arrow _columns _compiled _deprecated _equality
         _fmi_library _handover _html _keys _laws _missing _modes
         _named _one_copy _own_part _part _part_reader _progress _quantities _requirement _roles _run_lock
         _sample_times _signal _signature _surroundings _topic _units _values parts scenario
     """,
     "results": """
-        _axes_look _controllers _damping _design _drawable _ensemble
+        _axes_look _command _controllers _damping _design _drawable _ensemble
         _flight_code _frequency_response _linear _margins
-        _model_state _noise _optimisation _plan _read _report _result _review_figures _sampled_loop results
+        _model_state _noise _optimisation _plan _read _report _result _review_figures _sampled_loop
+        papers results
     """,
     "scenario": """
         _campaign _comparison _copies _executor _log _own_parts_campaign _population _row _scenario
         _sensitivity _simulator _simulators _sources _table _threads
     """,
     "tools": """
-        __init__ __main__ _episodes _frequency_figures _stable_baselines _tutorials _vector_env basilisk
-        dask gym lockstep plot structure
+        __init__ __main__ _episodes _explore _frequency_figures _stable_baselines _tutorials _vector_env
+        basilisk dask gym lockstep plot structure
     """,
 }
 LAYER = {module: rank for rank, modules in enumerate(LAYERS.values()) for module in modules.split()}

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from conftest import shipped
-from flexsc._margins import margins
+from flexsc._margins import common_margins
 from flexsc.parts import Authority, Event
 from scipy.linalg import expm
-from scipy.signal import StateSpace, cont2discrete
+from scipy.signal import StateSpace, TransferFunction, cont2discrete
 
 PLANAR = """
 duration = 30.0
@@ -261,7 +261,7 @@ def test_controllers_come_back_in() -> None:
     np.testing.assert_allclose(torque[1], torque[0], rtol=1e-12)
     # A lead filter of continuous time, held and by Tustin's rule, is what SciPy makes of it.
     lead = tuple(np.array([[each]]) for each in (-3.0, 1.0, -200.0, 100.0))
-    for method, name in [("held", "zoh"), ("tustin", "bilinear")]:
+    for method, name in [("zoh", "zoh"), ("held", "zoh"), ("tustin", "bilinear")]:
         made: Any = cont2discrete(lead, 0.5, name)
         discrete = made[:4]
         with_held = scenario.with_law(lead, 0.5, method=method)  # type: ignore[arg-type]
@@ -270,6 +270,13 @@ def test_controllers_come_back_in() -> None:
         assert law["state_space"]["period"] == 0.5
         torque = [run.simulate(log="full")["torque"]["feedback_nm"] for run in (with_held, by_scipy)]
         np.testing.assert_allclose(torque[1], torque[0], rtol=1e-9, atol=1e-12)
+    # Transfer functions of both libraries: (100 s + 100) / (s + 3).
+    control: Any = pytest.importorskip("control")
+    functions = [TransferFunction([100.0, 100.0], [1.0, 3.0]), control.tf([100.0, 100.0], [1.0, 3.0])]
+    for function in functions:
+        seen = scenario.with_law(function, 0.5).simulate(log="full")["torque"]["feedback_nm"]
+        held = scenario.with_law(lead, 0.5).simulate(log="full")["torque"]["feedback_nm"]
+        np.testing.assert_allclose(seen, held, rtol=1e-9, atol=1e-12)
     with pytest.raises(ValueError, match="needs a period"):
         scenario.with_law(lead)
     with pytest.raises(ValueError, match="one output"):
@@ -347,7 +354,7 @@ def test_an_unstable_loop_is_named_by_its_worst_pole() -> None:
     radius = opened.closed().spectral_radius()
     assert radius > 1.0
     with pytest.raises(ValueError, match=rf"magnitude {radius:.7f} at [0-9.]+ Hz.* in `command`"):
-        opened.margins()
+        opened.common_margins()
     # Three axes have no such metric, but the linear model has the number.
     observer = shipped("earth-observer").linearise(loop="command").closed()
     assert 0.9 < observer.spectral_radius() < 1.0
@@ -362,5 +369,5 @@ def test_margins_end_at_the_limit_of_stability() -> None:
     one = np.ones((1, 1))
     signals = [SimpleNamespace(name="command")]
     loop: Any = SimpleNamespace(a=one, b=one, c=one, d=0.0 * one, period=1.0, inputs=signals)
-    found = margins(loop, None)
+    found = common_margins(loop, None)
     assert found.gain_above == pytest.approx(2.0, rel=1e-14)

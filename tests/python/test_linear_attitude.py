@@ -186,7 +186,7 @@ def test_margins_are_those_of_nyquist() -> None:
     scenario = flexsc.Scenario.parse(ALONE)
     opened = scenario.linearise(loop="command")
     for axis in ("roll", "pitch", "yaw"):
-        found = opened.margins([f"command_{axis}"])
+        found = opened.common_margins([f"command_{axis}"])
         one = opened.select([f"command_{axis}"], [f"command_{axis}"])
         # Of its frequency response: a transfer function of 30 states is mostly rounding.
         frequencies = np.geomspace(1e-3, np.pi / 0.5, 4001)
@@ -196,9 +196,9 @@ def test_margins_are_those_of_nyquist() -> None:
         np.testing.assert_allclose(found.gain_above, above, rtol=1e-4)
         np.testing.assert_allclose(found.phase, np.deg2rad(phase), rtol=1e-4)
     # Axes that know nothing of each other: all together have the worst.
-    each = [opened.margins([f"command_{axis}"]) for axis in ("roll", "pitch", "yaw")]
-    assert opened.margins().phase == pytest.approx(min(margins.phase for margins in each), rel=1e-9)
-    assert 0.0 <= opened.margins().gain_below < 1.0
+    each = [opened.common_margins([f"command_{axis}"]) for axis in ("roll", "pitch", "yaw")]
+    assert opened.common_margins().phase == pytest.approx(min(margins.phase for margins in each), rel=1e-9)
+    assert 0.0 <= opened.common_margins().gain_below < 1.0
 
 
 @pytest.mark.parametrize("name", ["earth-observer", "flexible-boom"])
@@ -209,7 +209,7 @@ def test_margins_of_loops_of_several_periods(name: str) -> None:
     opened = scenario.linearise(loop="command")
     assert opened.period == 0.5
     assert len(opened.inputs) == 6
-    margins = opened.margins()
+    margins = opened.common_margins()
     # The law commands so much more with another inertia in its model.
     rigid = scenario.linearise()
     inertia = np.round(np.linalg.inv(rigid.b[3:6]), 9)
@@ -220,7 +220,7 @@ def test_margins_of_loops_of_several_periods(name: str) -> None:
 
     assert radius(0.999 * margins.gain_above) < 1.0 < radius(1.001 * margins.gain_above)
     assert margins.phase > np.deg2rad(20.0)
-    one = opened.margins(["command_pitch"])
+    one = opened.common_margins(["command_pitch"])
     assert one.gain_above >= margins.gain_above * (1.0 - 1e-9)
 
 
@@ -241,6 +241,6 @@ def test_what_no_loop_has_is_refused() -> None:
         several.linearise(loop="command")
     opened = scenario.linearise(loop="command")
     with pytest.raises(KeyError, match="no command 'roll'; there are command_roll, command_pitch"):
-        opened.margins(["roll"])
+        opened.common_margins(["roll"])
     with pytest.raises(ValueError, match="as many outputs as inputs, has margins"):
-        scenario.linearise().margins()
+        scenario.linearise().common_margins()

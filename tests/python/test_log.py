@@ -200,3 +200,37 @@ def test_the_schemas_of_viewers_are_the_published_ones(tmp_path: Path) -> None:
     for topic in ("/log", "/tf", "/scene", "/plumes"):
         compare(decoded(path)[topic][0][1].DESCRIPTOR)
     assert {"foxglove.Log", "foxglove.FrameTransform", "foxglove.SceneUpdate", "foxglove.Color"} <= compared
+
+
+def test_a_log_has_metrics_and_motion_of_its_run(dense: Result, path: Path, tmp_path: Path) -> None:
+    log = flexsc.read_log(path)
+    assert log.metrics == dense.metrics
+    assert log.metrics.unit("cycle_period_s") == "s"
+    assert log.at(123.4) == dense.at(123.4)
+    assert dict(log.sample([0.1, 150.0])) == dict(dense.sample([0.1, 150.0]))
+    with pytest.raises(ValueError, match="times must be from 0 to the duration, 200 s, got 201"):
+        log.at(201.0)
+    # Of a run under commands from outside too, up to its end.
+    sim = flexsc.Simulator(shipped("attitude-hold"))
+    for torque in (0.02, -0.03, 0.0):
+        sim.step([torque, 0.0, 0.5 * torque], 0.7)
+    stepped = sim.result("full")
+    stepped.to_mcap(tmp_path / "stepped.mcap")
+    again = flexsc.read_log(tmp_path / "stepped.mcap")
+    assert again.metrics == stepped.metrics
+    assert again.at(1.3) == stepped.at(1.3)
+    with pytest.raises(ValueError, match=r"times must be from 0 to the time of the run, 2\.1 s, got 2.2"):
+        again.at(2.2)
+
+
+def test_a_run_of_own_parts_is_not_repeated_from_its_log(tmp_path: Path) -> None:
+    class Off(flexsc.Law):
+        period = 1.0
+
+        def decide(self, event: flexsc.parts.Event) -> float:
+            return 0.0
+
+    own = shipped("relay-fixed").with_("duration", 20.0).with_parts(law=Off())
+    own.simulate().to_mcap(tmp_path / "own.mcap")
+    with pytest.raises(ValueError, match=r"only the program of its parts \(law\) can repeat its run"):
+        flexsc.read_log(tmp_path / "own.mcap").metrics  # noqa: B018

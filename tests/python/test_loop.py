@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from flexsc import Scenario, ScenarioError, gain_region, robust_gains, stability_map
+from flexsc import Scenario, ScenarioError
+from flexsc.papers import gain_region, robust_gains, stability_map
 from scipy.linalg import expm
 
 W, K = np.array([0.3, 0.8, 1.0, 2.0]), np.array([1.44, 0.21, 0.165, 0.72])

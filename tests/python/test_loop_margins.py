@@ -17,7 +17,7 @@ def test_margins_are_those_of_poles(name: str) -> None:
     assert (margins.loop, margins.period) == ("command", opened.period)
     assert margins.samples * len(margins.loops) == len(opened.inputs)
     for signal, found in margins.loops.items():
-        expected = opened.margins([signal])
+        expected = opened.common_margins([signal])
         assert found.gain_below == pytest.approx(expected.gain_below, rel=1e-4)
         assert found.gain_above == pytest.approx(expected.gain_above, rel=1e-4)
         assert found.phase == pytest.approx(expected.phase, rel=1e-4)

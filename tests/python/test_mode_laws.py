@@ -73,7 +73,7 @@ def test_names_without_a_mode_are_refused(safe_mode: flexsc.Scenario) -> None:
 
 def test_a_law_acts_in_its_mode_alone(safe_mode: flexsc.Scenario) -> None:
     own = safe_mode.with_parts(law={"safe": Damper()})
-    assert list(own.parts) == ["law safe"]
+    assert list(own.own_parts) == ["law safe"]
     run, plain = own.simulate(log="full"), safe_mode.simulate(log="full")
     starts = run["mode"]["time_s"]
     assert run["mode"]["mode"].tolist() == ["detumble", "point", "safe", "point"]
@@ -102,7 +102,7 @@ def test_each_visit_of_a_mode_begins_with_a_copy(safe_mode: flexsc.Scenario) -> 
 def test_a_law_acts_in_its_stage_alone() -> None:
     scenario = shipped("orbit-correction").with_("duration", 460.0)
     own = scenario.with_parts(law={2: Held()})
-    assert list(own.parts) == ["law 2"]
+    assert list(own.own_parts) == ["law 2"]
     times = own.simulate(log="full")["own_law2"]["time_s"]
     assert times[0] == 450.0
     assert times[-1] == 460.0
@@ -110,17 +110,18 @@ def test_a_law_acts_in_its_stage_alone() -> None:
 
 def test_laws_of_modes_travel_and_stay(safe_mode: flexsc.Scenario, tmp_path: Path) -> None:
     own = safe_mode.with_parts(law={"safe": Damper(), "point": Damper()})
-    assert list(own.parts) == ["law point", "law safe"]
+    assert list(own.own_parts) == ["law point", "law safe"]
     run = own.simulate(log="full")
     again = pickle.loads(pickle.dumps(own))
-    assert list(again.parts) == list(own.parts)
+    assert list(again.own_parts) == list(own.own_parts)
     np.testing.assert_array_equal(again.simulate().metrics["mode_starts_s"], run.metrics["mode_starts_s"])
     assert dict(again.simulate(log="full")["own_law_safe"].items()).keys() == run["own_law_safe"].keys()
     # Another key, and another part, keep them; a law of the engine replaces one.
-    assert list(own.with_("duration", 100.0).with_parts(law={"safe": Damper()}).parts) == list(own.parts)
+    changed = own.with_("duration", 100.0).with_parts(law={"safe": Damper()})
+    assert list(changed.own_parts) == list(own.own_parts)
     pd = own.with_("mode[2].law", {"attitude": {"period": 1.0, "bandwidth": 0.03}})
-    assert list(pd.parts) == ["law point"]
-    assert list(own.in_mode("point").parts) == ["law"]
+    assert list(pd.own_parts) == ["law point"]
+    assert list(own.in_mode("point").own_parts) == ["law"]
     with pytest.raises(ValueError, match="has a part of your own"):
         own.part("mode")
     run.to_mcap(tmp_path / "run.mcap")

@@ -319,7 +319,7 @@ def test_a_spacecraft_with_it_runs(tmp_path: Path) -> None:
     again = flexsc.Scenario.parse(scenario.to_toml(), "boom").simulate(log="none")
     assert again.metrics == run.metrics
     with pytest.raises(ValueError, match="got `\\[spacecraft\\]`: write `to_toml\\(\\)`"):
-        flexsc.write_scenario(scenario, tmp_path / "boom.toml")
+        flexsc.structure.write_scenario(scenario, tmp_path / "boom.toml")
 
 
 def test_what_the_files_do_not_tell_is_refused(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ def test_deviations_are_those_of_lyapunov_equations() -> None:
     for noise, expected in zip(spectrum.outputs.values(), deviations, strict=True):
         assert noise.sample_rms == pytest.approx(expected, rel=1e-9)
         assert noise.cumulative_rms[-1] == pytest.approx(expected, rel=2e-3)
-        assert noise.density.shape == spectrum.frequency.shape
+        assert noise.density.shape == spectrum.frequency_hz.shape
         total = sum(noise.density_by_source.values())
         np.testing.assert_allclose(total, noise.density, rtol=1e-12)
         window = noise.window

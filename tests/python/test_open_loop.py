@@ -55,7 +55,7 @@ def test_a_delay_of_the_users() -> None:
 def test_margins_are_those_by_bisection(name: str) -> None:
     opened = flexsc.Scenario.example(name).linearise(loop="command")
     for chosen in (None, [opened.inputs[0].name], [opened.inputs[0].name.rstrip("_0123456789")]):
-        found, expected = opened.margins(chosen), oracle.margins(opened, chosen)
+        found, expected = opened.common_margins(chosen), oracle.margins(opened, chosen)
         # Those end where a motion decays by less than 1e-8 of itself in a second.
         assert (found.gain_below, found.phase) == pytest.approx((expected[0], expected[2]), rel=2e-5)
         assert min(found.gain_above, 1e4) == pytest.approx(min(expected[1], 1e4), rel=2e-5)

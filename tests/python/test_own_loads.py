@@ -184,7 +184,7 @@ def test_campaigns_and_processes_take_both() -> None:
         disturbance={0: Steady([1e-3, 0.0, 0.0]), 1: Steady(force=[0.0, 1e-3, 0.0])},
         guidance=Spin(spread=0.5),
     )
-    assert list(scenario.parts) == ["disturbance 0", "disturbance 1", "guidance"]
+    assert list(scenario.own_parts) == ["disturbance 0", "disturbance 1", "guidance"]
     table = flexsc.campaign(scenario, 4)
     errors = table["pointing_error_end_rad"]
     assert len(set(errors.tolist())) == 4
@@ -198,14 +198,14 @@ def test_campaigns_and_processes_take_both() -> None:
     again = pickle.loads(pickle.dumps(scenario))
     assert again.simulate().metrics == scenario.simulate().metrics
     # Keys change beside the parts.
-    assert list(scenario.with_("duration", 5.0).parts) == list(scenario.parts)
+    assert list(scenario.with_("duration", 5.0).own_parts) == list(scenario.own_parts)
 
 
 def test_a_mode_has_a_guidance_of_its_own() -> None:
     scenario = shipped("safe-mode")
     names = [mode["name"] for mode in scenario.to_dict()["mode"]]
     own = scenario.with_parts(guidance={names[-1]: Spin()})
-    assert list(own.parts) == [f"guidance {names[-1]}"]
+    assert list(own.own_parts) == [f"guidance {names[-1]}"]
     assert own.with_("duration", 5.0).simulate().metrics is not None
     with pytest.raises(
         flexsc.ScenarioError, match="guidance: must be one of `detumble`, `point`, `safe`, got `nowhere`"
@@ -219,12 +219,12 @@ def test_a_mode_alone_keeps_its_guidance_and_the_others_their_targets() -> None:
     scenario = shipped("safe-mode").with_("duration", 5.0).with_("spacecraft.rate", [0.0, 0.0, 0.0])
     own = scenario.with_parts(guidance={"point": Spin()})
     alone = own.in_mode("point")
-    assert list(alone.parts) == ["guidance"]
+    assert list(alone.own_parts) == ["guidance"]
     topics = ("pointing", "rates")
     whole = scenario.in_mode("point").with_parts(guidance=Spin())
     same(alone.simulate(log="full"), whole.simulate(log="full"), topics)
     safe = own.in_mode("safe")
-    assert list(safe.parts) == []
+    assert list(safe.own_parts) == []
     assert safe.get("target") == scenario.in_mode("safe").get("target")
 
     # Without targets of modes that of the scenario stays, unless the guidance is for all modes.
@@ -236,7 +236,7 @@ def test_a_mode_alone_keeps_its_guidance_and_the_others_their_targets() -> None:
     assert of_mode.get("target") == shared.get("target")
     same(of_mode.simulate(log="full"), shared.simulate(log="full"), topics)
     assert "target" not in of_all.to_dict()
-    assert list(of_all.parts) == ["guidance"]
+    assert list(of_all.own_parts) == ["guidance"]
 
 
 def test_an_error_at_the_last_time_or_between_samples_is_raised() -> None:

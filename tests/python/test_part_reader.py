@@ -163,6 +163,6 @@ def test_a_part_of_another_class_is_refused() -> None:
     with pytest.raises(KeyError, match="no element 7 in 'sensor'"):
         observer.part("sensor[7]")
     own = shipped("relay-fixed").with_parts(law=OwnRelay(5e-4, 1e-4, 4e-5, 1e-6, 0.31))
-    with pytest.raises(ValueError, match=r"`law` has a part of your own: `Scenario\.parts` has it"):
+    with pytest.raises(ValueError, match=r"`law` has a part of your own: `Scenario\.own_parts` has it"):
         own.part("law")
     assert own.part("body", Planar) == shipped("relay-fixed").part("body")

@@ -288,18 +288,18 @@ def test_runs_begin_with_copies() -> None:
     law.count = 1000
     np.testing.assert_array_equal(told(scenario), first)
     assert law.count == 1000
-    assert scenario.parts["law"] is not law
+    assert scenario.own_parts["law"] is not law
 
 
 def test_scenarios_with_parts_are_scenarios(tmp_path: Path) -> None:
     scenario = all_own()
-    assert sorted(scenario.parts) == ["actuator", "estimator", "law", "sensor 0"]
+    assert sorted(scenario.own_parts) == ["actuator", "estimator", "law", "sensor 0"]
     changed = scenario.with_("duration", 100.0)
     assert changed.duration == 100.0
-    assert changed.parts["law"] is scenario.parts["law"]
+    assert changed.own_parts["law"] is scenario.own_parts["law"]
     assert scenario.with_("duration", 200.0) == scenario != changed
     built_in = scenario.with_("law", {"pd": {"k_p": 4.0, "k_d": 30.0, "period": 0.25}})
-    assert "law" not in built_in.parts
+    assert "law" not in built_in.own_parts
     again = pickle.loads(pickle.dumps(scenario))
     np.testing.assert_array_equal(told(again), told(scenario))
     # The log says that it does not repeat alone.

@@ -311,7 +311,7 @@ def test_schema_and_meanings(fixed: Scenario) -> None:
 
 
 def test_rigid_cycles(fixed: Scenario) -> None:
-    told = flexsc.rigid_cycles(fixed)
+    told = flexsc.papers.rigid_cycles(fixed)
     # Closed form at k_t = 0.31, 11 digits.
     assert told["cycles"][0]["sides"] == "two"
     assert told["cycles"][0]["period_s"] == pytest.approx(44.14235464, rel=1e-9)
@@ -367,6 +367,13 @@ def test_own_disturbances_stay_when_keys_are_removed() -> None:
             return [0.0, 0.0, 0.0]
 
     own = shipped("earth-observer").with_parts(disturbance=Nothing())
-    assert list(own.without("target", "reference").parts) == ["disturbance 0"]
+    assert list(own.without("target", "reference").own_parts) == ["disturbance 0"]
     with pytest.raises(ValueError, match="no file can hold parts written in Python: disturbance 0"):
         own.save("never.toml")
+    # By its own name it goes, with those of the file; the parts of other roles stay.
+    assert own.without("disturbance").own_parts == {}
+    with pytest.raises(KeyError, match="disturbance"):
+        own.without("disturbance").without("disturbance")
+    path = str(shipped("earth-observer").to_dict()["name"]).encode()
+    with pytest.raises(FileNotFoundError):
+        Scenario.load(path)  # type: ignore[arg-type]

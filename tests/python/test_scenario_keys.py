@@ -62,7 +62,7 @@ def test_keys_are_removed(sampled: Scenario) -> None:
 
 def test_own_parts_stay_when_keys_are_removed(sampled: Scenario) -> None:
     own = sampled.with_parts(law=Relay(5e-4, 1e-4, 4e-5, 1e-6, 0.31))
-    assert list(own.without("uncertain").parts) == list(own.parts) == ["law"]
+    assert list(own.without("uncertain").own_parts) == list(own.own_parts) == ["law"]
 
 
 def test_missing_files_are_missing_files(tmp_path: Path) -> None:

@@ -81,13 +81,13 @@ def test_steps_go_through_the_list() -> None:
 def test_an_own_actuator_has_a_place() -> None:
     scenario = flexsc.Scenario.parse(PLANAR)
     mixed = scenario.with_parts(actuator={1: Servo(1e6, 1e-12, 0.05)})
-    assert list(mixed.parts) == ["actuator 1"]
+    assert list(mixed.own_parts) == ["actuator 1"]
     assert mixed.to_dict()["actuator"][1]["share"] == 0.6
     off = np.max(np.abs(angles(mixed) - angles(scenario)))
     # It is late by 0.05 s.
     assert 1e-9 < off < 1e-4
     again = mixed.with_("duration", 20.0)
-    assert list(again.parts) == ["actuator 1"]
+    assert list(again.own_parts) == ["actuator 1"]
     with pytest.raises(
         flexsc.ScenarioError, match=r"actuator\[2\]: is not there: the scenario has 2 actuators"
     ):

@@ -72,3 +72,45 @@ def test_scenarios_and_tables_are_shown(sampled: Scenario) -> None:
     for same in ("relay-fixed", "wheel-ekf"):
         plain = flexsc.campaign(shipped(same).with_("duration", 300.0), runs=3)
         assert "3 runs" in plain._repr_html_()
+
+
+def test_results_of_tools_are_tables() -> None:
+    margins = shipped("earth-observer").margins()
+    assert repr(margins).startswith("StabilityMargins(modulus=0.5773, disk=0.7528; command_roll: gain ")
+    opened = shipped("earth-observer").linearise(loop="command")
+    common = opened.common_margins()
+    assert common.to_dict() == {
+        "gain_below": common.gain_below,
+        "gain_above": common.gain_above,
+        "phase": common.phase,
+    }
+    assert opened == pickle.loads(pickle.dumps(opened))
+    assert opened != shipped("earth-observer").linearise()
+    assert opened.to_dict()["inputs"][0] == {"name": opened.inputs[0].name, "unit": opened.inputs[0].unit}
+    run = shipped("relay-fixed").with_("duration", 50.0).simulate()
+    plan = shipped("rotation-sine").plan()
+    derivatives = flexsc.sensitivities(shipped("rotation-sine"), ["manoeuvre.angle"], ["peak_torque_nm"])
+    budget = shipped("slew-wheel-lqg").budget(runs=2)
+    for shown in (margins, opened, common, run.metrics, plan, derivatives, budget):
+        whole = ElementTree.fromstring(f"<div>{shown._repr_html_()}</div>")
+        assert sum(1 for _ in whole.iter("tr")) > 1
+    assert len(repr(budget)) < 1000
+
+
+def test_results_of_tools_become_frames() -> None:
+    pytest.importorskip("pandas")
+    margins = shipped("earth-observer").margins()
+    frames = margins.to_pandas()
+    assert frames["fields"]["modulus"] == margins.modulus
+    assert frames["loops"].set_index("name")["gain_above"]["command_roll"] == (
+        margins.loops["command_roll"].gain_above
+    )
+
+
+def test_parts_are_shown_as_they_are_written() -> None:
+    assert repr(flexsc.Reading(angle=1.0)) == "Reading(angle=1.0)"
+    hold = flexsc.ThreeAxisHold([1.0, 2.0, 3.0], after=0.5)
+    assert repr(flexsc.Effort([0.0, 0.0, 0.0])) == "Effort(torques=[0.0, 0.0, 0.0])"
+    assert eval(repr(flexsc.Reading(angle=0.0)), vars(flexsc)).angle == 0.0
+    for part in (hold, flexsc.Effort([1.0], after=0.5), flexsc.Load([1.0, 0.0, 0.0], after=1.0)):
+        assert eval(repr(part), vars(flexsc)) == part

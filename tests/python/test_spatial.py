@@ -30,7 +30,8 @@ def test_modes_and_what_is_not_for_spatial_bodies() -> None:
     assert modes["influence"][3, 2] == pytest.approx(2.89, rel=0.01)
     assert (modes["influence"] > -1e-3).all()
     assert scenario.outputs == {}
-    for refused in (flexsc.rigid_cycles, lambda s: s.plan(), lambda s: flexsc.gain_region(s, [0.1])):
+    papers = flexsc.papers
+    for refused in (papers.rigid_cycles, lambda s: s.plan(), lambda s: papers.gain_region(s, [0.1])):
         with pytest.raises(ValueError, match="three axes"):
             refused(scenario)
 

@@ -162,7 +162,7 @@ def test_a_scenario_is_written_with_its_modes_beside_it(tmp_path: Path) -> None:
     scenario = flexsc.from_state_space(*second_order()).scenario(
         INERTIA, thrust=10.0, arm=3.0, duration=30.0, name="station", body={"rate": [1e-3, 0.0, 0.0]}
     )
-    table = flexsc.write_scenario(scenario, tmp_path / "station.toml")
+    table = flexsc.structure.write_scenario(scenario, tmp_path / "station.toml")
     assert table == tmp_path / "station-modes.csv"
     read = flexsc.Scenario.load(tmp_path / "station.toml")
     assert read.to_dict()["body"]["spatial"]["modes"] == str(table)
@@ -175,12 +175,12 @@ def test_a_scenario_is_written_with_its_modes_beside_it(tmp_path: Path) -> None:
         for mode in scenario.to_dict()["body"]["spatial"]["modes"]
     ]
     uncertain = scenario.with_("uncertain", {"body.spatial.modes[0].frequency": {"relative_uniform": 0.1}})
-    flexsc.write_scenario(uncertain, tmp_path / "uncertain.toml")
+    flexsc.structure.write_scenario(uncertain, tmp_path / "uncertain.toml")
     drawn = [flexsc.Scenario.load(tmp_path / "uncertain.toml").draw(run).modes["frequency"] for run in (0, 1)]
     assert drawn[0][0] != drawn[1][0]
     np.testing.assert_array_equal(drawn[0], uncertain.draw(0).modes["frequency"])
     with pytest.raises(ValueError, match="must have modes in itself"):
-        flexsc.write_scenario(read, tmp_path / "again.toml")
+        flexsc.structure.write_scenario(read, tmp_path / "again.toml")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of POSIX")
@@ -195,7 +195,7 @@ def test_what_cannot_be_written_keeps_what_was_there(tmp_path: Path) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (50, before[1]))
     try:
         with pytest.raises(OSError, match="File too large") as raised:
-            flexsc.write_scenario(scenario, tmp_path / "station.toml")
+            flexsc.structure.write_scenario(scenario, tmp_path / "station.toml")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert Path(raised.value.filename).parent == tmp_path
@@ -211,13 +211,13 @@ def test_links_and_pipes_in_the_way_are_not_followed(tmp_path: Path, name: str) 
     in_the_way = tmp_path / f"{name}.partial"
     in_the_way.symlink_to("victim")
     with pytest.raises(OSError, match="in the way"):
-        flexsc.write_scenario(scenario, tmp_path / "station.toml")
+        flexsc.structure.write_scenario(scenario, tmp_path / "station.toml")
     assert (tmp_path / "victim").read_text() == "mine"
     assert in_the_way.is_symlink()
     in_the_way.unlink()
     os.mkfifo(in_the_way)
     with pytest.raises(OSError, match="in the way"):
-        flexsc.write_scenario(scenario, tmp_path / "station.toml")
+        flexsc.structure.write_scenario(scenario, tmp_path / "station.toml")
 
 
 def test_a_table_of_modes_is_read(tmp_path: Path) -> None:

@@ -111,7 +111,7 @@ def same_metrics(metrics: Metrics, table: Table, place: int) -> None:
 def test_the_worst_run_is_found(grid: Table) -> None:
     duty = grid["duty"]
     assert grid.worst("duty") == grid.row(int(duty.argmax()))
-    assert grid.worst("duty", smallest=True) == grid.row(int(duty.argmin()))
+    assert grid.worst("duty", least=True) == grid.row(int(duty.argmin()))
     with pytest.raises(ValueError, match="'goal' is not a column of numbers"):
         grid.worst("goal")
     with pytest.raises(ValueError, match="no run has a value of 'gain_frozen_at_s'"):
@@ -273,7 +273,7 @@ def texts(figure: Any) -> list[str]:
 
 
 def test_progress_is_a_line_or_a_function(
-    fixed: Scenario, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    fixed: Scenario, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     short = fixed.with_("duration", 50.0)
     flexsc.campaign(short, 4, progress=True)
@@ -281,6 +281,14 @@ def test_progress_is_a_line_or_a_function(
     seen: list[tuple[int, int]] = []
     flexsc.sweep(short, "law.relay.k_t", [0.3, 0.31], progress=lambda done, total: seen.append((done, total)))
     assert seen[-1] == (2, 2)
+    flexsc.campaign(short, 2, progress=False)
+    # By default on a terminal, for work that is long.
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    flexsc.campaign(short, 2)
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("flexsc._progress._LONG_S", 0.0)
+    flexsc.campaign(short, 2)
+    assert capsys.readouterr().err.startswith("\r2 of 2 runs")
     flexsc.campaign(short, 2, progress=False)
     assert capsys.readouterr().err == ""
 
@@ -333,3 +341,6 @@ def test_rows_of_a_table_are_a_table() -> None:
         table[0]  # type: ignore[call-overload]
     assert table[[]].rows == 0
     assert pickle.loads(pickle.dumps(high)) == high
+    # A sweep takes the keys of a table that vary, and not its metrics.
+    again = flexsc.sweep(scenario, points=flexsc.sweep(scenario, "duration", [50.0, 60.0]))
+    assert again["duration"].tolist() == [50.0, 60.0]

@@ -159,12 +159,12 @@ def test_a_campaign_is_interrupted(fixed: Scenario, duration: float, runs: int) 
 
 def test_an_identification_is_interrupted() -> None:
     with interrupted():
-        flexsc.identify([(1.5, 3.0)], runs=10**6, yes=True)
+        flexsc.papers.identify([(1.5, 3.0)], runs=10**6, yes=True)
 
 
 def test_a_table_of_damped_modes_is_interrupted() -> None:
     with interrupted():
-        flexsc.relay_damping([1.0] * 100_000, 0.1, period=1e5)
+        flexsc.papers.relay_damping([1.0] * 100_000, 0.1, period=1e5)
 
 
 @pytest.mark.parametrize(("jobs", "threads"), [(None, 1), (0, 0), (1, 1), (3, 3)])

@@ -23,6 +23,7 @@ topics: list[str] = [topic for topic in result if topic in result]
 with tempfile.TemporaryDirectory() as directory:
     size: int = result.to_mcap(Path(directory) / "run.mcap", log="events")
     log: flexsc.Log = flexsc.read_log(Path(directory) / "run.mcap")
+    logged: flexsc.Metrics = log.metrics
 end: str = log.metadata["end"]
 unit: str = result.metrics.unit("switchings")
 row: dict[str, dict[str, Any]] = result.at(12.5)
@@ -39,6 +40,9 @@ built: flexsc.Scenario = flexsc.Scenario(
 built = built.with_("law", flexsc.scenario.Pd(k_p=1.0, k_d=1.0, period=0.5))
 hashed: int = hash(built)
 pd: flexsc.scenario.Pd = built.part("law", flexsc.scenario.Pd)
+# A key with a default has a value in a scenario, and no None in its type.
+wheels = flexsc.Scenario.example("earth-observer").part("actuator", flexsc.scenario.Wheels)
+weaker: flexsc.scenario.Wheels = replace(wheels, torque=0.5 * wheels.torque)
 damped: flexsc.Scenario = built.with_("law", replace(pd, k_d=2.0))
 figures: list[str] = flexsc.plot.figures(result)
 axes = flexsc.plot.draw(result, figures[0])
@@ -57,7 +61,7 @@ duties: npt.NDArray[np.float64] = flexsc.evaluate(scenario, ["law.relay.k_t"], [
 unit = flexsc.metrics()["duty"]["unit"]
 slopes: flexsc.Sensitivities = flexsc.sensitivities(scenario, ["body.planar.inertia"], ["duty"], step=0.1)
 slope: float = slopes["duty"]["body.planar.inertia"]
-tuned: flexsc.Scenario = flexsc.optimise(scenario, ["law.relay.k_t"], "duty", maxiter=2)[0]
+tuned: flexsc.Scenario = flexsc.optimise(scenario, ["law.relay.k_t"], "duty", maxiter=2).scenario
 sim: flexsc.Simulator = flexsc.Simulator(scenario, run=1)
 switched: bool = sim.run_until("switching", limit=100.0)
 before: flexsc.Snapshot = sim.snapshot()
@@ -77,7 +81,7 @@ model: flexsc.StateSpace = flexsc.from_state_space(np.array([[0, 1], [-4, -0.02]
 structure: flexsc.Structure = model.structure(arm=2.0, inputs=("yaw",), outputs=("yaw",)).keep([0])
 station: flexsc.Scenario = model.scenario(np.eye(3), thrust=1.0, arm=2.0, inputs=("yaw",), outputs=("yaw",))
 with tempfile.TemporaryDirectory() as directory:
-    modes: Path = flexsc.write_scenario(station, Path(directory) / "station.toml")
+    modes: Path = flexsc.structure.write_scenario(station, Path(directory) / "station.toml")
     read: flexsc.Structure = flexsc.from_csv(modes, {"yaw": (2.0, 0.0, 0.0)})
 try:
     flexsc.Scenario({"duration": 1.0})
@@ -95,7 +99,7 @@ class Damper(flexsc.Law):
 
 
 own: flexsc.Scenario = scenario.with_parts(law=Damper())
-brought: object = own.parts["law"]
+brought: object = own.own_parts["law"]
 held: float | None = flexsc.Hold(1e-3).torque
 linear: flexsc.Linear = scenario.linearise(period=0.5)
 pole: npt.NDArray[Any] = linear.poles()["pole"]

@@ -90,7 +90,7 @@ use error::CliError;
 pub use error::NotReplaced;
 pub use examples::EXAMPLES;
 pub use human::Units;
-pub use logged_answer::answer_of_log;
+pub use logged_answer::{LoggedRun, answer_of_log, run_of_log};
 pub use progress::RunClock;
 pub use report::EditableStudy;
 

@@ -1,10 +1,11 @@
 //! Archive of an FMU: the model description, the library of the platform, its licences and the scenario, with equal bytes at each export.
 
-use std::io::{Cursor, Write};
+use std::borrow::Cow;
+use std::io::{Cursor, Read, Write};
 
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
 
 use crate::content::{FmuContent, PART, SCENARIO};
 use crate::description::model_description;
@@ -15,10 +16,15 @@ use crate::fmu_run::FmuRun;
 /// Licences of flexsc and of the crates in its library, which release/licences.py writes.
 const LICENCES: &str = include_str!("../licences.txt");
 
-/// Returns the bytes of an FMU with this library.
+/// First bytes of a ZIP archive.
+const ZIP: &[u8] = b"PK\x03\x04";
+/// Largest size of a library (bytes).
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Returns the bytes of an FMU with this library, which may be the only file of a ZIP archive, as packages have it.
 ///
 /// # Errors
-/// Fails for a platform without a name in this version of FMI.
+/// Fails for a platform without a name in this version of FMI, or an archive that cannot be read.
 pub fn fmu_bytes(
     content: &FmuContent,
     library: &[u8],
@@ -28,14 +34,26 @@ pub fn fmu_bytes(
     let description = model_description(run.scenario(), run.table(), &content.token(), version);
     let binary =
         format!("binaries/{}/{MODEL_IDENTIFIER}{}", version.platform()?, std::env::consts::DLL_SUFFIX);
+    let packed = |error| CoSimulationError::refused(format!("cannot unpack the library of FMUs: {error}"));
+    let library = unpacked(library).map_err(packed)?;
     let files = [
         ("modelDescription.xml".to_owned(), description.as_bytes()),
-        (binary, library),
+        (binary, &library),
         ("documentation/licenses/license.txt".to_owned(), LICENCES.as_bytes()),
         (format!("resources/{PART}"), content.part.name().as_bytes()),
         (format!("resources/{SCENARIO}"), content.toml.as_bytes()),
     ];
     archive(&files).map_err(|error| CoSimulationError::refused(format!("cannot pack the FMU: {error}")))
+}
+
+/// Returns a library, out of its archive if it is in one.
+fn unpacked(library: &[u8]) -> Result<Cow<'_, [u8]>, ZipError> {
+    if !library.starts_with(ZIP) {
+        return Ok(library.into());
+    }
+    let mut bytes = Vec::new();
+    ZipArchive::new(Cursor::new(library))?.by_index(0)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
+    Ok(bytes.into())
 }
 
 /// Packs files with the date 1980-01-01 and the permissions of a library.

@@ -128,6 +128,9 @@ fn write(path: &Path, bytes: &[u8]) -> PyResult<u64> {
 fn handover_error(error: HandoverError) -> PyErr {
     match error {
         HandoverError::Log(error) => error::log_error(error),
-        other => PyValueError::new_err(other.to_string()),
+        // The option of the command is a keyword here.
+        other => PyValueError::new_err(
+            other.to_string().replace("`--epoch ", "`epoch=").replace("--epoch", "epoch"),
+        ),
     }
 }

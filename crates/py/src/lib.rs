@@ -85,7 +85,7 @@ mod _native {
     #[pymodule_export]
     use super::linear::{common_margins, linearise, sampled};
     #[pymodule_export]
-    use super::log::Log;
+    use super::log::{Log, log_run};
     #[pymodule_export]
     use super::matrix_file::matrix_market;
     #[pymodule_export]

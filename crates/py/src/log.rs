@@ -1,15 +1,18 @@
-//! Logs for Python: a file in memory, its metadata, and its topics as columns.
+//! Logs for Python: a file in memory, its metadata, its topics as columns, and its run.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flexsc_core::record;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
+use super::Scenario;
 use super::aside::aside;
 use super::columns;
+use super::commands::Commands;
 use super::error::log_error;
 
 /// A log in memory.
@@ -61,4 +64,19 @@ impl Log {
         let (log, topic) = (self.0.clone(), topic.to_owned());
         columns::rows_to_dict(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
     }
+}
+
+/// Scenario, number, commands, end (s) and metrics of the run of a log.
+type LoggedRun<'py> = (Scenario, u64, Commands, f64, Bound<'py, PyDict>);
+
+/// The run of a log, which is repeated once.
+#[pyfunction]
+pub fn log_run<'py>(py: Python<'py>, log: &Log) -> PyResult<LoggedRun<'py>> {
+    let log = log.0.clone();
+    let found = aside(py, move |_| flexsc_cli::run_of_log(&log, log.path()))?;
+    let flexsc_cli::LoggedRun { scenario: inner, run, commands, until, metrics } =
+        found.map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let scenario = Scenario { origin: inner.name.clone(), inner };
+    let end = until.seconds().min(scenario.inner.duration.seconds());
+    Ok((scenario, run, Commands { commands, until }, end, columns::metrics_to_dict(py, &metrics)?))
 }

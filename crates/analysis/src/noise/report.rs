@@ -50,7 +50,6 @@ pub struct NoiseReport {
     /// Sources of noise: keys of the scenario.
     pub sources: Vec<String>,
     /// Frequencies of the densities (Hz), up to the Nyquist frequency.
-    #[schemars(extend("x-name" = "frequency"))]
     pub frequency_hz: Vec<f64>,
     /// Noise of each output.
     #[schemars(extend("x-key" = "output"))]

@@ -213,7 +213,12 @@ pub fn figure_between(
     known: Option<&Scenario>,
     [from, to]: [Option<f64>; 2],
 ) -> Result<Figure, CliError> {
-    let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
+    let Ok(kind) = FigureName::parse(name) else {
+        let there: Vec<String> =
+            drawable_kinds(log, path, known)?.into_iter().map(FigureKind::name).collect();
+        let why = format!("there is no figure '{name}' for it; it has {}", there.join(", "));
+        return Err(CliError::Arguments(why));
+    };
     let source = RunSource { known, is_noted: false };
     let part = ShownPart { from, to, is_by_axis: false };
     let drawn = drawn_over(log, path, &[kind], part, source)?.into_iter().next();

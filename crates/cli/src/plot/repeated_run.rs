@@ -72,12 +72,10 @@ impl RunEvents {
         if self.is_noted {
             say!("note: repeats the run, because {} has no {missing}", path.display());
         }
-        // The end of a torn log is rounded, and a switching may lie on it.
-        let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
         let run = CampaignRun::new(self.scenario.clone(), self.run);
         let mut repeated = RepeatedEvents::default();
         let metrics = commands
-            .simulate(&run, Instant::START + end, (recorder, &mut repeated))
+            .simulate(&run, self.until(), (recorder, &mut repeated))
             .map_err(|source| CliError::run(&self.scenario.name, source))?;
         match self.difference(log, commands, &repeated, &metrics)? {
             None => Ok(metrics),
@@ -90,6 +88,11 @@ impl RunEvents {
                 Err(unusable(path, why))
             }
         }
+    }
+
+    /// Returns the instant up to which the run is repeated: the end of a torn log is rounded, and a switching may lie on it.
+    pub fn until(&self) -> Instant {
+        Instant::START + Span::from_seconds(self.end + 1e-9).min(self.scenario.duration)
     }
 
     /// Returns how a repeated run differs from that of its log, if it does.

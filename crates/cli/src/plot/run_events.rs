@@ -20,7 +20,7 @@ pub struct RunEvents {
     /// End of the run (s).
     pub end: f64,
     /// External commands of the run; `None` if the log lacks them.
-    pub(super) commanded: Option<CommandLog>,
+    pub commanded: Option<CommandLog>,
     /// Roles of the parts that a program supplied to the run, and that are not at hand.
     pub(super) absent_parts: Option<String>,
     /// True if a repetition of the run is noted on the terminal.

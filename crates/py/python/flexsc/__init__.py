@@ -26,12 +26,12 @@ from importlib import import_module
 from operator import index as _index
 from typing import TYPE_CHECKING, Any
 
+from flexsc import _deprecated
 from flexsc import _native as engine
 from flexsc._analysis import analysis as _analysis
 from flexsc._answer import Answer, CampaignAnswer
 from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._comparison import Comparison, compare
-from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
 from flexsc._log import Log
 from flexsc._missing import reading as _reading
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
@@ -41,7 +41,6 @@ from flexsc._quantities import Quantities
 from flexsc._requirement import requirement
 from flexsc._result import Result, Samples
 from flexsc._row import Row
-from flexsc._sampled_loop import gain_region, robust_gains, stability_map
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot
 from flexsc._simulators import Simulators
@@ -71,9 +70,10 @@ from flexsc.parts import (
 )
 
 if TYPE_CHECKING:
-    from flexsc import parts, plot, results, scenario, structure
+    from flexsc import papers, parts, plot, results, scenario, structure
+    from flexsc._explore import Explorer, explore
     from flexsc._linear import Linear
-    from flexsc._margins import Margins
+    from flexsc._margins import CommonMargins
     from flexsc._noise import WheelLines, WheelSpectrum
     from flexsc._optimisation import optimise
     from flexsc._result import Detail
@@ -105,7 +105,6 @@ if TYPE_CHECKING:
         from_nastran,
         from_state_space,
         read_matrices,
-        write_scenario,
     )
 
 __all__ = [
@@ -115,6 +114,7 @@ __all__ = [
     "Answer",
     "BudgetLevel",
     "CampaignAnswer",
+    "CommonMargins",
     "Comparison",
     "CompiledDisturbance",
     "CompiledGuidance",
@@ -123,6 +123,7 @@ __all__ = [
     "DisturbanceModel",
     "Effort",
     "Estimator",
+    "Explorer",
     "Guidance",
     "Hold",
     "IndexBudget",
@@ -132,7 +133,6 @@ __all__ = [
     "Log",
     "LogError",
     "LoopMargins",
-    "Margins",
     "Metrics",
     "NoiseSpectrum",
     "OutputBound",
@@ -177,45 +177,38 @@ __all__ = [
     "estimate",
     "evaluate",
     "examples",
+    "explore",
     "from_csv",
     "from_nastran",
     "from_state_space",
-    "gain_region",
-    "identify",
     "metrics",
-    "observer_margin",
-    "observer_region",
     "optimise",
+    "papers",
     "parts",
-    "persistence",
     "plot",
     "read_campaign",
     "read_log",
     "read_matrices",
-    "relay_damping",
     "requirement",
     "results",
-    "rigid_cycles",
-    "robust_gains",
     "scenario",
     "schema",
     "sensitivities",
-    "stability_map",
     "structure",
     "sweep",
     "topics",
-    "write_scenario",
 ]
 
 # What is imported when it is first asked for, so that `import flexsc` stays quick.
-_MODULES = ("parts", "plot", "results", "scenario", "structure")
+_MODULES = ("papers", "parts", "plot", "results", "scenario", "structure")
 # Modules that import a package which NumPy does not bring.
 _EXTRAS = ("dask", "gym")
 _LATER = {
     name: module
     for module, names in {
+        "_explore": "Explorer explore",
         "_linear": "Linear",
-        "_margins": "Margins",
+        "_margins": "CommonMargins",
         "_noise": "WheelLines WheelSpectrum",
         "_optimisation": "optimise",
         "_sensitivity": "Sensitivities sensitivities",
@@ -223,7 +216,7 @@ _LATER = {
         "results": "BudgetLevel IndexBudget LoopMargins NoiseSpectrum OutputBound OutputNoise PointingBudget "
         "SettlingTime StabilityMargins TunedMeasure TunedPlant TunedScenario Witness WorstCase",
         "structure": "StateSpace Structure appendage_from_craig_bampton appendage_from_matrices "
-        "appendage_from_nastran from_csv from_nastran from_state_space read_matrices write_scenario",
+        "appendage_from_nastran from_csv from_nastran from_state_space read_matrices",
     }.items()
     for name in names.split()
 }
@@ -259,7 +252,7 @@ if not TYPE_CHECKING:
             return getattr(import_module(f"flexsc.{_LATER[name]}"), name)
         if name in _EXTRAS:
             raise AttributeError(f"module 'flexsc' has no attribute {name!r} before `import flexsc.{name}`")
-        raise AttributeError(f"module 'flexsc' has no attribute {name!r}")
+        return _deprecated.of_module(__name__, name)
 
 
 def __dir__() -> list[str]:
@@ -288,22 +281,6 @@ def estimate(scenario: Scenario, runs: int = 1, log: Detail = "none") -> dict[st
     if count < 1:
         raise ValueError(f"runs must be at least 1, got {runs}")
     values: dict[str, Any] = _analysis("estimate", _checked(scenario), runs=count, log=log)
-    return values
-
-
-def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
-    """Return the limit cycles of the scenario's relay law on its body without modes, in closed form.
-
-    Returns:
-        `cycles`, the cycles that exist at the law's gain, and `resonances`, the gains at which an odd
-        harmonic of the two-sided cycle coincides with a mode. Units are in the names.
-
-    >>> import flexsc
-    >>> values = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
-    >>> round(values["cycles"][0]["period_s"], 2)
-    44.14
-    """
-    values: dict[str, list[dict[str, Any]]] = _analysis("rigid_cycles", _checked(scenario))
     return values
 
 

@@ -8,6 +8,7 @@ from operator import index
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
+from flexsc._analysis import analysis
 from flexsc._design import Noise, Points, Sample, design
 from flexsc._missing import reading
 from flexsc._named import no_such
@@ -72,8 +73,9 @@ def campaign(
             the tasks, if they can be pickled.
         task_s: Approximate duration of a task of the executor (s).
         force: Replace another campaign in `out`, one with more runs, a file, and logs of other runs.
-        progress: True to print a line with the finished runs and the remaining time to standard error, or a
-            function that is called after each task with the number of finished runs and the total number.
+        progress: True to print a line with the finished runs and the remaining time to standard error, False
+            for none, or a function that is called after each task with the number of finished runs and the
+            total number; if omitted, a line on a terminal for work of more than a minute on one core.
         at: Times (s), of shape (times,) and in any order, at which the exact motion of each run is kept, as
             `Table.samples`, in the same run. It stays in memory: without `out`, `executor` and `progress`.
         topics: The topics of the motion that are kept, such as `["pointing"]`; if omitted, all.
@@ -147,7 +149,8 @@ def sweep(
         seed: Seed that replaces the scenario's.
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
         points: Points that set several keys together: a mapping from each key to a column of values, a
-            sequence of mappings, a data frame of pandas or Polars, or the path of a CSV file of numbers.
+            sequence of mappings, a data frame of pandas or Polars, a `Table`, whose varied keys count, or the
+            path of a CSV file of numbers.
             With `key` too, each point is combined with its values.
         sample: A method with a number of points, such as `("sobol", 1024)`, `("latin-hypercube", 1000)` or
             `("random", 1000)`: a tuple `(low, high)` as values is then a range, and the points are spread
@@ -278,17 +281,23 @@ class _Study(NamedTuple):
         )
         # A task of an executor has one thread unless it is to have more.
         threads = threads_of(1 if jobs is None and executor is not None else jobs, scenario)
-        report = callback(progress)
         if at is not None:
-            if not (out is None and executor is None and report is None):
+            if not (out is None and executor is None and not progress):
                 raise ValueError("at keeps the motion in memory: leave out `out`, `executor` and `progress`")
             return _sampled(scenario, work, threads, at, topics)
         if topics is not None:
             raise ValueError("topics needs `at`, the times at which they are kept")
+
+        def seconds() -> float:
+            runs = self.span[1] - self.span[0]
+            found: float = analysis("estimate", scenario, runs=runs, log=self.log)["seconds"]
+            return found
+
+        report = callback(progress, seconds)
         if out is None and executor is None and report is None:
             columns, summaries = work.make(work.runs, threads)
             return _checked(Table(work, columns.__getitem__, lambda: summaries))
-        if executor is not None and out is None and scenario.parts:
+        if executor is not None and out is None and scenario.own_parts:
             from flexsc import _own_parts_campaign
 
             study = (self.span, self.design.text, names, self.draws)

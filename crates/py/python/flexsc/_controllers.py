@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc._linear import Linear
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 
 
 _ERRORS = (*AXES, *(f"{axis}_rate" for axis in AXES))
+# The words of a file for methods of discretisation.
+_METHODS = {"zoh": "held", "held": "held", "tustin": "tustin"}
 # What a name of an output may begin with, beside the axis alone.
 _QUANTITIES = ("torque", "acceleration", "command")
 
@@ -24,7 +28,7 @@ class Settings:
     """How a controller is sampled, and its command."""
 
     period: float | None
-    method: Literal["held", "tustin"]
+    method: Literal["zoh", "tustin", "held"]
     command: Literal["torque", "acceleration"]
     limit: float | None
     track: bool
@@ -57,11 +61,11 @@ def law_of(
             raise ValueError(f"controllers must be given for {', '.join(AXES)}, got {names}")
         return {"per_axis": {axis: law_of(controller[axis], settings, None, None) for axis in AXES}}
     found = _controller(controller)
-    if settings.method not in ("held", "tustin"):
-        raise ValueError(f"method must be 'held' or 'tustin', got {settings.method!r}")
+    if settings.method not in _METHODS:
+        raise ValueError(f"method must be 'zoh' or 'tustin', got {settings.method!r}")
     keys: dict[str, Any] = {
         "period": _period(found, settings.period),
-        "of": "samples" if found.step is not None or found.unspecified else settings.method,
+        "of": "samples" if found.step is not None or found.unspecified else _METHODS[settings.method],
         "command": settings.command,
         "d": found.d,
     }
@@ -133,6 +137,10 @@ def _outputs(controller: _Controller, given: Sequence[str] | None, command: str)
 
 def _controller(controller: object) -> _Controller:
     """Return a controller by its matrices."""
+    if hasattr(controller, "num") and hasattr(controller, "den"):
+        # A transfer function, which its own library realises.
+        realise = getattr(controller, "to_ss", None) or partial(import_module("control").ss, controller)
+        controller = realise()
     if isinstance(controller, Linear):
         names = [[signal.name for signal in signals] for signals in (controller.inputs, controller.outputs)]
         parts = controller.a, controller.b, controller.c, controller.d

@@ -33,7 +33,7 @@ class Copies:
 
     def _set(self, native: engine.Simulators | OneCopy, scenario: Scenario) -> None:
         self.scenario = self._origin = scenario
-        self._lock = RunLock(waits=not scenario.parts)
+        self._lock = RunLock(waits=not scenario.own_parts)
         self._native = native
         self._fields = Fields(native.fields)
         self._rows: npt.NDArray[np.float64] | None = None

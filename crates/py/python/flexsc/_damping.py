@@ -49,7 +49,7 @@ def relay_damping(
         ValueError: A number is out of its range.
 
     >>> import flexsc
-    >>> damped = flexsc.relay_damping([0.86, 4.5], 1e-6, delay=0.2, amplitude=1e-4)
+    >>> damped = flexsc.papers.relay_damping([0.86, 4.5], 1e-6, delay=0.2, amplitude=1e-4)
     >>> [round(float(factor), 3) for factor in damped["phase_factor"]]
     [0.966, 0.212]
     """
@@ -94,7 +94,7 @@ def observer_region(
         ValueError: A number is out of its range.
 
     >>> import flexsc
-    >>> region = flexsc.observer_region(1.26, [0.6, 2.1], kappa=1.5)
+    >>> region = flexsc.papers.observer_region(1.26, [0.6, 2.1], kappa=1.5)
     >>> round(region["area"], 2), region["next_min"].shape
     (1.35, (2,))
     """
@@ -133,7 +133,7 @@ def observer_margin(
         ValueError: A number is out of its range.
 
     >>> import flexsc
-    >>> margin = flexsc.observer_margin(1.26, [0.1, 0.2])
+    >>> margin = flexsc.papers.observer_margin(1.26, [0.1, 0.2])
     >>> margin["gain_best"] < margin["gain_max"], margin["radii"].shape
     (True, (2,))
     """
@@ -180,7 +180,7 @@ def identify(
         ValueError: A number is out of its range, or `yes` is needed.
 
     >>> import flexsc
-    >>> found = flexsc.identify([(1.2, 0.5)], [0.1], runs=10)
+    >>> found = flexsc.papers.identify([(1.2, 0.5)], [0.1], runs=10)
     >>> found["runs"].tolist(), found["converged"].shape
     ([10.0], (1,))
     """
@@ -204,7 +204,7 @@ def persistence(sensitivities: npt.ArrayLike) -> float:
         parameters is not observable; NaN if a parameter was never excited.
 
     >>> import flexsc
-    >>> flexsc.persistence([[1.0, 0.0], [0.0, 1.0]])
+    >>> flexsc.papers.persistence([[1.0, 0.0], [0.0, 1.0]])
     1.0
     """
     return engine.persistence(np.ascontiguousarray(np.atleast_2d(sensitivities), dtype=np.float64))

@@ -20,7 +20,7 @@ Noise = Literal["same", "new"]
 Sample = Method | tuple[Method, int]
 """A method, or a method with its number of points."""
 Points = Any
-"""A sequence of mappings, a mapping of columns, a data frame, or the path of a CSV file."""
+"""A sequence of mappings, a mapping of columns, a data frame, a table of runs, or the path of a CSV file."""
 
 
 class _Blocks:
@@ -145,6 +145,8 @@ def _columns(points: Points) -> dict[str, list[Any]]:
     """Return the values of each key of a table of points."""
     if isinstance(points, (str, os.PathLike)):
         return _csv(points)
+    if hasattr(points, "varied"):  # the table of a campaign, which has metrics beside its keys
+        return {key: _column(key, points[key]) for key in points.varied}
     if isinstance(points, Mapping):
         return {key: _column(key, values) for key, values in points.items()}
     if hasattr(points, "columns"):  # a frame of pandas or Polars

@@ -9,6 +9,7 @@ from flexsc._columns import read_only, rectangular
 from flexsc._named import library
 from flexsc._numpy import np, npt
 from flexsc._result import Topics
+from flexsc._sample_times import missing
 from flexsc._topic import Topic
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class EnsembleTopic(Topic):
         >>> table.samples["attitude"].unit("angle_rad")
         'rad'
         """
-        return "" if column == "run" else super().unit(column)
+        return "" if column == "run" else Topic.unit(self, column)
 
     def _flat(self) -> _FlatTopic:
         columns = {name: values.reshape(-1, *values.shape[2:]) for name, values in self.items()}
@@ -118,11 +119,12 @@ class Ensemble(Topics):
     ) -> None:
         self.runs, self.times = np.array(runs, dtype=np.int64), times.asked.copy()
         found = {run: times.rows(topics) for run, topics in seen}
-        first = next(iter(found.values()), {})
+        # A run may lack the topic of a part that acts in one mode of operation.
+        known = {name: columns for topics in found.values() for name, columns in topics.items()}
         about = {"scenario": scenario.name, "seed": str(scenario.seed)}
         self._topics = {
             name: EnsembleTopic(name, self._stacked(name, columns, found), scenario, about)
-            for name, columns in first.items()
+            for name, columns in known.items()
         }
         read_only([self.runs, self.times])
 
@@ -143,13 +145,10 @@ class Ensemble(Topics):
         for name, values in columns.items():
             if name in stacked:
                 continue
-            lacking = _missing(rectangular(values))
-            stacked[name] = np.stack(
-                [
-                    rectangular(found[run][topic][name]) if run in found else lacking
-                    for run in self.runs.tolist()
-                ]
-            )
+            shaped = rectangular(values)
+            lacking = missing(shaped.shape, shaped.dtype)
+            of_runs = (found.get(run, {}).get(topic) for run in self.runs.tolist())
+            stacked[name] = np.stack([lacking if of is None else rectangular(of[name]) for of in of_runs])
         return stacked
 
     def _taken(self, places: npt.NDArray[Any]) -> Ensemble:
@@ -180,10 +179,3 @@ class Ensemble(Topics):
     def __repr__(self) -> str:
         size = f"{len(self.runs)} runs at {len(self.times)} times"
         return f"<flexsc.Ensemble of {size}: {', '.join(self.topics)}>"
-
-
-def _missing(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return an array of the same shape that stands for no values: NaN for numbers and counts."""
-    if values.dtype.kind in "fiu":
-        return np.full(values.shape, np.nan)
-    return np.zeros_like(values)

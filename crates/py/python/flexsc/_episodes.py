@@ -168,8 +168,12 @@ class Task:
         terminate: Terminate | None,
         metrics: Sequence[str],
         simulators: Callable[[Scenario], Simulators],
+        render_mode: None = None,
     ) -> None:
-        scenario = Scenario.example(scenario) if isinstance(scenario, str) else scenario
+        if render_mode is not None:
+            raise ValueError(f"render_mode must be None, as `result` has the figures, got {render_mode!r}")
+        if isinstance(scenario, str):
+            scenario = (Scenario.load if scenario.endswith(".toml") else Scenario.example)(scenario)
         self.simulators = simulators(scenario)
         self.dt = float(dt)
         self.metrics = tuple(metrics)
@@ -183,6 +187,8 @@ class Task:
         if observe is None:
             error, rate = scales(scenario, self.dt, self.limit)
             observe = {"believed.error" if axes == 3 else "believed.angle": error, "believed.rate": rate}
+        if not callable(observe) and not isinstance(observe, Mapping):
+            raise TypeError(f"observe must map names to what they are divided by, got {observe!r}")
         self.observed = observe if callable(observe) else dict(observe)
         self._observe = observe if callable(observe) else None
         if not callable(observe):

@@ -21,10 +21,11 @@ def picture(figure: engine.Figure) -> str:
     return re.sub(r'width="\d+" height="\d+"', small, figure.svg(), count=1)
 
 
-def of_log(log: engine.Log, scenario: engine.Scenario) -> str:
-    """The figure that shows the run of a scenario at a glance."""
-    there = engine.log_figures(log, scenario)
-    name = next((name for name in AT_A_GLANCE if name in there), None)
+def of_log(log: engine.Log, scenario: engine.Scenario, name: str | None = None) -> str:
+    """A figure of the run of a scenario; if it has no name, the one that shows the run at a glance."""
+    if name is None:
+        there = engine.log_figures(log, scenario)
+        name = next((name for name in AT_A_GLANCE if name in there), None)
     return picture(engine.log_figure(log, name, scenario)) if name else ""
 
 

@@ -55,7 +55,14 @@ def without(
         value_at(values, above)[last] = value
     tables: dict[str, list[str | int]] = {}
     # From the last element of an array to the first, so that the others keep their positions.
+    own = {role.split()[0] for role in scenario.own_parts} & {*BESIDE}
     for path in sorted(map(steps, keys), key=_order, reverse=True):
+        if len(path) == 1 and path[0] in own:
+            # Parts beside the keys go with those of the file, if it has any.
+            own.discard(str(path[0]))
+            values.pop(path[0], None)
+            tables[""] = []
+            continue
         value_at(values, path)
         del value_at(values, path[:-1])[path[-1]]
         tables[written(path[:-1])] = path[:-1]
@@ -64,8 +71,8 @@ def without(
     text, name = document(scenario.name, _beside_parts(values)), scenario.name
     parts = [
         (role, part)
-        for role, part in scenario.parts.items()
-        if role.split()[0] in values or role.split()[0] in BESIDE
+        for role, part in scenario.own_parts.items()
+        if role.split()[0] in (own if role.split()[0] in BESIDE else values)
     ]
     if parts:
         return type(scenario)._of(engine.beside_parts(text, name, parts))

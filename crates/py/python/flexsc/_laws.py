@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 class Law(OwnPart):
     """A control law about one axis; on a three-axis body one copy acts about each axis.
 
+    A class has the method `decide`, and as attributes, all of which may be left out, its `period` (s), what
+    it `reads`, the distance that it can `promise` (rad), whether it `switches` or `tracks`, what is
+    `tunable`, and its `signals` in the log.
+
     >>> class Weak(Law):
     ...     def decide(self, event):
     ...         return Hold(-1e-6 if event.angle > 0.0 else 1e-6, after=1.0)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
+from flexsc._deprecated import with_old_members
+from flexsc._named import Brief, library
 from flexsc._numpy import np, npt
 from flexsc._signal import Signal, positions
 from flexsc._values import counted
@@ -15,7 +16,7 @@ from flexsc._values import counted
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from flexsc._margins import Margins
+    from flexsc._margins import CommonMargins
     from flexsc._simulator import Simulator
     from flexsc._simulators import Simulators
 
@@ -24,8 +25,9 @@ Break = Literal["command", "torque", "measurement"]
 """The point at which a loop is opened."""
 
 
-@dataclass(frozen=True, eq=False)
-class Linear:
+@with_old_members
+@dataclass(frozen=True, eq=False, repr=False)
+class Linear(Brief):
     """A linear model: x' = a x + b u, y = c x + d u, or with a sampling period x[k+1] = a x[k] + b u[k].
 
     >>> model = flexsc.Scenario.example("relay-fixed").linearise()
@@ -344,7 +346,7 @@ class Linear:
 
         return state_of(self, simulator)
 
-    def margins(self, inputs: Sequence[str] | None = None) -> Margins:
+    def common_margins(self, inputs: Sequence[str] | None = None) -> CommonMargins:
         """Return the margins of a loop that `linearise(loop=...)` opened: how far its commands may be off.
 
         The commands are multiplied together by a real factor, or by a complex number of magnitude 1. For a
@@ -356,7 +358,7 @@ class Linear:
                 command.
 
         >>> opened = flexsc.Scenario.example("earth-observer").linearise(loop="command")
-        >>> margins = opened.margins(["command_roll"])
+        >>> margins = opened.common_margins(["command_roll"])
         >>> margins.gain_below < 1.0 < margins.gain_above
         True
 
@@ -364,9 +366,9 @@ class Linear:
             KeyError: There is no command of this name.
             ValueError: The model is no opened loop, or the closed loop is not stable.
         """
-        from flexsc._margins import margins
+        from flexsc._margins import common_margins
 
-        return margins(self, inputs)
+        return common_margins(self, inputs)
 
     def control(self) -> Any:
         """Return the model as a `control.StateSpace` of python-control, which must be installed.
@@ -374,13 +376,23 @@ class Linear:
         >>> flexsc.Scenario.example("relay-fixed").linearise().control().nstates  # doctest: +SKIP
         6
         """
-        control = import_module("control")
+        control = library("control", "Linear.control")
         names = {
             kind: [signal.name for signal in signals]
             for kind, signals in (("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs))
         }
         period = 0 if self.period is None else self.period
         return control.ss(self.a, self.b, self.c, self.d, period, remove_useless_states=False, **names)
+
+    def scipy(self) -> Any:
+        """Return the model as a `scipy.signal.StateSpace` of SciPy, which must be installed.
+
+        >>> flexsc.Scenario.example("relay-fixed").linearise(period=0.5).scipy().dt     # doctest: +SKIP
+        0.5
+        """
+        signal = library("scipy.signal", "Linear.scipy", "scipy")
+        times = {} if self.period is None else {"dt": self.period}
+        return signal.StateSpace(self.a, self.b, self.c, self.d, **times)
 
     def __repr__(self) -> str:
         time = "continuous" if self.period is None else f"every {self.period:g} s"

@@ -9,7 +9,7 @@ from flexsc import _native as engine
 from flexsc._answer import Answer
 from flexsc._drawable import Drawable
 from flexsc._handover import Exportable
-from flexsc._result import Topics
+from flexsc._result import Result, Samples, Topics
 from flexsc._topic import Topic
 from flexsc._values import arrays
 
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     import os
     from pathlib import Path
 
+    from flexsc._numpy import npt
     from flexsc._scenario import Scenario
+    from flexsc._units import Metrics
 
 
 class Log(Topics, Exportable, Drawable):
@@ -78,6 +80,49 @@ class Log(Topics, Exportable, Drawable):
         'not_asked'
         """
         return Answer(engine.log_answer(self._native)[1])
+
+    @cached_property
+    def _run(self) -> Result:
+        """The run, repeated once to see that it is that of the log."""
+        from flexsc._scenario import Scenario
+
+        scenario, run, commands, end, metrics = engine.log_run(self._native)
+        return Result(Scenario._of(scenario), run, "none", metrics, {}, stepped=commands, until=end)
+
+    @property
+    def metrics(self) -> Metrics:
+        """The metrics of the run, as `Result.metrics` has them; the run is repeated once.
+
+        >>> log.metrics["switchings"], log.metrics.unit("cycle_period_s")
+        (15, 's')
+
+        Raises:
+            ValueError: The run cannot be repeated, or is another one in this version: `log["metrics"]` has
+                what was written.
+        """
+        return self._run.metrics
+
+    def at(self, time: float) -> dict[str, dict[str, Any]]:
+        """Return the exact motion at a time (s), as `Result.at` does; the run is repeated once.
+
+        >>> round(log.at(12.5)["attitude"]["angle_rad"], 9)
+        9.298e-06
+
+        Raises:
+            ValueError: The time is not within the run, or the run cannot be repeated.
+        """
+        return self._run.at(time)
+
+    def sample(self, times: npt.ArrayLike) -> Samples:
+        """Return the exact motion at chosen times (s), as `Result.sample` does; the run is repeated once.
+
+        >>> log.sample([50.0, 12.5])["attitude"]["time_s"].tolist()
+        [50.0, 12.5]
+
+        Raises:
+            ValueError: A time is not within the run, or the run cannot be repeated.
+        """
+        return self._run.sample(times)
 
     def _export(self, options: engine.ExportOptions, path: str | os.PathLike[str]) -> int:
         return engine.export_log(self._native, options, path)

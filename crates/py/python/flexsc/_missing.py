@@ -43,7 +43,7 @@ _KINDS: list[tuple[type[Exception], type[_Missing]]] = [
 def reading(path: str | os.PathLike[str], read: Callable[[str | os.PathLike[str]], _Read]) -> _Read:
     """Read a path; if it does not exist, the error is a `FileNotFoundError` with `errno` and `filename`."""
     try:
-        return read(path)
+        return read(os.fsdecode(path))
     except (ValueError, OSError) as error:
         kind = next((missing for old, missing in _KINDS if isinstance(error, old)), None)
         if kind is None or os.path.lexists(path):

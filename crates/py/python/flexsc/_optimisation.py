@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from flexsc import _native as engine
 from flexsc._named import library
@@ -15,6 +15,15 @@ if TYPE_CHECKING:
     from flexsc._units import Metrics
 
 
+class Optimum(NamedTuple):
+    """What `optimise` has found."""
+
+    scenario: Scenario
+    """The scenario with the best values."""
+    result: Any
+    """SciPy's OptimizeResult: its `x` are the values of the keys, its `fun` is the metric."""
+
+
 def optimise(
     scenario: Scenario,
     keys: Sequence[str],
@@ -24,7 +33,7 @@ def optimise(
     method: str = "Nelder-Mead",
     run: int = 0,
     **options: Any,
-) -> tuple[Scenario, Any]:
+) -> Optimum:
     """Minimise a metric over keys of a scenario with `scipy.optimize.minimize`, which must be installed.
 
     The values of the scenario are the start. SciPy sees them divided by their size, so that steps and
@@ -89,7 +98,7 @@ def optimise(
     result = minimize(cost, start / scale, method=method, bounds=scaled, options=options)
     best = at(np.asarray(result.x, dtype=np.float64))
     result.x = np.array([best.get(key) for key in keys], dtype=np.float64)
-    return best, result
+    return Optimum(best, result)
 
 
 def _measured(scenario: Scenario, metric: str | Callable[[Metrics], float], run: int) -> float | None:

@@ -65,7 +65,7 @@ def _check(scenario: Scenario, executor: Executor) -> None:
     """Refuse parts that no other process can have."""
     if isinstance(executor, ThreadPoolExecutor):
         return
-    for role, part in scenario.parts.items():
+    for role, part in scenario.own_parts.items():
         if isinstance(part, CompiledLaw):
             why = "is a function at an address of this process"
             raise ValueError(f"{scenario.name}: the {role} {why}, which no worker has: leave out `executor`")

@@ -21,6 +21,10 @@ else:
         return lambda transformed: transformed
 
 
+# The field of a key that is left out. Its type is that of the key, as it has a value in every scenario.
+DEFAULT: Any = None
+
+
 def _signature(part: type[Part]) -> Signature:
     """The signature of a class: its keys, with None as the default of those that may be left out."""
     from inspect import Parameter, Signature

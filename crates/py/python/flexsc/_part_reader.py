@@ -25,7 +25,7 @@ def part_at(scenario: Scenario, key: str, kind: type[Part] | None) -> Any:
         root, *path = _keys.steps(key)
         found = _descend(_read(_kinds_of(Keys, str(root)), scenario.get(_keys.written([root]))), path)
     if _has_own(found):
-        raise ValueError(f"`{key}` has a part of your own: `Scenario.parts` has it")
+        raise ValueError(f"`{key}` has a part of your own: `Scenario.own_parts` has it")
     if kind is not None and not isinstance(found, kind):
         raise TypeError(f"`{key}` is no {kind.__name__}, but {type(found).__name__}")
     return found

@@ -69,5 +69,10 @@ class Plan(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._values)
 
+    def _repr_html_(self) -> str:
+        from flexsc import _html
+
+        return _html.table(("name", "value"), self.items())
+
     def __repr__(self) -> str:
         return f"<flexsc.Plan: {self['angle_rad']:g} rad in {self['time_s']:g} s>"

@@ -7,14 +7,18 @@ import time
 from collections.abc import Callable
 
 Progress = bool | Callable[[int, int], None] | None
-"""True for a line on standard error, or a function of the number of finished runs and the total number."""
+"""True for a line on standard error, False for none, or a function of the number of finished runs and the
+total number; None for a line on a terminal where the work is long."""
+
+# Work on one core (s) that is long.
+_LONG_S = 60.0
 
 
-def callback(progress: Progress) -> Callable[[int, int], None] | None:
-    """Return the function that is called with the progress, if any."""
-    if progress is True:
+def callback(progress: Progress, seconds: Callable[[], float]) -> Callable[[int, int], None] | None:
+    """Return the function that is called with the progress, if any, of work that takes some seconds."""
+    if progress is True or (progress is None and sys.stderr.isatty() and seconds() > _LONG_S):
         return Line()
-    return None if progress is False else progress
+    return progress if callable(progress) else None
 
 
 class Line:

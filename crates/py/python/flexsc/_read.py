@@ -7,6 +7,7 @@ from dataclasses import field, fields
 from math import inf, nan
 from typing import Any, TypeVar
 
+from flexsc._deprecated import with_old_members
 from flexsc._named import Brief
 from flexsc._numpy import np, npt
 
@@ -21,45 +22,13 @@ class Data(Brief):
     def __init_subclass__(cls) -> None:
         # Pickles, `help` and tracebacks name the place where users find a class.
         cls.__module__ = "flexsc"
+        with_old_members(cls)
 
     @classmethod
     def _read(cls: type[T], found: Mapping[str, Any], whole: Mapping[str, Any] | None = None) -> T:
         """Return the result of JSON, which is part of a whole one."""
         known: Any = fields(cls)  # type: ignore[arg-type]
         return cls(*(each.metadata["read"](found, found if whole is None else whole) for each in known))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the fields as nested dictionaries and lists; arrays stay arrays.
-
-        >>> flexsc.Scenario.example("earth-observer").margins().to_dict()["modulus"] > 0.5
-        True
-        """
-        return {name: _nested(value) for name, value in vars(self).items() if not name.startswith("_")}
-
-    def _repr_html_(self) -> str:
-        from flexsc import _html
-
-        numbers, tables = [], []
-        for name, value in self.to_dict().items():
-            if isinstance(value, dict) and value and all(isinstance(row, dict) for row in value.values()):
-                rows = [{"name": key, **row} for key, row in value.items()]
-            elif isinstance(value, list) and value and all(isinstance(row, dict) for row in value):
-                rows = value
-            else:
-                numbers.append((name, value))
-                continue
-            table = _html.table(rows[0], ([row.get(key) for key in rows[0]] for row in rows))
-            tables.append(_html.folded(f"{len(rows)} {name}", table))
-        title = _html.heading(type(self).__name__, "")
-        return title + _html.table(("field", "value"), numbers) + "".join(tables)
-
-
-def _nested(value: Any) -> Any:
-    if isinstance(value, Data):
-        return value.to_dict()
-    if isinstance(value, Mapping):
-        return {key: _nested(inner) for key, inner in value.items()}
-    return [_nested(inner) for inner in value] if isinstance(value, (list, tuple)) else value
 
 
 def at(path: str, read: Reader) -> Any:

@@ -26,6 +26,8 @@ Logged = Literal["events", "full", "scene"]
 """What a log file holds of a run."""
 Detail = Literal["events", "full", "scene", "none"]
 """What is recorded of a run: see `Scenario.simulate`."""
+# Times whose samples fit in memory on any body.
+_FEW_TIMES = 10_000
 
 
 class Topics(Lookup[Topic]):
@@ -292,11 +294,13 @@ class Result(Topics, Exportable, Drawable):
         (3, 2)
 
         Raises:
-            ValueError: A time is not within the run.
+            ValueError: A time is not within the run, or there are more than 200 000 000 values.
         """
         end = self._until
         what = "duration" if end == self.scenario.duration else "time of the run"
         asked = SampleTimes(times, end, what)
+        if len(asked.asked) > _FEW_TIMES:
+            asked.check_size(engine.sample_sizes(self.scenario._native, self.run))
         if self._motion is None:
             self._motion = engine.MotionSampler(self.scenario._native, self.run, self._stepped)
         return self._sampled(asked, self._motion.sample(asked.grown))
@@ -375,10 +379,8 @@ class Result(Topics, Exportable, Drawable):
         from flexsc import _html
 
         about = f"run {self.run}, {self._until:g} s, seed {self.scenario.seed}"
-        rows = [(name, value, self.metrics.unit(name)) for name, value in self.metrics.items()]
-        metrics = _html.folded(f"{len(rows)} metrics", _html.table(("metric", "value", "unit"), rows))
         topics = [(name, self[name].rows, ", ".join(self[name])) for name in self]
         held = _html.folded(f"{len(topics)} topics", _html.table(("topic", "rows", "columns"), topics))
         figure = _html.of_log(self._native_log(), self.scenario._native) if self._took < _html.SOON_S else ""
         answer = self.answer._repr_html_()
-        return _html.heading(self.scenario.name, about) + answer + figure + metrics + held
+        return _html.heading(self.scenario.name, about) + answer + figure + self.metrics._repr_html_() + held

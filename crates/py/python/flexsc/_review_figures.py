@@ -40,6 +40,15 @@ class MarginsFigure:
             longest[each.step] = max(each.time, longest.get(each.step, 0.0))
         return longest
 
+    def __repr__(self) -> str:
+        """Return the least margins of all loops together and of each."""
+        margins = cast("StabilityMargins", self)
+        each = ", ".join(
+            f"{name}: gain {loop.gain_below:.3g} to {loop.gain_above:.3g}, phase {loop.phase:.3g} rad"
+            for name, loop in margins.loops.items()
+        )
+        return f"StabilityMargins(modulus={margins.modulus:.4g}, disk={margins.disk:.4g}; {each})"
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the largest singular values of sensitivity and complementary sensitivity over frequency.
 
@@ -111,10 +120,10 @@ class NoiseFigure:
         if len(spectrum.sources) > 1:
             for source, density in noise.density_by_source.items():
                 if density.any():
-                    above.plot(spectrum.frequency, density, linewidth=POINT, label=source)
+                    above.plot(spectrum.frequency_hz, density, linewidth=POINT, label=source)
         label = "all" if len(spectrum.sources) > 1 else "".join(spectrum.sources)
-        above.plot(spectrum.frequency, noise.density, color="black", linewidth=1.4 * POINT, label=label)
-        below.plot(spectrum.frequency, noise.cumulative_rms, color="black", linewidth=1.4 * POINT)
+        above.plot(spectrum.frequency_hz, noise.density, color="black", linewidth=1.4 * POINT, label=label)
+        below.plot(spectrum.frequency_hz, noise.cumulative_rms, color="black", linewidth=1.4 * POINT)
         for ax, title in ((above, f"density (({noise.unit})²/Hz)"), (below, f"rms up to it ({noise.unit})")):
             frame(ax)
             ax.set_xscale("log")
@@ -219,7 +228,7 @@ class WorstFigure:
         case = cast("WorstCase", self)
         return f"WorstCase(quantity={case.quantity!r}, value={case.value:.4g}, nominal={case.nominal:.4g})"
 
-    def plot(self, axes: Sequence[Axes] | None = None) -> list[Axes]:
+    def plot(self, axes: Sequence[Axes] | None = None) -> tuple[Axes, ...]:
         """Draw the value at each point over each uncertain key, with the worst point in red.
 
         Args:
@@ -263,7 +272,7 @@ class WorstFigure:
             frame(ax)
             ax.set_xlabel(key, fontsize=10 * POINT)
         axes[0].set_ylabel(f"{case.quantity}{unit}", fontsize=12 * POINT)
-        return list(axes)
+        return tuple(axes)
 
 
 class TuningFigure:

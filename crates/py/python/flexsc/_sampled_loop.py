@@ -48,7 +48,7 @@ def gain_region(
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
-    >>> region = flexsc.gain_region(scenario, [0.3], gains=(-2.0, 6.0, 0.5))
+    >>> region = flexsc.papers.gain_region(scenario, [0.3], gains=(-2.0, 6.0, 0.5))
     >>> bool(region["gain_min"][0] < region["midpoint"][0] < region["gain_max"][0])
     True
     """
@@ -97,7 +97,7 @@ def robust_gains(
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
-    >>> best = flexsc.robust_gains(scenario, [0.3], off=0.05, gains=(0.0, 3.0, 0.5))
+    >>> best = flexsc.papers.robust_gains(scenario, [0.3], off=0.05, gains=(0.0, 3.0, 0.5))
     >>> best["gain"].shape, bool(best["spectral_radius"][0] < 1.0)
     ((1,), True)
     """
@@ -146,7 +146,7 @@ def stability_map(
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("wheel-fixed-gain")
-    >>> cells = flexsc.stability_map(scenario, [0.2, 0.3], [0.1, 0.3, 0.5])
+    >>> cells = flexsc.papers.stability_map(scenario, [0.2, 0.3], [0.1, 0.3, 0.5])
     >>> cells["spectral_radius"].shape
     (2, 3)
     """

@@ -12,6 +12,7 @@ from flexsc import _keys
 from flexsc import _native as engine
 from flexsc._analysis import analysis
 from flexsc._answer import Answer
+from flexsc._deprecated import with_old_members
 from flexsc._missing import reading
 from flexsc._named import no_such
 from flexsc._numpy import np, npt
@@ -55,6 +56,7 @@ P = TypeVar("P", bound="Part")
 Margin = Literal["modulus", "disk", "gain", "phase", "delay"]
 
 
+@with_old_members
 class Scenario:
     """A study: everything that a scenario file contains. It is valid and immutable.
 
@@ -252,8 +254,8 @@ class Scenario:
             FileExistsError: The file is there, and `force` is not given.
             OSError: The file cannot be written.
         """
-        if self.parts:
-            raise ValueError(f"no file can hold parts written in Python: {', '.join(self.parts)}")
+        if self.own_parts:
+            raise ValueError(f"no file can hold parts written in Python: {', '.join(self.own_parts)}")
         if not force and os.path.lexists(path):
             raise FileExistsError(f"{os.fspath(path)} is there: give force=True to replace it")
         engine.write(path, self.to_toml().encode())
@@ -300,7 +302,7 @@ class Scenario:
         Raises:
             KeyError: There is no such key; the text has those that there are.
             TypeError: The part is of another class.
-            ValueError: The part is one of your own, which `parts` has.
+            ValueError: The part is one of your own, which `own_parts` has.
         """
         from flexsc._part_reader import part_at
 
@@ -402,10 +404,10 @@ class Scenario:
         ...     period = 1.0
         ...     def decide(self, event):
         ...         return flexsc.Hold(0.0)
-        >>> flexsc.Scenario.example("relay-fixed").with_parts(law=Off()).parts
+        >>> flexsc.Scenario.example("relay-fixed").with_parts(law=Off()).own_parts
         {'law': <...Off object at ...>}
 
-        >>> flexsc.Scenario.example("safe-mode").with_parts(law={"safe": Off()}).parts
+        >>> flexsc.Scenario.example("safe-mode").with_parts(law={"safe": Off()}).own_parts
         {'law safe': <...Off object at ...>}
 
         Raises:
@@ -421,12 +423,12 @@ class Scenario:
         )
 
     @property
-    def parts(self) -> dict[str, object]:
+    def own_parts(self) -> dict[str, object]:
         """Your own parts by role; sensors as `sensor 0`, actuators after the first as `actuator 1`, laws of
         modes as `law point`, and those of stages as `law 1`; disturbances as `disturbance 0`, guidance of
         modes as `guidance point`.
 
-        >>> flexsc.Scenario.example("relay-fixed").parts                     # all of its parts are flexsc's
+        >>> flexsc.Scenario.example("relay-fixed").own_parts                 # all of its parts are flexsc's
         {}
         """
         return dict(engine.parts_of(self._native))
@@ -436,7 +438,7 @@ class Scenario:
         controller: object,
         period: float | None = None,
         *,
-        method: Literal["held", "tustin"] = "held",
+        method: Literal["zoh", "tustin", "held"] = "zoh",
         command: Literal["torque", "acceleration"] = "torque",
         limit: float | None = None,
         track: bool = False,
@@ -447,15 +449,16 @@ class Scenario:
 
         Args:
             controller: Matrices (A, B, C, D), an object that has them, such as those of `control.ss`,
-                `control.hinfsyn`, `scipy.signal.StateSpace` and `Linear.compensator`, or a gain K as
+                `control.hinfsyn`, `scipy.signal.StateSpace` and `Linear.compensator`, a transfer function of
+                python-control or SciPy, or a gain K as
                 `control.lqr` returns it, for u = -K x. About one axis its inputs are the error of the angle
                 (rad) and, if it has two, the error of the rate (rad/s): the goal minus the measured or
                 estimated value. Its output is the command. On three axes a controller of one output acts
                 about each axis, a dict has one each for `roll`, `pitch` and `yaw`, and a controller with
                 three outputs acts about all axes together.
             period: Sampling period (s) of a continuous-time controller; a discrete-time one has its own.
-            method: Discretisation of a continuous-time controller: `held`, exact for errors held over a
-                period, or `tustin`.
+            method: Discretisation of a continuous-time controller: `zoh`, exact for errors held over a
+                period (`held` in a file), or `tustin`.
             command: Whether the output is a `torque` (N m) or an `acceleration` (rad/s²).
             limit: Largest command; None without a limit.
             track: Whether the law follows a manoeuvre while it lasts.
@@ -697,7 +700,7 @@ class Scenario:
 
         return noise_spectrum(self, signals, window, separation, speeds, pixel)
 
-    def budget(self, runs: int = 20, jobs: int = 0) -> PointingBudget:
+    def budget(self, runs: int = 20, jobs: int | None = None) -> PointingBudget:
         """Return the pointing budget of the scenario's `[[requirement]]` tables: `flexsc budget`.
 
         Each pointing index has its levels at 68.3, 95.5 and 99.7 %, temporal, ensemble and mixed: by the
@@ -705,7 +708,7 @@ class Scenario:
 
         Args:
             runs: Number of runs of the campaign over the noise and the uncertain keys.
-            jobs: Number of threads; 0 for one per core.
+            jobs: Number of threads; if omitted, one per core.
 
         >>> budget = flexsc.Scenario.example("slew-wheel-lqg").budget(runs=2)
         >>> [index.unit for index in budget.indices]
@@ -718,7 +721,7 @@ class Scenario:
 
         if runs < 1:
             raise ValueError(f"runs must be 1 or more, got {runs}")
-        return PointingBudget._read(analysis("budget", self, runs=runs, jobs=jobs))
+        return PointingBudget._read(analysis("budget", self, runs=runs, jobs=jobs or 0))
 
     def bound(self) -> list[OutputBound]:
         """Return the guaranteed ranges of the outputs that the scenario's `[[bound]]` names: `flexsc bound`.
@@ -750,7 +753,7 @@ class Scenario:
         loop: Break = "command",
         least: bool = False,
         points: int = 200,
-        jobs: int = 0,
+        jobs: int | None = None,
     ) -> WorstCase:
         """Return the worst case over the scenario's `[uncertain]` keys: `flexsc worst`.
 
@@ -765,7 +768,7 @@ class Scenario:
             loop: The point at which the loops are opened for a margin.
             least: Whether small values of the metric are bad.
             points: Largest number of points, each of which is a run, or a loop of a margin.
-            jobs: Number of threads of the runs; 0 for one per core.
+            jobs: Number of threads of the runs; if omitted, one per core.
 
         >>> worst = flexsc.Scenario.example("slew-wheel-lqg").worst("settling_time_s", points=10)
         >>> worst.value >= worst.nominal
@@ -780,12 +783,14 @@ class Scenario:
         given = {"metric": metric, "requirement": requirement, "margin": margin}
         chosen = [(kind, name) for kind, name in given.items() if name is not None]
         if len(chosen) != 1:
-            raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}")
+            names = ", ".join(each["name"] for each in self.to_dict().get("requirement", ()))
+            there = f"; the requirements are {names}" if names else ""
+            raise ValueError(f"give one of metric, requirement and margin, got {len(chosen)}{there}")
         if least and metric is None:
             raise ValueError("least is for a metric: it is known of a requirement and of a margin")
         [(kind, name)] = chosen
         options = {"kind": kind, "name": name, "opened": loop, "is_least": least}
-        return WorstCase._read(analysis("worst", self, **options, points=points, jobs=jobs))
+        return WorstCase._read(analysis("worst", self, **options, points=points, jobs=jobs or 0))
 
     def report(self, path: str | os.PathLike[str], runs: int = 100, *, force: bool = False) -> bool:
         """Write a page for a design review, and return whether all its verdicts are good: `flexsc report`.

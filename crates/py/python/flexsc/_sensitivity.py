@@ -148,6 +148,12 @@ class Sensitivities(Compared, Lookup["Named[float]"]):
         frame.attrs.update({"errors": errors, "units": units})
         return frame
 
+    def _repr_html_(self) -> str:
+        from flexsc import _html
+
+        rows = ((metric, *self[metric].values()) for metric in self.metrics)
+        return _html.heading(self.scenario.name, "derivatives") + _html.table(("metric", *self.varied), rows)
+
     def __repr__(self) -> str:
         def line(metric: str, key: str) -> str:
             value = f"{self[metric][key]:.6g} +- {self.error(metric, key):.2g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from operator import index as place
 from typing import Any, NoReturn
 
 from flexsc import _native as engine
@@ -54,6 +55,8 @@ class Simulators(Copies):
         *,
         keep_commands: bool = False,
     ) -> None:
+        if isinstance(scenario, (Simulator, Snapshot)):
+            raise TypeError(f"Simulators.of starts copies at the state of a run, got {scenario!r}")
         checked(scenario)
         count = runs if isinstance(runs, int) else len(runs)
         if count > _MOST:
@@ -138,7 +141,7 @@ class Simulators(Copies):
 
     def __getitem__(self, index: int) -> Simulator:
         """Return a clone of one copy."""
-        index = range(len(self))[index]
+        index = range(len(self))[place(index)]
         with self._lock:
             run = int(self.runs[index])
             return Simulator._of(self._native.one(index), self._scenario_of(index, run), run)

@@ -12,6 +12,7 @@ from flexsc import _native as engine
 from flexsc import _units
 from flexsc._answer import CampaignAnswer
 from flexsc._columns import Columns, read_only
+from flexsc._deprecated import with_old_keywords
 from flexsc._drawable import Drawable
 from flexsc._named import Named, library, no_such
 from flexsc._numpy import np, npt
@@ -139,7 +140,7 @@ class Table(Columns, Drawable):
             )
         # An empty list has no integers.
         at = np.arange(self.rows)[chosen if chosen.size else slice(0)]
-        work = self._recreated_work() if not self.scenario.parts else self._campaign()
+        work = self._recreated_work() if not self.scenario.own_parts else self._campaign()
         columns = {name: values[at] for name, values in self.items()}
 
         def statistics() -> list[Any]:
@@ -208,14 +209,15 @@ class Table(Columns, Drawable):
         native, run = self._campaign().run(int(self["run"][at]))
         return Row(Scenario._of(native), run)
 
-    def worst(self, metric: str, *, smallest: bool = False) -> Row:
+    @with_old_keywords
+    def worst(self, metric: str, *, least: bool = False) -> Row:
         """Return the row with the largest value of a metric, or with the smallest.
 
         Rows without a value are left out; of equal values the first counts.
 
         Args:
             metric: The metric, or another column of numbers.
-            smallest: Return the row with the smallest value instead, for a metric such as a margin.
+            least: Whether small values of the metric are bad, as those of a margin.
 
         >>> import flexsc
         >>> scenario = flexsc.Scenario.example("relay-sampled").with_("duration", 100.0)
@@ -233,7 +235,7 @@ class Table(Columns, Drawable):
             raise ValueError(f"{metric!r} is not a column of numbers, of which one is the worst")
         if np.isnan(values).all():
             raise ValueError(f"no run has a value of {metric!r}")
-        return self.row(int(np.nanargmin(values) if smallest else np.nanargmax(values)))
+        return self.row(int(np.nanargmin(values) if least else np.nanargmax(values)))
 
     def statistics(self) -> dict[str, dict[str, Any]]:
         """Return statistics of each numeric metric over the runs that have a value.
@@ -362,7 +364,7 @@ class Table(Columns, Drawable):
         """Return the state for pickles and copies: all columns, statistics, and the manifest of the work."""
         unpicklable = ("_read", "_summaries", "_kept", "_work")
         state = {name: value for name, value in self.__dict__.items() if name not in unpicklable}
-        if self._work is not None and self.scenario.parts:
+        if self._work is not None and self.scenario.own_parts:
             state["_design"] = self._work.design.text
         elif self._work is not None:
             state["_manifest"] = self._work.manifest

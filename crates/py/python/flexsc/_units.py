@@ -190,6 +190,12 @@ class Metrics(dict[str, Any]):
         """
         return self._meaning(name)["doc"]
 
+    def _repr_html_(self) -> str:
+        from flexsc import _html
+
+        rows = ((name, value, self.unit(name)) for name, value in self.items())
+        return _html.folded(f"{len(self)} metrics", _html.table(("metric", "value", "unit"), rows))
+
     def __repr__(self) -> str:
         def line(name: str, value: Any) -> str:
             unit = self.unit(name)

@@ -30,7 +30,7 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
             `SameStep`: in the step that ends the episode; `info["final_obs"]` has its last observation.
             `Disabled`: at `reset` with `options={"reset_mask": mask}`.
         jobs: Number of threads; 0, or if omitted, one per core.
-        keep_commands: Whether the commands of episodes are kept, 40 bytes each, so that `result` can repeat
+        keep_commands: Whether the commands of episodes are kept, 64 bytes each, so that `result` can repeat
             them; with `metrics` they are.
 
     >>> envs = flexsc.gym.SpacecraftVectorEnv("four-clamped-modes", num_envs=100, dt=1.0, limit=1.0)
@@ -72,6 +72,7 @@ class SpacecraftVectorEnv(VectorEnv[Observation, npt.NDArray[Any], npt.NDArray[A
             terminate,
             metrics,
             lambda of_runs: Simulators(of_runs, num_envs, jobs, keep_commands=keeps),
+            render_mode,
         )
         self._mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}

@@ -16,9 +16,13 @@ environment for Stable-Baselines3.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from copy import deepcopy
+from typing import Any, NoReturn
 
-import gymnasium
+try:
+    import gymnasium
+except ModuleNotFoundError as error:
+    raise ModuleNotFoundError(f"flexsc.gym needs Gymnasium: pip install flexsc[gym] ({error})") from error
 from gymnasium.vector import AutoresetMode
 
 from flexsc._episodes import (
@@ -50,7 +54,8 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
     `duration`.
 
     Args:
-        scenario: The scenario, or the name of a shipped one. Its `[law]` is not used.
+        scenario: The scenario, the name of a shipped one, or the path of a file `.toml`. Its `[law]` is not
+            used.
         dt: The length of a step, over which a command is held (s).
         limit: The command that corresponds to an action of 1 about each axis, a number or of shape (axes,),
             in the unit of `Simulator.command_unit`; if omitted, the largest that the actuator can execute.
@@ -95,7 +100,9 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
             terminate,
             metrics,
             lambda of_runs: Simulators._of_one(of_runs, 0),
+            render_mode,
         )
+        self._given = (scenario, dt, limit, self._task.observed, reward, terminate, metrics)
         self._quick = QuickStep.of(self._task)
         self.observation_space = self._task.observation_space
         self.action_space = self._task.action_space
@@ -119,6 +126,24 @@ class SpacecraftEnv(gymnasium.Env[Observation, npt.NDArray[Any]]):
         {'believed.error': 1.4, 'believed.rate': 0.14}
         """
         return self._task.observed
+
+    def render(self) -> NoReturn:
+        """Raise an error: `result` has the figures of an episode.
+
+        >>> env = flexsc.gym.SpacecraftEnv("four-clamped-modes", dt=1.0, limit=1.0)
+        >>> start = env.reset(seed=1)
+        >>> env.result().svg()[:4]
+        '<svg'
+        """
+        raise NotImplementedError("an episode has no frames: `result` has its log and its figures")
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> SpacecraftEnv:
+        """Return an environment in the same state, as searches of trees of actions need it."""
+        other = SpacecraftEnv(*deepcopy(self._given, memo))
+        other._task.simulators.restore(self._task.simulators.snapshot())
+        other._np_random = deepcopy(self._np_random, memo)
+        other._np_random_seed = self._np_random_seed
+        return other
 
     def result(self, log: Detail = "events") -> Result:
         """Return the present episode, until its next `reset`, as a result: metrics, columns, log and figures.

@@ -89,13 +89,18 @@ def _of_keys(kind: type[Any], keys: dict[str, Any]) -> Any:
 
 
 def _keep_keys(kind: type[Any], names: Sequence[str]) -> None:
-    """Let objects of a class of the engine be pickled as its keywords, those that are None left out."""
+    """Let objects of a class of the engine be pickled and shown as its keywords, without those that are None
+    or False, as by default."""
 
-    def reduced(part: Any) -> tuple[Any, ...]:
-        keys = {name: getattr(part, name) for name in names}
-        return _of_keys, (kind, {name: value for name, value in keys.items() if value is not None})
+    def keys(part: Any) -> dict[str, Any]:
+        found = {name: getattr(part, name) for name in names}
+        return {name: value for name, value in found.items() if value is not None and value is not False}
 
-    copyreg.pickle(kind, reduced)
+    def shown(part: Any) -> str:
+        return f"{kind.__name__}({', '.join(f'{name}={value!r}' for name, value in keys(part).items())})"
+
+    copyreg.pickle(kind, lambda part: (_of_keys, (kind, keys(part))))
+    setattr(kind, "__repr__", shown)  # noqa: B010, mypy knows it as a method
 
 
 _keep_keys(Reading, ("angle", "attitude", "rate", "vector", "inertial", "is_direction"))

@@ -218,14 +218,7 @@ def drawn(source: Source, name: str) -> engine.Figure:
     """Return the figure of this name as the engine draws it."""
     log = _log(source)
     if log is not None:
-        try:
-            return engine.log_figure(log, name, _known(source))
-        except ValueError as error:
-            # A name that no figure has.
-            if "invalid variant" not in str(error):
-                raise
-        names = ", ".join(engine.log_figures(log, _known(source)))
-        raise ValueError(f"there is no figure {name!r} for it; it has {names}")
+        return engine.log_figure(log, name, _known(source))
     there = _of_campaign(source, None, ())
     if name not in there and isinstance(source, Table):
         kind, _, metric = name.partition("-")

@@ -416,13 +416,13 @@ class NoiseSpectrum(NoiseFigure, Data):
     samples: int = at("samples", plain)
     """Samples of the law in a period."""
 
-    nyquist: float = at("nyquist_hz", number)
+    nyquist_hz: float = at("nyquist_hz", number)
     """Nyquist frequency of the law (Hz)."""
 
     sources: tuple[str, ...] = at("sources", tuple_of(plain))
     """Sources of noise: keys of the scenario."""
 
-    frequency: Values = at("frequency_hz", array)
+    frequency_hz: Values = at("frequency_hz", array)
     """Frequencies of the densities (Hz), up to the Nyquist frequency."""
 
     outputs: dict[str, OutputNoise] = at("outputs", keyed("output", one(OutputNoise)))

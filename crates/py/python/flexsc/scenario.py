@@ -11,10 +11,11 @@
     >>> scenario.to_dict()["law"]["relay"]["k_t"]
     0.31
 
-Their keys, units and meanings are those of a scenario file. A key that is left out, or None, has its
-default. A table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of
-them, `LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to
-be is checked when a scenario is made of them; all mistakes are reported at once.
+Their keys, units and meanings are those of a scenario file. A key that is left out has its default: its
+field is None until a scenario is made of the part, and `Scenario.part` returns it with all defaults. A
+table of which there are several kinds, such as `[law]`, has a class for each kind, and a union of them,
+`LawKind`. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to be
+is checked when a scenario is made of them; all mistakes are reported at once.
 """
 
 # Made by crates/py/scenario_classes.py: a change here is lost.
@@ -25,7 +26,7 @@ from collections.abc import Mapping, Sequence
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, TypedDict, Union
 
-from flexsc._part import Part
+from flexsc._part import DEFAULT, Part
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -45,7 +46,6 @@ __all__ = [
     "AttitudeEstimator",
     "AttitudeFilterInitial",
     "AttitudeLaw",
-    "AttitudeTarget",
     "BDot",
     "BangBang",
     "Biquad",
@@ -172,6 +172,7 @@ __all__ = [
     "Section",
     "SensorKind",
     "Shape",
+    "ShapedZero",
     "ShaperKind",
     "Silent",
     "Sine",
@@ -251,29 +252,29 @@ class Accelerometer(Part):
 
     period: float
     """Period of its samples (s)."""
-    watch_only: bool | None = None
+    watch_only: bool = DEFAULT
     """Must be true: no law or estimator reads an accelerometer; its readings are only logged. Default:
     false.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted; default: the first of the body's points."""
-    along: Rows | None = None
+    along: Rows = DEFAULT
     """Measurement directions: one to three, of any length, in the hub's axes with the structure undeformed;
     default: x, y and z.
     """
-    noise: float | Vector | None = None
+    noise: float | Vector = DEFAULT
     """Standard deviation of the white noise along each (m/s²). Default: 0.0."""
-    bias: float | Vector | None = None
+    bias: float | Vector = DEFAULT
     """Constant error along each (m/s²). Default: 0.0."""
-    bias_random_walk: float | Vector | None = None
+    bias_random_walk: float | Vector = DEFAULT
     """Random walk of the bias along each (m/s² per square root of a second). Default: 0.0."""
-    resolution: float | Vector | None = None
+    resolution: float | Vector = DEFAULT
     """Quantum of the output along each (m/s²); 0 for none. Default: 0.0."""
-    scale: float | Vector | None = None
+    scale: float | Vector = DEFAULT
     """Relative error of the scale along each. Default: 0.0."""
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the accelerometer fails."""
 
 
@@ -292,20 +293,20 @@ class ActiveDamping(Part):
         guards: Guards against exciting the motion.
     """
 
-    threshold: Vector | None = None
+    threshold: Vector = DEFAULT
     """Elastic rate about each axis above which the jets fire (rad/s), three numbers, of which one axis uses
     the first; default, for the mode that a long burn excites most: 1.5 times the amplitude of the limit
     cycle due to the delay, and at least the change by two whole cycles of firing.
     """
-    release: float | None = None
+    release: float = DEFAULT
     """Fraction of the threshold at which the pulses of active damping stop. Default: 0.5."""
-    pulse_width: bool | None = None
+    pulse_width: bool = DEFAULT
     """Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it fills the cycle.
     Default: true.
     """
-    predictor: bool | None = None
+    predictor: bool = DEFAULT
     """Whether the elastic rate is predicted for the middle of the next pulse. Default: true."""
-    guards: DampingGuards | None = None
+    guards: DampingGuards = DEFAULT
     """Guards against exciting the motion."""
 
 
@@ -330,28 +331,28 @@ class Adaptive(Part):
 
     _tag: ClassVar[str | None] = "adaptive"
 
-    form: ObserverFormKind | None = None
+    form: ObserverFormKind = DEFAULT
     """Form of the observers; default: `gradient`."""
-    trackers: Given | None = None
+    trackers: Given = DEFAULT
     """The modes to track about each axis, on three axes, such as `roll = [{ frequency = 1.7, influence =
     [0, 0, 3], bounds = [1.0, 2.4] }]`; an axis that is left out tracks none. Default: the dominant modes
     of the body.
     """
-    count: int | None = None
+    count: int = DEFAULT
     """Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`."""
-    merge: float | None = None
+    merge: float = DEFAULT
     """Relative frequency difference below which modes of the body are tracked as one: the influences add
     up, the frequency is their mean weighted by these. Default: 0.08.
     """
-    cross_axis: bool | None = None
+    cross_axis: bool = DEFAULT
     """Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else
     false.
     """
-    frequency_error: float | None = None
+    frequency_error: float = DEFAULT
     """Relative error of the frequencies at the start; a frequency stays within its bounds. Default: 0.0."""
-    influence_error: float | None = None
+    influence_error: float = DEFAULT
     """Relative error of the influences at the start. Default: 0.0."""
-    adapt: bool | None = None
+    adapt: bool = DEFAULT
     """Whether frequencies and influences are identified. Default: true."""
 
 
@@ -374,21 +375,21 @@ class Added(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
-    about: Literal["roll", "pitch", "yaw"] | None = None
+    about: Literal["roll", "pitch", "yaw"] = DEFAULT
     """Axis that fails, on a body with three; default: all."""
-    wheel: int | None = None
+    wheel: int = DEFAULT
     """Wheel that fails, counted from 1; default: all."""
-    gimbal: int | None = None
+    gimbal: int = DEFAULT
     """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
-    thruster: str | None = None
+    thruster: str = DEFAULT
     """Thruster of `jets` that fails; default: all."""
-    constant: float | None = None
+    constant: float = DEFAULT
     """Constant part: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for
     jets a thrust (N). Default: 0.0.
     """
-    sines: Sequence[Sine] | None = None
+    sines: Sequence[Sine] = DEFAULT
     """Sine torques."""
 
 
@@ -420,26 +421,26 @@ class AltitudeOrbit(Part):
     """Altitude above the planet's radius at the equator (m); of an ellipse, the semi-major axis less the
     radius.
     """
-    ltan: str | float | None = None
+    ltan: str | float = DEFAULT
     """Mean local time of the ascending node: `"10:30"`, `"6 h"`, or seconds since midnight; with the
     inclination left out, the orbit is Sun-synchronous. It needs the scenario's `epoch`.
     """
-    eccentricity: float | None = None
+    eccentricity: float = DEFAULT
     """Eccentricity. Default: 0.0."""
-    inclination: float | None = None
+    inclination: float = DEFAULT
     """Inclination to the equator (rad); default: with `ltan`, that of a Sun-synchronous orbit, else 0."""
-    node: float | None = None
+    node: float = DEFAULT
     """Angle from the inertial x to the ascending node (rad), in place of `ltan`; default: 0."""
-    perigee: float | None = None
+    perigee: float = DEFAULT
     """Angle from the node to the perigee (rad). Default: 0.0."""
-    anomaly: float | None = None
+    anomaly: float = DEFAULT
     """Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default: 0.0."""
-    gravity: float | None = None
+    gravity: float = DEFAULT
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
-    planet_radius: float | None = None
+    planet_radius: float = DEFAULT
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
-    j2: bool | float | None = None
+    j2: bool | float = DEFAULT
     """Coefficient J2 of the planet's oblateness, as of Kepler elements; default: with `ltan` that of the
     Earth, else a sphere.
     """
@@ -486,55 +487,55 @@ class Appendage(Part):
     """Name."""
     mass: float
     """Mass (kg)."""
-    centre: Vector | None = None
+    centre: Vector = DEFAULT
     """Centre of mass from the root (m), in its own axes."""
-    inertia: Rows | None = None
+    inertia: Rows = DEFAULT
     """Inertia tensor about its centre of mass (kg m²), row by row, in its own axes; default: zero, a point
     mass.
     """
-    at: Vector | None = None
+    at: Vector = DEFAULT
     """Position of its root from the point O of the spacecraft (m)."""
-    turned: Turn | Sequence[Turn] | None = None
+    turned: Turn | Sequence[Turn] = DEFAULT
     """Rotation of its axes relative to those of the body."""
-    drive: AppendageDrive | None = None
+    drive: AppendageDrive = DEFAULT
     """Drive that turns it about an axis through its root during a run; default: none."""
-    hinge: Hinge | None = None
+    hinge: Hinge = DEFAULT
     """Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default:
     none.
     """
-    plate: Literal["x", "y"] | UniformPlate | None = None
+    plate: Literal["x", "y"] | UniformPlate = DEFAULT
     """For a thin plate in the plane of its own x and y: the axis along which it extends, from which first
     moments follow with the participations in rotation; or size and first frequency of a uniform panel,
     in place of `modes`, `centre` and `inertia`.
     """
-    points: Sequence[NamedPoint] | None = None
+    points: Sequence[NamedPoint] = DEFAULT
     """Named points of the appendage, measured from its root in its own axes; a name is unique in the
     spacecraft.
     """
-    modes: Sequence[ClampedMode] | str | None = None
+    modes: Sequence[ClampedMode] | str = DEFAULT
     """Clamped modes: a table, or the path of a CSV file or of finite-element results: `.f06` of Nastran or
     MYSTRAN, `.dat` of CalculiX or its `.frd` with the deck beside it, `.flex` or `.txt` of 42. Without
     modes it is rigid.
     """
-    craig_bampton: CraigBampton | None = None
+    craig_bampton: CraigBampton = DEFAULT
     """Craig-Bampton model in place of `modes`; `damping` is then needed, and `mass`, `centre` and `inertia`
     are compared with it. Default: none.
     """
-    damping: float | Vector | None = None
+    damping: float | Vector = DEFAULT
     """Damping ratio of modes read from finite-element results, or a list with one for each; required where
     the file has none, as all but those of 42.
     """
-    keep: int | None = None
+    keep: int = DEFAULT
     """Number of modes to keep from finite-element results, 1 to 200, lowest frequencies first; default:
     all.
     """
-    frequency_factor: float | None = None
+    frequency_factor: float = DEFAULT
     """Factor on its natural frequencies, whichever way they are given; damping ratios and shapes stay.
     Default: 1.
     """
-    thermal: Thermal | None = None
+    thermal: Thermal = DEFAULT
     """Thermal bending in sunlight; default: none."""
-    units: str | UnitPair | None = None
+    units: str | UnitPair = DEFAULT
     """Units of finite-element results, except for 42, whose files are in SI units: `m` (metres, kilograms),
     `mm` (millimetres, tonnes), `in` (inches, pound-force seconds squared an inch), or `length` (`m`,
     `cm`, `mm`, `in`, `ft`) and `mass` (`kg`, `g`, `t`, `lb`, `slug`, `slinch`); default: `m`.
@@ -562,25 +563,25 @@ class AppendageDrive(Part):
 
     about: Vector
     """Axis through the root, in the axes of the appendage, of any nonzero length."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Angle at the start (rad); at 0 the appendage has the orientation given by `turned`. Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Constant rate of the drive (rad/s)."""
-    from_: float | None = None
+    from_: float = DEFAULT
     """Time at which it begins to turn (s); default: the start of the run."""
-    until: float | None = None
+    until: float = DEFAULT
     """Time at which it begins to stop (s); default: it does not stop."""
-    acceleration: float | None = None
+    acceleration: float = DEFAULT
     """Acceleration with which its rate changes (rad/s²), which rounds the corners of a table; default: the
     rate jumps, and excites the modes and the hub.
     """
-    table: Sequence[DrivePoint] | None = None
+    table: Sequence[DrivePoint] = DEFAULT
     """Table of angles over time, with constant rates between the points, at rest before the first and after
     the last.
     """
-    track: Literal["sun"] | None = None
+    track: Literal["sun"] = DEFAULT
     """Object that the drive tracks."""
-    normal: Vector | None = None
+    normal: Vector = DEFAULT
     """Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the drive's axis;
     default: z.
     """
@@ -618,31 +619,31 @@ class Assigned(Part):
         "magnetorquers",
     )
 
-    ideal: Ideal | None = None
+    ideal: Ideal = DEFAULT
     """The command itself, at every instant."""
-    hold: HoldActuator | None = None
+    hold: HoldActuator = DEFAULT
     """A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its
     start.
     """
-    thrusters: Thrusters | None = None
+    thrusters: Thrusters = DEFAULT
     """One pulse of full torque per period, centred in it, with the same impulse as a zero-order hold."""
-    wheel: Wheel | None = None
+    wheel: Wheel = DEFAULT
     """A flywheel on a motor with back-EMF."""
-    wheels: Wheels | None = None
+    wheels: Wheels = DEFAULT
     """Reaction wheels about axes of their own."""
-    control_moment_gyros: ControlMomentGyros | None = None
+    control_moment_gyros: ControlMomentGyros = DEFAULT
     """Control moment gyros of a spacecraft."""
-    jets: Jets | None = None
+    jets: Jets = DEFAULT
     """Thrusters at points of a spatial body."""
-    magnetorquers: Magnetorquers | None = None
+    magnetorquers: Magnetorquers = DEFAULT
     """Magnetorquers of a spatial body in the field of its planet."""
-    axes: Sequence[Literal["roll", "pitch", "yaw"]] | None = None
+    axes: Sequence[Literal["roll", "pitch", "yaw"]] = DEFAULT
     """Axes about which it executes the demand, on a body with three; default: all."""
-    share: float | None = None
+    share: float = DEFAULT
     """Share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum
     to 1.
     """
-    unloads: Unloads | None = None
+    unloads: Unloads = DEFAULT
     """For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of the list.
     They then execute no demand.
     """
@@ -660,11 +661,11 @@ class AttitudeAt(Part):
 
     time: float
     """Time since the start of the target (s); 0 in the first row."""
-    roll: float | None = None
+    roll: float = DEFAULT
     """Roll (rad). Default: 0.0."""
-    pitch: float | None = None
+    pitch: float = DEFAULT
     """Pitch (rad). Default: 0.0."""
-    yaw: float | None = None
+    yaw: float = DEFAULT
     """Yaw (rad). Default: 0.0."""
 
 
@@ -699,45 +700,45 @@ class AttitudeEstimator(Part):
 
     _tag: ClassVar[str | None] = "attitude"
 
-    form: FilterFormKind | Literal["extended", "steady"] | None = None
+    form: FilterFormKind | Literal["extended", "steady"] = DEFAULT
     """How the gains are computed. Default: "extended"."""
-    angle_random_walk: float | None = None
+    angle_random_walk: float = DEFAULT
     """Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the
     gyro's own, which for one that samples the rate is its noise times the root of the period.
     """
-    rate_random_walk: float | None = None
+    rate_random_walk: float = DEFAULT
     """Rate random walk of the gyro's bias (rad/s^1.5); default: the largest of the gyro's own, with a
     `bias_instability` as the walk that it is over a short time.
     """
-    attitude_noise: Vector | None = None
+    attitude_noise: Vector = DEFAULT
     """Standard deviation of a measured attitude about each axis of its sensor (rad); default: the sensor's
     own.
     """
-    field_noise: float | None = None
+    field_noise: float = DEFAULT
     """Standard deviation of a measured magnetic field along each axis (T); default: the magnetometer's own.
     """
-    field_degree: int | None = None
+    field_degree: int = DEFAULT
     """Degree of the magnetic field that the filter takes as the reference of magnetometers, from 1 to that
     of the environment's; default: the environment's field itself, without a model error. The error of a
     lower degree is correlated in time: cover it by `field_noise`.
     """
-    sun_noise: float | None = None
+    sun_noise: float = DEFAULT
     """Standard deviation of a measured direction to the Sun (rad); default: that of the Sun sensor or
     cells.
     """
-    earth_noise: float | None = None
+    earth_noise: float = DEFAULT
     """Standard deviation of a measured direction to the planet (rad); default: the Earth sensor's own."""
-    gate: Gate | None = None
+    gate: Gate = DEFAULT
     """Limits within which it accepts readings."""
-    initial: AttitudeFilterInitial | None = None
+    initial: AttitudeFilterInitial = DEFAULT
     """Standard deviations of the estimate at the start."""
-    prior: Literal["drawn", "true"] | None = None
+    prior: Literal["drawn", "true"] = DEFAULT
     """Initial estimate of attitude and bias. Default: "drawn"."""
-    elastic: ElasticStates | None = None
+    elastic: ElasticStates = DEFAULT
     """Elastic modes as further states; none by default."""
-    assess: Vector | None = None
+    assess: Vector = DEFAULT
     """Interval over which the metrics assess the filter (s); default: the whole run."""
-    watch_only: bool | None = None
+    watch_only: bool = DEFAULT
     """Whether the filter runs for assessment only: the law does not read it."""
 
 
@@ -749,9 +750,9 @@ class AttitudeFilterInitial(Part):
         bias: Standard deviation of the bias (rad/s). Default: 1e-05.
     """
 
-    angle: float | None = None
+    angle: float = DEFAULT
     """Standard deviation of the attitude (rad). Default: 0.001."""
-    bias: float | None = None
+    bias: float = DEFAULT
     """Standard deviation of the bias (rad/s). Default: 1e-05."""
 
 
@@ -776,84 +777,20 @@ class AttitudeLaw(Part):
     """Period of its samples (s)."""
     bandwidth: float
     """Bandwidth wn (rad/s): the natural frequency of the error of a rigid body."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta of the error. Default: 0.7."""
-    inertia: Rows | None = None
+    inertia: Rows = DEFAULT
     """Inertia tensor in the law's model of a body with three axes (kg m²), row by row; default: the body's
     own in each run, so write it out to study its errors.
     """
-    error: Literal["quaternion", "rodrigues"] | None = None
+    error: Literal["quaternion", "rodrigues"] = DEFAULT
     """How a rotation is converted into an error, on a body with three axes; default: `quaternion`."""
-    integral: Integral | None = None
+    integral: Integral = DEFAULT
     """Integral of the error; none by default."""
-    rate_limit: float | None = None
+    rate_limit: float = DEFAULT
     """Largest rate at which an error is corrected (rad/s); no limit by default."""
-    filters: Sequence[FilterKind] | None = None
+    filters: Sequence[FilterKind] = DEFAULT
     """Filters of the fed-back acceleration, applied in this order."""
-
-
-class AttitudeTarget(Part):
-    """A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x
-    axis.
-
-    Args:
-        from_: Start time (s), later than that of the target before.
-        frame: Frame relative to which the attitude is given; default: inertial.
-        primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
-            are relative to the attitude that these two give.
-        secondary: Axis of the body that is as near to a direction as `primary` lets it.
-        roll: Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned
-            axis, then roll. Default: 0.0.
-        pitch: Pitch (rad). Default: 0.0.
-        yaw: Yaw (rad). Default: 0.0.
-        acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
-            jumps.
-        rate_limit: Largest rate of the slew (rad/s); no limit by default.
-        profile: How the rate of the slew rises and falls; default: trapezoid.
-        command: Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
-        duration: Duration of the slew by that command (s), without what a shaper adds and without the decay
-            of a rate before it.
-        shaper: Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.
-        table: Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at
-            rest at both ends.
-    """
-
-    from_: float
-    """Start time (s), later than that of the target before."""
-    frame: Literal["inertial", "nadir", "sun"] | None = None
-    """Frame relative to which the attitude is given; default: inertial."""
-    primary: PointedAxis | None = None
-    """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
-    relative to the attitude that these two give.
-    """
-    secondary: PointedAxis | None = None
-    """Axis of the body that is as near to a direction as `primary` lets it."""
-    roll: float | None = None
-    """Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned axis,
-    then roll. Default: 0.0.
-    """
-    pitch: float | None = None
-    """Pitch (rad). Default: 0.0."""
-    yaw: float | None = None
-    """Yaw (rad). Default: 0.0."""
-    acceleration: float | None = None
-    """Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps."""
-    rate_limit: float | None = None
-    """Largest rate of the slew (rad/s); no limit by default."""
-    profile: Literal["trapezoid", "versine"] | None = None
-    """How the rate of the slew rises and falls; default: trapezoid."""
-    command: CommandKind | None = None
-    """Command planned for the slew, in place of `acceleration`; it may leave modes at rest."""
-    duration: float | None = None
-    """Duration of the slew by that command (s), without what a shaper adds and without the decay of a rate
-    before it.
-    """
-    shaper: ShaperKind | None = None
-    """Shaper that suppresses modes: the acceleration of the slew is convolved with impulses."""
-    table: Sequence[AttitudeAt] | None = None
-    """Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at
-    both ends.
-    """
 
 
 class BDot(Part):
@@ -914,23 +851,23 @@ class Bound(Part):
 
     output: str
     """Output of the linear model, such as `rate` about one axis and `yaw_rate` about three."""
-    elastic: bool | None = None
+    elastic: bool = DEFAULT
     """True if the output is without the rigid motion. Default: false."""
-    limits: Vector | None = None
+    limits: Vector = DEFAULT
     """Limits [low, high] of the output, in its unit; default: none, and the range is computed alone."""
-    until: float | None = None
+    until: float = DEFAULT
     """End of the interval of time from the start (s); default: the `duration`."""
-    start: Mapping[str, Vector] | None = None
+    start: Mapping[str, Vector] = DEFAULT
     """Range [low, high] of states at the start, by the names of the linear model, in their units;
     `displacements` and `rates` stand for all modes. Other states are 0.
     """
-    constant_inputs: Mapping[str, Vector] | None = None
+    constant_inputs: Mapping[str, Vector] = DEFAULT
     """Range [low, high] of inputs that are constant in time, such as `torque_yaw`."""
-    varying_inputs: Mapping[str, Vector] | None = None
+    varying_inputs: Mapping[str, Vector] = DEFAULT
     """Range [low, high] within which inputs vary in time in any way, such as `torque_yaw`."""
-    frequency_error: float | None = None
+    frequency_error: float = DEFAULT
     """Largest deviation of each natural frequency, as a part of its value. Default: 0.0."""
-    damping_error: float | None = None
+    damping_error: float = DEFAULT
     """Largest deviation of each damping ratio, as a part of its value. Default: 0.0."""
 
 
@@ -980,25 +917,25 @@ class ClampedMode(Part):
 
     frequency: float
     """Natural frequency O with the root held (rad/s)."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0."""
-    translation: Vector | None = None
+    translation: Vector = DEFAULT
     """Participation in translation, the integral of phi dm (sqrt(kg))."""
-    along: Vector | None = None
+    along: Vector = DEFAULT
     """For a point mass, in place of `translation`: the direction in which all of its mass swings, of any
     length.
     """
-    rotation: Vector | None = None
+    rotation: Vector = DEFAULT
     """Participation in rotation about the root, the integral of r x phi dm (sqrt(kg) m)."""
-    moments: Rows | None = None
+    moments: Rows = DEFAULT
     """First moments about the root, the integral of r phi' dm (sqrt(kg) m), row by row: rows along r,
     columns along phi. `rotation` follows from them, and is left out or agrees.
     """
-    displacement: float | None = None
+    displacement: float = DEFAULT
     """Modal displacement at the start (m sqrt(kg)). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Modal rate at the start (m sqrt(kg)/s). Default: 0.0."""
-    shapes: Mapping[str, Shape] | None = None
+    shapes: Mapping[str, Shape] = DEFAULT
     """Shape of the mode at each point of the appendage, relative to the fixed root, by the name of the
     point.
     """
@@ -1020,9 +957,9 @@ class Compensation(Part):
         viscous: Viscous friction (N m s/rad): one number for all wheels, or one for each. Default: 0.0.
     """
 
-    coulomb: float | Vector | None = None
+    coulomb: float | Vector = DEFAULT
     """Coulomb friction (N m): one number for all wheels, or one for each. Default: 0.0."""
-    viscous: float | Vector | None = None
+    viscous: float | Vector = DEFAULT
     """Viscous friction (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
 
 
@@ -1038,7 +975,7 @@ class Complementary(Part):
 
     bandwidth: float
     """Bandwidth (rad/s): below it the attitude follows the sensors, above it the gyro."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio. Default: 0.7."""
 
 
@@ -1068,35 +1005,35 @@ class ControlMomentGyros(Part):
 
     momentum: float
     """Angular momentum of each rotor, which is constant (N m s)."""
-    arrangement: Literal["pyramid"] | None = None
+    arrangement: Literal["pyramid"] = DEFAULT
     """Arrangement; default: given by `gimbal_axes` and `spin_axes`."""
-    cant: float | None = None
+    cant: float = DEFAULT
     """For a pyramid: angle of each gimbal axis from z (rad); default: 0.9553 rad (54.74 degrees), with
     about equal momentum in all directions.
     """
-    gimbal_axes: Rows | None = None
+    gimbal_axes: Rows = DEFAULT
     """Gimbal axis of each in the body's axes, of any length."""
-    spin_axes: Rows | None = None
+    spin_axes: Rows = DEFAULT
     """Direction of the momentum of each with its gimbal at angle 0, of any length, at right angles to its
     gimbal axis.
     """
-    angles: Vector | None = None
+    angles: Vector = DEFAULT
     """Gimbal angles at the start (rad); default: 0."""
-    rate_limit: float | None = None
+    rate_limit: float = DEFAULT
     """Largest gimbal rate (rad/s); no limit by default. If a demanded torque exceeds it, all rates are
     scaled down, and the torque keeps its axis.
     """
-    period: float | None = None
+    period: float = DEFAULT
     """Time between updates of the gimbal rates, beside those at the law's commands (s); default: at these
     alone.
     """
-    steering: Literal["pseudo_inverse", "singularity_robust"] | None = None
+    steering: Literal["pseudo_inverse", "singularity_robust"] = DEFAULT
     """How the demanded torque becomes gimbal rates. Default: "singularity_robust"."""
-    robust: Robustness | None = None
+    robust: Robustness = DEFAULT
     """The weight of `singularity_robust` steering."""
-    null_motion: NullMotion | None = None
+    null_motion: NullMotion = DEFAULT
     """Null motion towards preferred gimbal angles; none by default."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the gimbal rates fail: of all, or of the `gimbal` of a number from 1."""
 
 
@@ -1126,9 +1063,9 @@ class Cosine(Part):
 
     _tag: ClassVar[str | None] = "cosine"
 
-    suppress: int | None = None
+    suppress: int = DEFAULT
     """Number of modes left at rest, lowest frequencies first. Default: 0."""
-    zeros: Sequence[Target] | None = None
+    zeros: Sequence[ShapedZero] = DEFAULT
     """Further zeros."""
 
 
@@ -1148,7 +1085,7 @@ class CraigBampton(Part):
     """
     stiffness: Rows | str
     """Reduced stiffness matrix, in the same order."""
-    interface: Sequence[int] | None = None
+    interface: Sequence[int] = DEFAULT
     """Rows of the root, from 0: displacements along x, y and z, rotations about them."""
 
 
@@ -1165,15 +1102,15 @@ class DampingGuards(Part):
             exceeds 0.9 times that of the 75 before. Default: true.
     """
 
-    dead_zone: bool | None = None
+    dead_zone: bool = DEFAULT
     """Suppress pulses after which the rigid motion would need one. Default: true."""
-    eligibility: bool | None = None
+    eligibility: bool = DEFAULT
     """Without the predictor, damp only modes whose phase factor is at least 0.5. Default: true."""
-    residual: bool | None = None
+    residual: bool = DEFAULT
     """Act only while the observer tracks: the mean square innovation is below a tenth of that of the
     elastic rate, or below (3.16e-6 rad/s)². Default: true.
     """
-    watchdog: bool | None = None
+    watchdog: bool = DEFAULT
     """Pause active damping for 300 cycles if the mean elastic rate of 75 cycles with a pulse exceeds 0.9
     times that of the 75 before. Default: true.
     """
@@ -1195,15 +1132,15 @@ class Dead(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
-    about: Literal["roll", "pitch", "yaw"] | None = None
+    about: Literal["roll", "pitch", "yaw"] = DEFAULT
     """Axis that fails, on a body with three; default: all."""
-    wheel: int | None = None
+    wheel: int = DEFAULT
     """Wheel that fails, counted from 1; default: all."""
-    gimbal: int | None = None
+    gimbal: int = DEFAULT
     """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
-    thruster: str | None = None
+    thruster: str = DEFAULT
     """Thruster of `jets` that fails; default: all."""
 
 
@@ -1222,17 +1159,17 @@ class Dipole(Part):
 
     moment: Vector
     """Magnetic moment of the body (A m²), in its axes."""
-    strength: float | None = None
+    strength: float = DEFAULT
     """Field over the magnetic equator at the radius R of a circular orbit (T), mu/R³; for the Earth mu is
     7.8e15 T m³. Default: the environment's magnetic field.
     """
-    inclination: float | None = None
+    inclination: float = DEFAULT
     """Inclination of that orbit to the magnetic equator (rad)."""
-    from_node: float | None = None
+    from_node: float = DEFAULT
     """Angle from the ascending node at the start (rad)."""
-    orbit_rate: float | None = None
+    orbit_rate: float = DEFAULT
     """Rate of that orbit (rad/s)."""
-    local: Vector | None = None
+    local: Vector = DEFAULT
     """Orientation of the local axes at the start, as for a gravity gradient."""
 
 
@@ -1259,36 +1196,36 @@ class Disturbance(Part):
         to: End time (s); default: the end of the run.
     """
 
-    about: Literal["roll", "pitch", "yaw"] | None = None
+    about: Literal["roll", "pitch", "yaw"] = DEFAULT
     """Axis about which it acts at the first point, on a body with three, where a torque must have one."""
-    torque: float | None = None
+    torque: float = DEFAULT
     """Torque (N m). Default: 0.0."""
-    sines: Sequence[Sine] | None = None
+    sines: Sequence[Sine] = DEFAULT
     """Sine terms added to the torque, on a `[spacecraft]`: amplitude sin(frequency t + phase), t from the
     start of the run.
     """
-    force: Vector | None = None
+    force: Vector = DEFAULT
     """Force in the body's axes (N) in place of a torque, on a body with three axes: a leak, a stuck jet, a
     push.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Name of the point at which the force acts; default: the first."""
-    noise: float | None = None
+    noise: float = DEFAULT
     """Spectral density of white noise added to the torque ((N m)² s); each draw is held for `period`.
     Default: 0.0.
     """
-    pulse: Pulses | None = None
+    pulse: Pulses = DEFAULT
     """Pulses in place of a steady torque or force, each at the start of a period."""
-    period: float | None = None
+    period: float = DEFAULT
     """Time for which a draw of the noise is held (s)."""
-    table: Rows | str | None = None
+    table: Rows | str = DEFAULT
     """Torques (s, N m) or forces in the body's axes (s, N, N, N) over time, or the path of a .csv file, in
     place of constant ones; times are from the start of the run. Each is held until the next, the last
     until `to`.
     """
-    from_: float | None = None
+    from_: float = DEFAULT
     """Start time (s). Default: 0.0."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
 
 
@@ -1318,30 +1255,30 @@ class Drag(Part):
     """The plates: the force is -rho/2 C A (n.v) v where the outward normal n faces the flow; a plate with
     two sides is two entries.
     """
-    model: Literal["exponential", "harris_priester", "table"] | None = None
+    model: Literal["exponential", "harris_priester", "table"] = DEFAULT
     """Model of the density; default: exponential."""
-    density: float | None = None
+    density: float = DEFAULT
     """Density of the exponential model (kg/m³), at `altitude`."""
-    scale_height: float | None = None
+    scale_height: float = DEFAULT
     """Scale height, in which the density falls to 1/e (m); default: the density is uniform."""
-    altitude: float | None = None
+    altitude: float = DEFAULT
     """Height above the planet's radius at which `density` holds (m), required with a `tle` or an
     `ephemeris`; default: that of the semi-major axis.
     """
-    table: Rows | str | None = None
+    table: Rows | str = DEFAULT
     """Heights above the ellipsoid of WGS 84 and densities (m, kg/m³) of the model `table`, exponential
     between rows, or the path of a .csv file; they must cover the orbit.
     """
-    bulge_exponent: float | None = None
+    bulge_exponent: float = DEFAULT
     """Exponent n of the bulge in the model of Harris and Priester: 2 for orbits near the equator, 6 for
     polar ones; default: 4.
     """
-    scale: float | None = None
+    scale: float = DEFAULT
     """Factor of the density, of every model, from 0.001 to 1000, for campaigns and worst cases; default: 1.
     """
-    coefficient: float | None = None
+    coefficient: float = DEFAULT
     """Drag coefficient. Default: 2.2."""
-    rotation: float | None = None
+    rotation: float = DEFAULT
     """Rotation rate of the atmosphere with the planet (rad/s); default: the Earth's. Default: 7.292115e-05.
     """
 
@@ -1366,7 +1303,7 @@ class DragPlate(Part):
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
     """
-    appendage: str | None = None
+    appendage: str = DEFAULT
     """Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its
     axes, from its root; default: the hub.
     """
@@ -1417,29 +1354,29 @@ class EarthSensor(Part):
 
     period: float
     """Period of its samples (s)."""
-    boresight: Vector | None = None
+    boresight: Vector = DEFAULT
     """Centre of its field of view, a direction in the body's axes, of any length; default: z."""
-    field_of_view: float | None = None
+    field_of_view: float = DEFAULT
     """Half angle of the field of view (rad); default: all directions are visible. Default:
     3.141592653589793.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted; default: the first of the body's points."""
-    noise: float | Vector | None = None
+    noise: float | Vector = DEFAULT
     """Standard deviation of the white noise along each axis (rad). Default: 0.0."""
-    bias: float | Vector | None = None
+    bias: float | Vector = DEFAULT
     """Constant error along each axis (rad). Default: 0.0."""
-    resolution: float | Vector | None = None
+    resolution: float | Vector = DEFAULT
     """Quantum of the output along each axis (rad); 0 for none. Default: 0.0."""
-    scale: float | Vector | None = None
+    scale: float | Vector = DEFAULT
     """Relative error of the scale along each axis. Default: 0.0."""
-    misalignment: Rows | None = None
+    misalignment: Rows = DEFAULT
     """Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the
     diagonal is 0.
     """
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the Earth sensor fails."""
 
 
@@ -1455,9 +1392,9 @@ class Ei(Part):
 
     _tag: ClassVar[str | None] = "ei"
 
-    modes: Sequence[int] | None = None
+    modes: Sequence[int] = DEFAULT
     """Indices of the modes."""
-    vibration: float | None = None
+    vibration: float = DEFAULT
     """Residual vibration at the mode's frequency, relative to that of a single impulse. Default: 0.05."""
 
 
@@ -1484,25 +1421,25 @@ class ElasticStates(Part):
     """Indices of the free modes, as `flexsc modes` lists them."""
     noise: float
     """Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5)."""
-    frequencies: Vector | None = None
+    frequencies: Vector = DEFAULT
     """Natural frequencies in the filter's model (rad/s); default: the body's own."""
-    factor: float | None = None
+    factor: float = DEFAULT
     """Factor on the frequencies: the error of the filter's model. Default: 1.0."""
-    frequency_deviation: float | None = None
+    frequency_deviation: float = DEFAULT
     """Relative standard deviation of the frequencies at the start, which the filter then identifies;
     default: it takes them as known.
     """
-    frequency_walk: float | None = None
+    frequency_walk: float = DEFAULT
     """Random walk of the logarithm of each identified frequency (1/sqrt(s)); default: none."""
-    displacement: float | None = None
+    displacement: float = DEFAULT
     """Standard deviation of each displacement at the start (m sqrt(kg)), about a mode at rest. Default:
     0.001.
     """
-    rate: float | None = None
+    rate: float = DEFAULT
     """Standard deviation of each rate at the start (m sqrt(kg)/s); default: that of the displacement times
     the frequency.
     """
-    feeds: Literal["modes", "hub", "rigid"] | None = None
+    feeds: Literal["modes", "hub", "rigid"] = DEFAULT
     """Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid."""
 
 
@@ -1551,9 +1488,9 @@ class Envelope(Part):
 
     window: float
     """Length of the windows over which the envelope is averaged (s)."""
-    form: Literal["dynamic", "trigonometric", "truth"] | None = None
+    form: Literal["dynamic", "trigonometric", "truth"] = DEFAULT
     """How the phasors are computed. Default: "dynamic"."""
-    modes: Sequence[Mode] | None = None
+    modes: Sequence[Mode] = DEFAULT
     """Modes of the monitor's model; default: the body's own."""
 
 
@@ -1575,28 +1512,28 @@ class Environment(Part):
         torque: A torque that is constant in inertial axes (N m).
     """
 
-    orbit: Kepler | AltitudeOrbit | TwoLineOrbit | EphemerisOrbit | None = None
+    orbit: Kepler | AltitudeOrbit | TwoLineOrbit | EphemerisOrbit = DEFAULT
     """Orbit of the body; default: none, or the one given with a torque below."""
-    magnetic_field: MagneticField | None = None
+    magnetic_field: MagneticField = DEFAULT
     """The magnetic field of the orbit's planet."""
-    sun: Vector | Literal["epoch"] | None = None
+    sun: Vector | Literal["epoch"] = DEFAULT
     """Direction to the Sun in inertial axes, of any length, constant and at 1 au, or `"epoch"`: that from
     the Earth at the date, in equatorial axes with x to the equinox, within 0.01 degrees. The orbit's
     planet casts a shadow.
     """
-    shadow: Literal["cone", "cylinder"] | None = None
+    shadow: Literal["cone", "cylinder"] = DEFAULT
     """Shape of the shadow that the orbit's planet casts, whose edges are events; it needs `orbit` and
     `sun`. Default: a cone.
     """
-    gravity_gradient: GravityGradient | None = None
+    gravity_gradient: GravityGradient = DEFAULT
     """Gravity gradient of a circular orbit."""
-    solar_pressure: SolarPressure | None = None
+    solar_pressure: SolarPressure = DEFAULT
     """Pressure of sunlight."""
-    dipole: Dipole | None = None
+    dipole: Dipole = DEFAULT
     """A magnetic moment of the body in the field of its planet."""
-    drag: Drag | None = None
+    drag: Drag = DEFAULT
     """Drag of the atmosphere on plates: a torque, by which the orbit does not decay."""
-    torque: Vector | None = None
+    torque: Vector = DEFAULT
     """A torque that is constant in inertial axes (N m)."""
 
 
@@ -1619,14 +1556,14 @@ class EphemerisOrbit(Part):
     """Positions, rows [t, x, y, z] (s, m) in inertial axes from the planet's centre, or the path of their
     file.
     """
-    frame: Literal["EME2000", "GCRF", "ICRF", "MOD", "TEME", "TOD"] | None = None
+    frame: Literal["EME2000", "GCRF", "ICRF", "MOD", "TEME", "TOD"] = DEFAULT
     """Axes of the rows: `EME2000`, `GCRF` and `ICRF` are rotated by the precession to the start, which
     needs a date, the others are taken as inertial axes; default: those that the file names, else the
     run's inertial axes.
     """
-    gravity: float | None = None
+    gravity: float = DEFAULT
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
-    planet_radius: float | None = None
+    planet_radius: float = DEFAULT
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
 
@@ -1641,13 +1578,13 @@ class Exclusion(Part):
         limb: Least angle to the limb of the orbit's planet (rad); default: the planet does not blind it.
     """
 
-    sun: float | None = None
+    sun: float = DEFAULT
     """Least angle to the Sun's centre (rad); default: the Sun does not blind it."""
-    moon: float | None = None
+    moon: float = DEFAULT
     """Least angle to the Moon's centre (rad), at the scenario's `epoch`; default: the Moon does not blind
     it.
     """
-    limb: float | None = None
+    limb: float = DEFAULT
     """Least angle to the limb of the orbit's planet (rad); default: the planet does not blind it."""
 
 
@@ -1686,48 +1623,48 @@ class ExtendedKalman(Part):
 
     _tag: ClassVar[str | None] = "extended_kalman"
 
-    modes: Sequence[Mode] | None = None
+    modes: Sequence[Mode] = DEFAULT
     """Modes of the filter's model; default: the body's own at the start of each run."""
-    moment_noise: float | None = None
+    moment_noise: float = DEFAULT
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
-    angle_noise: float | None = None
+    angle_noise: float = DEFAULT
     """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
     default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
     """
-    initial: Initial | None = None
+    initial: Initial = DEFAULT
     """Standard deviations of the estimate at the start."""
-    prior: Literal["drawn", "true"] | None = None
+    prior: Literal["drawn", "true"] = DEFAULT
     """Initial state estimate of the filter. Default: "drawn"."""
-    dominant: Literal["excitability", "amplitude"] | None = None
+    dominant: Literal["excitability", "amplitude"] = DEFAULT
     """Criterion for the dominant mode. Default: "excitability"."""
-    assess: Vector | None = None
+    assess: Vector = DEFAULT
     """Interval over which the metrics assess the filter (s); default: the whole run."""
-    feeds: Literal["modes", "hub", "rigid"] | None = None
+    feeds: Literal["modes", "hub", "rigid"] = DEFAULT
     """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
     default, `modes` for a law that reads the dominant mode, else `hub`.
     """
-    watch_only: bool | None = None
+    watch_only: bool = DEFAULT
     """Whether the filter runs for assessment only: the law does not read it."""
-    ratios: Literal["common", "each"] | None = None
+    ratios: Literal["common", "each"] = DEFAULT
     """Which frequencies drift together. Default: "common"."""
-    ratio: float | None = None
+    ratio: float = DEFAULT
     """Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn around it.
     Default: 1.0.
     """
-    ratio_sd: float | None = None
+    ratio_sd: float = DEFAULT
     """Standard deviation of the initial ratio. Default: 0.03."""
-    ratio_rate_sd: float | None = None
+    ratio_rate_sd: float = DEFAULT
     """Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s). Default: 0.003."""
-    ratio_noise: float | None = None
+    ratio_noise: float = DEFAULT
     """Spectral density of the white noise in a ratio (1/s). Default: 1e-08."""
-    ratio_rate_noise: float | None = None
+    ratio_rate_noise: float = DEFAULT
     """Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08."""
-    bounds: Vector | None = None
+    bounds: Vector = DEFAULT
     """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
-    substeps: int | None = None
+    substeps: int = DEFAULT
     """Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default: 2."""
-    gate: float | None = None
+    gate: float = DEFAULT
     """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
     updated. Default: 3.0.
     """
@@ -1745,13 +1682,13 @@ class Friction(Part):
             one for each; default: the Coulomb friction.
     """
 
-    coulomb: float | Vector | None = None
+    coulomb: float | Vector = DEFAULT
     """Coulomb friction t (N m), at most 10 times `torque` and 500 rad/s² times `inertia`: one number for
     all wheels, or one for each. Default: 0.0.
     """
-    viscous: float | Vector | None = None
+    viscous: float | Vector = DEFAULT
     """Viscous friction c (N m s/rad): one number for all wheels, or one for each. Default: 0.0."""
-    breakaway: float | Vector | None = None
+    breakaway: float | Vector = DEFAULT
     """Torque up to which the bearing holds a wheel at rest (N m): one number for all wheels, or one for
     each; default: the Coulomb friction.
     """
@@ -1780,19 +1717,19 @@ class Gate(Part):
             or 10 rad/s without one.
     """
 
-    deviations: float | None = None
+    deviations: float = DEFAULT
     """Largest innovation in standard deviations, the root of its normalised square over the number of
     components. A measurement above it is refused; with `elastic` none is. Default: 10.0.
     """
-    refusals: int | None = None
+    refusals: int = DEFAULT
     """Number of refusals in a row after which the next measurement is accepted: the covariance grows by the
     innovation before the correction. Default: 5.
     """
-    gap: float | None = None
+    gap: float = DEFAULT
     """Time without a correction (s) after which a measurement above the limit is accepted at once, in the
     same way. Default: 300.0.
     """
-    rate: float | None = None
+    rate: float = DEFAULT
     """Largest rate about an axis (rad/s) that it takes from the gyro; default: the gyro's `range`, or 10
     rad/s without one.
     """
@@ -1808,11 +1745,11 @@ class Given(Part):
         yaw: About z.
     """
 
-    roll: Sequence[Tracker] | None = None
+    roll: Sequence[Tracker] = DEFAULT
     """About x."""
-    pitch: Sequence[Tracker] | None = None
+    pitch: Sequence[Tracker] = DEFAULT
     """About y."""
-    yaw: Sequence[Tracker] | None = None
+    yaw: Sequence[Tracker] = DEFAULT
     """About z."""
 
 
@@ -1835,22 +1772,22 @@ class Gradient(Part):
 
     _tag: ClassVar[str | None] = "gradient"
 
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio of the modes, which is not identified. Default: 0.005."""
-    rigid_gain: float | None = None
+    rigid_gain: float = DEFAULT
     """Gain of the rigid rate: the fraction of an innovation by which it is corrected. Default: 0.03."""
-    elastic_gain: float | None = None
+    elastic_gain: float = DEFAULT
     """Gain of each elastic rate; default: 0.15 for one mode and 0.1 for several."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rate of the identification; 0 for none. It converges if this is below 0.05 divided by the number of
     modes. Default: 0.02.
     """
-    gate: float | None = None
+    gate: float = DEFAULT
     """Amplitude of a mode's elastic rate (rad/s) below which its frequency is not updated. Default: 5e-06.
     """
-    influence_bounds: Vector | None = None
+    influence_bounds: Vector = DEFAULT
     """Bounds of an influence, as multiples of its initial value."""
-    reach: float | None = None
+    reach: float = DEFAULT
     """Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
     Default: 2.0.
     """
@@ -1866,9 +1803,9 @@ class GravityGradient(Part):
             into inertial ones; default: the inertial axes.
     """
 
-    orbit_rate: float | None = None
+    orbit_rate: float = DEFAULT
     """Rate of a circular orbit (rad/s); default: the environment's orbit."""
-    local: Vector | None = None
+    local: Vector = DEFAULT
     """Orientation of that orbit's local axes at the start, a unit quaternion [w, x, y, z] that turns
     vectors of the local axes (x along the velocity, y against the orbit's normal, z nadir) into inertial
     ones; default: the inertial axes.
@@ -1884,11 +1821,11 @@ class Groups(Part):
         yaw: About z; needed if the jets act about it.
     """
 
-    roll: Pair | None = None
+    roll: Pair = DEFAULT
     """About x; needed if the jets act about it."""
-    pitch: Pair | None = None
+    pitch: Pair = DEFAULT
     """About y; needed if the jets act about it."""
-    yaw: Pair | None = None
+    yaw: Pair = DEFAULT
     """About z; needed if the jets act about it."""
 
 
@@ -1920,45 +1857,45 @@ class Gyro(Part):
 
     _tag: ClassVar[str | None] = "gyro"
 
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted, on a body with three axes; default: the first of the
     body's points.
     """
-    period: float | None = None
+    period: float = DEFAULT
     """Period of its samples (s); default: that of the law, if it has one."""
-    noise: float | Vector | None = None
+    noise: float | Vector = DEFAULT
     """Standard deviation of the white noise about each axis (rad/s). Default: 0.0."""
-    bias: float | Vector | None = None
+    bias: float | Vector = DEFAULT
     """Constant error about each axis (rad/s). Default: 0.0."""
-    resolution: float | Vector | None = None
+    resolution: float | Vector = DEFAULT
     """Quantum of the output about each axis (rad/s); 0 for none. Default: 0.0."""
-    angle_random_walk: float | Vector | None = None
+    angle_random_walk: float | Vector = DEFAULT
     """Angle random walk of an integrating gyro about each axis (rad/sqrt(s))."""
-    rate_random_walk: float | Vector | None = None
+    rate_random_walk: float | Vector = DEFAULT
     """Rate random walk of the bias of an integrating gyro about each axis (rad/s^1.5)."""
-    quantum: float | Vector | None = None
+    quantum: float | Vector = DEFAULT
     """Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries over to the
     next sample; 0 for none.
     """
-    bias_instability: float | Vector | None = None
+    bias_instability: float | Vector = DEFAULT
     """Standard deviation of the part of the bias about each axis that wanders, exponentially correlated
     (rad/s); 0 for none. It is 0 at the start.
     """
-    correlation_time: float | None = None
+    correlation_time: float = DEFAULT
     """Correlation time of that part (s), required with it."""
-    latency: float | None = None
+    latency: float = DEFAULT
     """How late it reports a rate (s), a whole number of periods; until the first report it gives the rate
     of the start. Default: 0.
     """
-    scale: float | Vector | None = None
+    scale: float | Vector = DEFAULT
     """Relative error of the scale about each axis."""
-    misalignment: Rows | None = None
+    misalignment: Rows = DEFAULT
     """Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about
     the other axes; the diagonal is 0.
     """
-    range: float | Vector | None = None
+    range: float | Vector = DEFAULT
     """Largest rate that it outputs about each axis (rad/s), at which it clips; default: no limit."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the gyro fails; star trackers still give the attitude."""
 
 
@@ -1975,13 +1912,13 @@ class Harmonic(Part):
 
     order: float
     """Order k: periods per turn of the wheel; it may be fractional."""
-    force: float | None = None
+    force: float = DEFAULT
     """Force perpendicular to the axis over the square of the speed (kg m). Default: 0.0."""
-    torque: float | None = None
+    torque: float = DEFAULT
     """Torque perpendicular to the axis over the square of the speed (kg m²). Default: 0.0."""
-    axial: float | None = None
+    axial: float = DEFAULT
     """Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """Phase of the harmonic (rad). Default: 0.0."""
 
 
@@ -2001,13 +1938,13 @@ class Hinge(Part):
     """Axis through the root, in the axes of the appendage, of any nonzero length."""
     stiffness: float
     """Stiffness of its spring, above 0 (N m/rad); the spring is relaxed at angle 0."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Viscous damping (N m s/rad). Default: 0.0."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Angle at the start (rad), -3.2 to 3.2; the hub starts with the attitude of the spacecraft whatever
     the angle. Default: 0.0.
     """
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rate at the start (rad/s); the hub starts with the rate of the spacecraft. Default: 0.0."""
 
 
@@ -2028,9 +1965,9 @@ class HoldActuator(Part):
     """Period of the hold (s): it gives the mean of the planned torque over the period plus the law's torque
     at its start.
     """
-    phase: float | None = None
+    phase: float = DEFAULT
     """Time of the first period (s), before which it gives nothing; default: 0."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the actuator fails."""
 
 
@@ -2043,7 +1980,7 @@ class Ideal(Part):
 
     _tag: ClassVar[str | None] = "ideal"
 
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the actuator fails."""
 
 
@@ -2068,27 +2005,27 @@ class Imbalance(Part):
         positions: Position of each wheel relative to that point (m); default: at the point.
     """
 
-    static: float | Vector | None = None
+    static: float | Vector = DEFAULT
     """Static imbalance (kg m): the force across the axis once per turn is this times the square of the
     speed; one number for all wheels, or one for each. Default: 0.0.
     """
-    dynamic: float | Vector | None = None
+    dynamic: float | Vector = DEFAULT
     """Dynamic imbalance (kg m²): the torque across the axis once per turn is this times the square of the
     speed; one number for all wheels, or one for each. Default: 0.0.
     """
-    phase: float | Vector | None = None
+    phase: float | Vector = DEFAULT
     """Phase lead of the torque over the force (rad); one number for all wheels, or one for each. Default:
     0.0.
     """
-    angle: float | Vector | None = None
+    angle: float | Vector = DEFAULT
     """Angle of the rotor at the start (rad); one number for all wheels, or one for each: with equal angles,
     wheels that turn against each other cancel in part.
     """
-    harmonics: Sequence[Harmonic] | None = None
+    harmonics: Sequence[Harmonic] = DEFAULT
     """Further harmonics of the speed, the same for all wheels."""
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which the wheels are mounted; default: the first of the body's points."""
-    positions: Rows | None = None
+    positions: Rows = DEFAULT
     """Position of each wheel relative to that point (m); default: at the point."""
 
 
@@ -2112,15 +2049,15 @@ class Initial(Part):
             Default: 0.0006.
     """
 
-    angle: float | None = None
+    angle: float = DEFAULT
     """Standard deviation of the rigid angle (rad). Default: 0.0001."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Standard deviation of the rigid rate (rad/s). Default: 0.0001."""
-    displacement: float | None = None
+    displacement: float = DEFAULT
     """Standard deviation of the displacement of the mode with the largest k/w² (rad); a tenth of it for the
     other modes. Default: 0.002.
     """
-    mode_rate: float | None = None
+    mode_rate: float = DEFAULT
     """Standard deviation of the rate of that mode (rad/s); a tenth of it for the other modes. Default:
     0.0006.
     """
@@ -2155,7 +2092,7 @@ class Invalid(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
 
 
@@ -2186,27 +2123,27 @@ class Jets(Part):
     """Specific impulse (s): thrust per unit of propellant weight flow."""
     thrusters: Sequence[Thruster]
     """The thrusters."""
-    minimum_on: float | None = None
+    minimum_on: float = DEFAULT
     """Shortest pulse (s); a shorter one is not given, and does not carry over to the next. Default: 0.0."""
-    quantum: float | None = None
+    quantum: float = DEFAULT
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
-    period: float | None = None
+    period: float = DEFAULT
     """Period of the pulses (s); default: that of the law, which must then be one for all axes."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """Time of the first cycle of pulses, for jets with a `period` (s); default: 0."""
-    delay: int | None = None
+    delay: int = DEFAULT
     """Delay from a command to its pulses in whole cycles: 0, or 1 if computing it takes a cycle. Default:
     0.
     """
-    allocation: Literal["groups", "least_propellant"] | None = None
+    allocation: Literal["groups", "least_propellant"] = DEFAULT
     """How the demand is converted into pulses; default: `groups`."""
-    force_free: bool | None = None
+    force_free: bool = DEFAULT
     """For `least_propellant`: whether the forces of the pulses must cancel."""
-    burns: Sequence[Burn] | None = None
+    burns: Sequence[Burn] = DEFAULT
     """For `least_propellant`: burns, in which a force is commanded beside the torques."""
-    groups: Groups | None = None
+    groups: Groups = DEFAULT
     """For `groups`: the thrusters that act together about each axis about which the jets act."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the jets fail, all or the one named `thruster`: `stuck` at 1 fires all the time,
     and `added` is a leak (N).
     """
@@ -2234,28 +2171,28 @@ class Kalman(Part):
 
     _tag: ClassVar[str | None] = "kalman"
 
-    modes: Sequence[Mode] | None = None
+    modes: Sequence[Mode] = DEFAULT
     """Modes of the filter's model; default: the body's own at the start of each run."""
-    moment_noise: float | None = None
+    moment_noise: float = DEFAULT
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
-    angle_noise: float | None = None
+    angle_noise: float = DEFAULT
     """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
     default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
     """
-    initial: Initial | None = None
+    initial: Initial = DEFAULT
     """Standard deviations of the estimate at the start."""
-    prior: Literal["drawn", "true"] | None = None
+    prior: Literal["drawn", "true"] = DEFAULT
     """Initial state estimate of the filter. Default: "drawn"."""
-    dominant: Literal["excitability", "amplitude"] | None = None
+    dominant: Literal["excitability", "amplitude"] = DEFAULT
     """Criterion for the dominant mode. Default: "excitability"."""
-    assess: Vector | None = None
+    assess: Vector = DEFAULT
     """Interval over which the metrics assess the filter (s); default: the whole run."""
-    feeds: Literal["modes", "hub", "rigid"] | None = None
+    feeds: Literal["modes", "hub", "rigid"] = DEFAULT
     """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
     default, `modes` for a law that reads the dominant mode, else `hub`.
     """
-    watch_only: bool | None = None
+    watch_only: bool = DEFAULT
     """Whether the filter runs for assessment only: the law does not read it."""
 
 
@@ -2284,22 +2221,22 @@ class Kepler(Part):
     """Semi-major axis (m); for a circular orbit, its radius. Inertial axes are then those of the planet's
     equator, z along its axis.
     """
-    eccentricity: float | None = None
+    eccentricity: float = DEFAULT
     """Eccentricity. Default: 0.0."""
-    inclination: float | None = None
+    inclination: float = DEFAULT
     """Inclination to the equator (rad). Default: 0.0."""
-    node: float | None = None
+    node: float = DEFAULT
     """Angle from the inertial x to the ascending node (rad). Default: 0.0."""
-    perigee: float | None = None
+    perigee: float = DEFAULT
     """Angle from the node to the perigee (rad). Default: 0.0."""
-    anomaly: float | None = None
+    anomaly: float = DEFAULT
     """Mean anomaly at the start (rad); for a circular orbit, the angle from the perigee. Default: 0.0."""
-    gravity: float | None = None
+    gravity: float = DEFAULT
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
-    planet_radius: float | None = None
+    planet_radius: float = DEFAULT
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
-    j2: bool | float | None = None
+    j2: bool | float = DEFAULT
     """Coefficient J2 of the planet's oblateness, by which node, perigee and anomaly drift at their mean
     rates, without the short-period terms of some kilometres: `true` for that of the Earth, or a number;
     default: a sphere.
@@ -2341,11 +2278,11 @@ class LineOfSight(Part):
     """Point of the structure at which the instrument is mounted."""
     period: float
     """Period of its samples (s)."""
-    axis: Vector | None = None
+    axis: Vector = DEFAULT
     """Direction of the line of sight, of any length, in the body's axes with the structure undeformed."""
-    window: Vector | None = None
+    window: Vector = DEFAULT
     """Start and end (s) of the interval in which it is assessed; default: the whole run."""
-    jitter_window: float | None = None
+    jitter_window: float = DEFAULT
     """Length (s) of the windows within which jitter is assessed, such as an exposure time: the deviation
     from the mean over each window. Default: no jitter is assessed.
     """
@@ -2373,13 +2310,13 @@ class LitPlate(Part):
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
     """
-    appendage: str | None = None
+    appendage: str = DEFAULT
     """Name of the appendage on which the plate is, with which it turns; `normal` and `at` are then in its
     axes, from its root; default: the hub.
     """
-    specular: float | None = None
+    specular: float = DEFAULT
     """The part of the light that it reflects like a mirror. Default: 0.0."""
-    diffuse: float | None = None
+    diffuse: float = DEFAULT
     """The part that it reflects diffusely. Default: 0.0."""
 
 
@@ -2392,11 +2329,11 @@ class LogContents(Part):
         scene: How the scene of a log is drawn.
     """
 
-    period: float | None = None
+    period: float = DEFAULT
     """Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2, 5 and so
     on that gives at most 10 000 samples.
     """
-    scene: SceneSpec | None = None
+    scene: SceneSpec = DEFAULT
     """How the scene of a log is drawn."""
 
 
@@ -2420,7 +2357,7 @@ class LowPass(Part):
 
     frequency: float
     """The frequency w (rad/s)."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """The damping ratio zeta. Default: 0.7071067811865476."""
 
 
@@ -2445,28 +2382,28 @@ class MagneticField(Part):
             Greenwich at the scenario's `epoch`, so that field and Sun belong to one hour, 0 without one.
     """
 
-    model: Literal["dipole", "IGRF-14", "WMM2025", "table"] | None = None
+    model: Literal["dipole", "IGRF-14", "WMM2025", "table"] = DEFAULT
     """Model of the field, which stays that of the `epoch` during the run and is refused outside its years;
     default: that of the `table`, else the dipole, and IGRF-14 in a scenario with an `epoch` unless
     `coefficients` or `radius` differ from their defaults.
     """
-    table: Mapping[str, object] | str | None = None
+    table: Mapping[str, object] | str = DEFAULT
     """Gauss coefficients, or the path of their file: .shc, or .COF as of the World Magnetic Model."""
-    degree: int | None = None
+    degree: int = DEFAULT
     """Degree up to which a model's spherical harmonics are taken, from 1 on; default: the model's highest,
     13 of IGRF-14, 12 of WMM2025, and up to 13 of a table.
     """
-    coefficients: Vector | None = None
+    coefficients: Vector = DEFAULT
     """Coefficients g11, h11 and g10 of a dipole (T), a vector in axes that rotate with the planet: z along
     its axis, x through its prime meridian; default: the Earth's from IGRF-13 for 2020.
     """
-    radius: float | None = None
+    radius: float = DEFAULT
     """Reference radius a of the coefficients of a dipole or a table (m); default: the Earth's mean radius.
     Default: 6371200.0.
     """
-    rotation: float | None = None
+    rotation: float = DEFAULT
     """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
-    meridian: float | None = None
+    meridian: float = DEFAULT
     """Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the
     scenario's `epoch`, so that field and Sun belong to one hour, 0 without one.
     """
@@ -2493,25 +2430,25 @@ class Magnetometer(Part):
 
     period: float
     """Period of its samples (s)."""
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted; default: the first of the body's points."""
-    noise: float | Vector | None = None
+    noise: float | Vector = DEFAULT
     """Standard deviation of the white noise along each axis (T). Default: 0.0."""
-    bias: float | Vector | None = None
+    bias: float | Vector = DEFAULT
     """Constant error along each axis (T). Default: 0.0."""
-    resolution: float | Vector | None = None
+    resolution: float | Vector = DEFAULT
     """Quantum of the output along each axis (T); 0 for none. Default: 0.0."""
-    scale: float | Vector | None = None
+    scale: float | Vector = DEFAULT
     """Relative error of the scale along each axis. Default: 0.0."""
-    misalignment: Rows | None = None
+    misalignment: Rows = DEFAULT
     """Misalignment (rad): row i gives what axis i measures of the field along the other axes; the diagonal
     is 0.
     """
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from a sample to its output (s). Default: 0.0."""
-    range: float | Vector | None = None
+    range: float | Vector = DEFAULT
     """Largest field that it outputs along each axis (T), at which it clips; default: no limit."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the magnetometer fails."""
 
 
@@ -2527,7 +2464,7 @@ class Magnetorquers(Part):
 
     moment: float | Vector
     """Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the magnetorquers fail."""
 
 
@@ -2556,22 +2493,22 @@ class Manoeuvre(Part):
     """Angle by which the rigid body turns (rad)."""
     command: CommandKind
     """Command that turns the body."""
-    time: float | None = None
+    time: float = DEFAULT
     """Duration of the manoeuvre (s); default: the shortest that the peak torque allows."""
-    peak_torque: float | None = None
+    peak_torque: float = DEFAULT
     """Largest torque (N m); together with `time`, a limit that the plan must respect."""
-    start_rate: float | None = None
+    start_rate: float = DEFAULT
     """Rate before the manoeuvre (rad/s), equal to the body's rate at the start. Default: 0.0."""
-    end_rate: float | None = None
+    end_rate: float = DEFAULT
     """Rate after the manoeuvre (rad/s). Default: 0.0."""
-    shaper: ShaperKind | None = None
+    shaper: ShaperKind = DEFAULT
     """Shaper with which the command is convolved; it uses part of the duration."""
-    load: Vector | Mapping[str, float | Vector] | None = None
+    load: Vector | Mapping[str, float | Vector] = DEFAULT
     """Distribution of the torque over the body, in any unit, as only the ratios matter: `{ hub, sections }`
     of panels, `{ rigid, modes }` of a planar body, coordinates of matrices by name or in order; default:
     a torque on the hub. The actuator acts there during the whole run.
     """
-    model: Planar | None = None
+    model: Planar = DEFAULT
     """Body for which the manoeuvre is planned; default: the body itself. A campaign that draws keys of the
     body plans for the body as written in the scenario: the plan does not depend on the drawn values.
     """
@@ -2609,29 +2546,29 @@ class Matrices(Part):
     """Stiffness matrix, symmetric; only the rigid rotation is free of strain (N m/rad for angles, N/m for
     displacements): rows, or a file.
     """
-    coordinates: Sequence[str] | None = None
+    coordinates: Sequence[str] = DEFAULT
     """Names of the coordinates; default: `q0`, `q1` and so on."""
-    hub: int | None = None
+    hub: int = DEFAULT
     """Index of the coordinate that is the hub's angle, counted from 0. Default: 0."""
-    rotation: Vector | None = None
+    rotation: Vector = DEFAULT
     """Displacement of each coordinate under a unit rigid rotation; default: 1 for the hub's angle and 0 for
     all other coordinates, which are relative to it.
     """
-    drive: Literal["torque", "motion"] | None = None
+    drive: Literal["torque", "motion"] = DEFAULT
     """Quantity that the actuator commands. Default: "torque"."""
-    damping: float | Vector | None = None
+    damping: float | Vector = DEFAULT
     """Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0."""
-    damping_matrix: Rows | str | None = None
+    damping_matrix: Rows | str = DEFAULT
     """Damping matrix, symmetric, without resistance to the rigid rotation (N m s/rad for angles, N s/m for
     displacements). It adds to the damping ratios and may couple the modes.
     """
-    keep: int | None = None
+    keep: int = DEFAULT
     """Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Rigid angle at the start (rad). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rigid rate at the start (rad/s). Default: 0.0."""
-    outputs: Sequence[Sum] | None = None
+    outputs: Sequence[Sum] = DEFAULT
     """Sums of coordinates that are observed in addition to the hub's angle."""
 
 
@@ -2645,9 +2582,9 @@ class MinimumEnergy(Part):
 
     _tag: ClassVar[str | None] = "minimum_energy"
 
-    suppress: int | None = None
+    suppress: int = DEFAULT
     """Number of modes left at rest, lowest frequencies first. Default: 0."""
-    zeros: Sequence[Target] | None = None
+    zeros: Sequence[ShapedZero] = DEFAULT
     """Further zeros."""
 
 
@@ -2660,7 +2597,7 @@ class MinimumPeak(Part):
 
     _tag: ClassVar[str | None] = "minimum_peak"
 
-    suppress: int | None = None
+    suppress: int = DEFAULT
     """Number of modes left at rest, lowest frequencies first. Default: 0."""
 
 
@@ -2682,17 +2619,17 @@ class Mode(Part):
     """Natural frequency w (rad/s)."""
     gain: float
     """Modal gain k: modal acceleration per unit of rigid acceleration."""
-    hub_gain: float | None = None
+    hub_gain: float = DEFAULT
     """Modal gain of a torque on the hub, if the commanded torque acts elsewhere: it determines the energy
     of the mode; default: `gain`.
     """
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta: 0 undamped, 1 critical; more than 1 is allowed except with an
     `[estimator.envelope]`. Default: 0.0.
     """
-    displacement: float | None = None
+    displacement: float = DEFAULT
     """Displacement at the start (rad). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rate at the start (rad/s). Default: 0.0."""
 
 
@@ -2711,11 +2648,11 @@ class ModeExit(Part):
     """Name of the mode that follows."""
     when: str
     """Condition, such as `"rate < 2e-3 and time > 60"`."""
-    numbers: Mapping[str, float] | None = None
+    numbers: Mapping[str, float] = DEFAULT
     """Numbers of the condition by name, such as `{ slow = 2e-3 }` for `"rate < slow"`, in SI units: keys
     for campaigns and searches.
     """
-    for_: float | None = None
+    for_: float = DEFAULT
     """Time for which the condition has to hold without a break (s)."""
 
 
@@ -2739,27 +2676,27 @@ class ModeTarget(Part):
             attitude, else the reference.
     """
 
-    frame: Literal["inertial", "nadir", "sun"] | None = None
+    frame: Literal["inertial", "nadir", "sun"] = DEFAULT
     """Frame relative to which the attitude is given; default: inertial."""
-    primary: PointedAxis | None = None
+    primary: PointedAxis = DEFAULT
     """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
     relative to the attitude that these two give.
     """
-    secondary: PointedAxis | None = None
+    secondary: PointedAxis = DEFAULT
     """Axis of the body that is as near to a direction as `primary` lets it."""
-    roll: float | None = None
+    roll: float = DEFAULT
     """Roll (rad). Default: 0.0."""
-    pitch: float | None = None
+    pitch: float = DEFAULT
     """Pitch (rad). Default: 0.0."""
-    yaw: float | None = None
+    yaw: float = DEFAULT
     """Yaw (rad). Default: 0.0."""
-    acceleration: float | None = None
+    acceleration: float = DEFAULT
     """Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps."""
-    rate_limit: float | None = None
+    rate_limit: float = DEFAULT
     """Largest rate of the slew (rad/s); no limit by default."""
-    profile: Literal["trapezoid", "versine"] | None = None
+    profile: Literal["trapezoid", "versine"] = DEFAULT
     """How the rate of the slew rises and falls; default: trapezoid."""
-    slew_from: Literal["reference", "estimate"] | None = None
+    slew_from: Literal["reference", "estimate"] = DEFAULT
     """Start of the slew; default: the estimated attitude after a law that does not control the attitude,
     else the reference.
     """
@@ -2776,7 +2713,7 @@ class NamedPoint(Part):
 
     name: str
     """Name."""
-    position: Vector | None = None
+    position: Vector = DEFAULT
     """Position (m): from the centre of mass; on a spacecraft's hub from its point O, on an appendage from
     its root.
     """
@@ -2813,7 +2750,7 @@ class Notch(Part):
     """The frequency w (rad/s)."""
     depth: float
     """Gain at that frequency, below 1."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta of the denominator; a larger one makes the notch wider. Default: 0.6."""
 
 
@@ -2857,11 +2794,11 @@ class OperatingMode(Part):
     """Name: letters, digits, `_` and `-`."""
     law: LawKind
     """The law: any but `stages`."""
-    target: ModeTarget | None = None
+    target: ModeTarget = DEFAULT
     """Target attitude of a body with three axes, from the start of the mode on; default: the target stays,
     and `[[target]]` holds if no mode has one.
     """
-    sensors: Sequence[str] | None = None
+    sensors: Sequence[str] = DEFAULT
     """Kinds of the sensors in use, such as `["gyro", "star_tracker"]`, or `star_tracker[1]` for the second
     of a kind; default: all. The others give no readings.
     """
@@ -2875,11 +2812,11 @@ class OperatingMode(Part):
         "jets",
         "magnetorquers",
         "own",
-    ]] | None = None
+    ]] = DEFAULT
     """Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`;
     default: all.
     """
-    leave: Sequence[ModeExit] | None = None
+    leave: Sequence[ModeExit] = DEFAULT
     """Ends of the mode: the first whose condition is met ends it."""
 
 
@@ -2908,13 +2845,13 @@ class Outlier(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Error of the angle (rad): a measured attitude or vector is rotated about the direction (1, 1, 1) of
     the body. Default: 0.0.
     """
-    rate: float | None = None
+    rate: float = DEFAULT
     """Error of the measured rate about each axis (rad/s). Default: 0.0."""
 
 
@@ -2932,9 +2869,9 @@ class Output(Part):
     """Name, such as `tip`."""
     modes: Vector
     """Weight of each mode's displacement, in the order of the modes."""
-    unit: str | None = None
+    unit: str = DEFAULT
     """Unit. Default: "rad"."""
-    rigid: float | None = None
+    rigid: float = DEFAULT
     """Weight of the rigid angle. Default: 0.0."""
 
 
@@ -2977,21 +2914,21 @@ class Panels(Part):
     """Distance of the first hinge from the axis (m)."""
     sections: Sequence[Section]
     """Sections of each panel, from the hub outwards."""
-    count: int | None = None
+    count: int = DEFAULT
     """Number of equal panels. Default: 2."""
-    kinematics: Literal["linear", "exact"] | None = None
+    kinematics: Literal["linear", "exact"] = DEFAULT
     """Kinematics of the sections. Default: "linear"."""
-    tolerance: float | None = None
+    tolerance: float = DEFAULT
     """Error tolerance of each integration step of the exact kinematics (rad). Default: 1e-12."""
-    drive: Literal["torque", "motion"] | None = None
+    drive: Literal["torque", "motion"] = DEFAULT
     """Quantity that the actuator commands. Default: "torque"."""
-    damping: float | Vector | None = None
+    damping: float | Vector = DEFAULT
     """Damping ratio of all modes, or a list with one for each mode that is kept. Default: 0.0."""
-    keep: int | None = None
+    keep: int = DEFAULT
     """Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Rigid angle at the start (rad). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rigid rate at the start (rad/s). Default: 0.0."""
 
 
@@ -3048,15 +2985,15 @@ class Pd(Part):
     """Derivative gain (N m s/rad; without the second where the difference is raw)."""
     period: float
     """Period of its samples (s)."""
-    differentiation: Literal["exact", "difference", "raw"] | None = None
+    differentiation: Literal["exact", "difference", "raw"] = DEFAULT
     """How the derivative is taken. Default: "exact"."""
-    error: Literal["quaternion", "rodrigues"] | None = None
+    error: Literal["quaternion", "rodrigues"] = DEFAULT
     """How a rotation is converted into an error, on a body with three axes; default: `quaternion`."""
-    extra: ExtraKind | None = None
+    extra: ExtraKind = DEFAULT
     """Extra loop on the dominant mode."""
-    limit: float | None = None
+    limit: float = DEFAULT
     """Largest torque (N m; for a wheel, in units of its command); no limit by default."""
-    track: bool | None = None
+    track: bool = DEFAULT
     """Whether the law tracks a manoeuvre while it lasts; otherwise it waits and takes over at the end of
     the manoeuvre.
     """
@@ -3092,13 +3029,13 @@ class Periodic(Part):
         phase: Phase at the start (rad).
     """
 
-    constant: Vector | None = None
+    constant: Vector = DEFAULT
     """Constant part (N m)."""
-    amplitude: Vector | None = None
+    amplitude: Vector = DEFAULT
     """Amplitude of the periodic part (N m), about each axis: amplitude sin(2 pi t/period + phase)."""
-    period: float | None = None
+    period: float = DEFAULT
     """Period (s); about 5560 s for a station in a low orbit. Default: 5560.0."""
-    phase: Vector | None = None
+    phase: Vector = DEFAULT
     """Phase at the start (rad)."""
 
 
@@ -3133,14 +3070,14 @@ class PhasePlane(Part):
     """
     switch_off: float
     """Rate error below which the jets stop (rad/s); it is also the smallest return rate."""
-    slope: float | None = None
+    slope: float = DEFAULT
     """Largest return rate per unit of the angle beyond the dead zone (1/s). Default: 0.05."""
-    braking: float | None = None
+    braking: float = DEFAULT
     """Fraction of the jets' acceleration used for slowing down. Default: 0.5."""
-    targets: Sequence[AttitudeTarget] | None = None
+    targets: Sequence[Target] = DEFAULT
     """Target attitudes, in the order of their times; before the first one, the target is the inertial axes.
     """
-    damping: ActiveDamping | None = None
+    damping: ActiveDamping = DEFAULT
     """Active damping of elastic motion while the rigid motion needs no jets; none by default."""
 
 
@@ -3162,21 +3099,21 @@ class Planar(Part):
 
     _tag: ClassVar[str | None] = "planar"
 
-    inertia: float | None = None
+    inertia: float = DEFAULT
     """Moment of inertia (kg m²); default: 1, and every torque is a reduced moment (rad/s²). Default: 1.0."""
-    angle: float | None = None
+    angle: float = DEFAULT
     """Rigid angle at the start (rad). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Rigid rate at the start (rad/s). Default: 0.0."""
-    drive: Literal["torque", "motion"] | None = None
+    drive: Literal["torque", "motion"] = DEFAULT
     """Quantity that the actuator commands. Default: "torque"."""
-    damping_matrix: Rows | None = None
+    damping_matrix: Rows = DEFAULT
     """Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`[i][j] x_j' to x_i'', beside the
     damping ratios.
     """
-    modes: Sequence[Mode] | None = None
+    modes: Sequence[Mode] = DEFAULT
     """Elastic modes."""
-    outputs: Sequence[Output] | None = None
+    outputs: Sequence[Output] = DEFAULT
     """Coordinates that are observed in addition to the hub's angle: y = rigid x_r + sum of `modes`[i] x_i.
     """
 
@@ -3223,7 +3160,7 @@ class Pointing(Part):
     """Start and end (s) of the interval in which the pointing error is assessed, for the metric
     `pointing_rms_rad`.
     """
-    rms: float | None = None
+    rms: float = DEFAULT
     """Largest allowed root mean square of the pointing error (rad), for the metric `requirement`; default:
     no requirement.
     """
@@ -3271,7 +3208,7 @@ class Ramp(Part):
     """Duration (s)."""
     to: float
     """The ratio afterwards."""
-    from_: float | None = None
+    from_: float = DEFAULT
     """Start time (s). Default: 0.0."""
 
 
@@ -3301,7 +3238,7 @@ class RandomSearch(Part):
     """Largest move of the gain in one window, delta `k_t`."""
     bounds: Vector
     """Smallest and largest gain, which include its value at the start; for `k_t` between 0 and 1."""
-    tunes: str | None = None
+    tunes: str = DEFAULT
     """Tuned parameter of the law, by its key within the law's table: `k_t` of a relay (the default), `k_p`
     of a PD law, `bandwidth` of an attitude law, `yaw.pd.k_d` of a law `per_axis`.
     """
@@ -3316,21 +3253,21 @@ class RandomSearch(Part):
         "switchings",
         "firings",
         "wheel_power_mean",
-    ] | None = None
+    ] = DEFAULT
     """Quantity that is measured over each window and made smaller; default: `envelope_mean`."""
-    window: float | None = None
+    window: float = DEFAULT
     """Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`."""
-    tolerance: float | None = None
+    tolerance: float = DEFAULT
     """A relative change of the objective below this counts as settled, `delta_0`. Default: 0.05."""
-    settled: int | None = None
+    settled: int = DEFAULT
     """Consecutive settled windows after which the gain is frozen (the paper's six). Default: 6."""
-    memory: int | None = None
+    memory: int = DEFAULT
     """Consecutive falls of the objective after which one rise is ignored (the paper's four); 0 for never.
     Default: 4.
     """
-    earliest_freeze: float | None = None
+    earliest_freeze: float = DEFAULT
     """The gain is not frozen before this time, `T_min` (s). Default: 10000.0."""
-    freeze: bool | None = None
+    freeze: bool = DEFAULT
     """Whether the gain is ever frozen. Default: true."""
 
 
@@ -3354,25 +3291,25 @@ class Recurrence(Part):
 
     _tag: ClassVar[str | None] = "recurrence"
 
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio of the mode, which is not identified. Default: 0.005."""
-    coast: RecurrenceWeights | None = None
+    coast: RecurrenceWeights = DEFAULT
     """Weights W1 to W3, for cycles in which no thruster fires."""
-    active: RecurrenceWeights | None = None
+    active: RecurrenceWeights = DEFAULT
     """Weights W5 to W7, for cycles in which a thruster fires."""
-    frequency_gain: float | None = None
+    frequency_gain: float = DEFAULT
     """Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default weights it
     converges below 0.043. Default: 0.006.
     """
-    influence_gain: float | None = None
+    influence_gain: float = DEFAULT
     """Influence gain: W8 times the absolute value of the excitation from which the influence is identified.
     Default: 0.25.
     """
-    gate: float | None = None
+    gate: float = DEFAULT
     """Amplitude of the elastic rate (rad/s) below which the frequency is not updated. Default: 5e-06."""
-    influence_bounds: Vector | None = None
+    influence_bounds: Vector = DEFAULT
     """Bounds of the influence, as multiples of its initial value."""
-    reach: float | None = None
+    reach: float = DEFAULT
     """Default bounds of a frequency: its initial value divided by this factor, and multiplied by it.
     Default: 3.0.
     """
@@ -3407,16 +3344,16 @@ class Reference(Part):
         pointing: Pointing requirement of a body with three axes over a part of the run.
     """
 
-    envelope: float | None = None
+    envelope: float = DEFAULT
     """Mean envelope without adaptation (rad), for the metric `envelope_reduction`; default: the mean over
     the run's own first window.
     """
-    band: float | None = None
+    band: float = DEFAULT
     """Distance from the goal that counts as settled (rad), for the metrics `goal`, `time_outside_s` and
     `settling_time_s`. Default: after a manoeuvre, a thousandth of its angle; for a PD law, 5 % of the
     distance at the start of the goal; for a relay, the sum of its dead zone and hysteresis.
     """
-    pointing: Pointing | None = None
+    pointing: Pointing = DEFAULT
     """Pointing requirement of a body with three axes over a part of the run."""
 
 
@@ -3462,7 +3399,7 @@ class Relay(Part):
     """Weak torque `m_eps` in the dead zone (N m; rad/s² on a body without inertia)."""
     k_t: float
     """Braking gain, between 0 and 1: duration of the brake per second of the push."""
-    sides: Literal["two", "one"] | None = None
+    sides: Literal["two", "one"] = DEFAULT
     """Which boundaries of the dead zone push back. Default: "two"."""
 
 
@@ -3504,57 +3441,57 @@ class Requirement(Part):
 
     name: str
     """Name of the requirement."""
-    holds: str | None = None
+    holds: str = DEFAULT
     """Expression that holds over time, such as `"always[60 s, 300 s] pointing_error < 0.1 deg"`, in place
     of `quantity` and `limit`; without an operator over time, always.
     """
-    after: str | None = None
+    after: str = DEFAULT
     """Event from which on `holds` counts, each time: `"mode enters fine"`, or a condition that becomes
     true.
     """
-    within: float | None = None
+    within: float = DEFAULT
     """Longest time (s) after the event, or after the start, at which `holds` begins to hold."""
-    for_: float | None = None
+    for_: float = DEFAULT
     """Time (s) for which `holds` then holds."""
-    mode: str | None = None
+    mode: str = DEFAULT
     """Mode of operation in which the requirement counts; default: all."""
-    during: str | None = None
+    during: str = DEFAULT
     """Condition during which the requirement counts, such as `"truth.sunlight < 0.5"` or
     `"blinded(star_tracker)"`.
     """
-    quantity: str | None = None
+    quantity: str = DEFAULT
     """Required quantity: `pointing_error`, `rate_error`, `line_of_sight`, or a metric, such as `fuel_kg` or
     `fuel_axes_kg[2]`; of a list without an index, its largest element.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the line of sight, which is a `[[line_of_sight]]` of the scenario."""
-    axis: Literal["x", "y", "z"] | None = None
+    axis: Literal["x", "y", "z"] = DEFAULT
     """Component of the error about an axis of the body; default: the norm of all components."""
-    index: Literal["APE", "MPE", "RPE", "PDE", "PRE"] | None = None
+    index: Literal["APE", "MPE", "RPE", "PDE", "PRE"] = DEFAULT
     """Pointing index of an error (ECSS-E-ST-60-10C); default: APE. A metric has none."""
-    window: float | None = None
+    window: float = DEFAULT
     """Length of the index' window (s), a whole number of sampling periods; all indices but APE have one."""
-    convention: Literal["uniform", "end", "middle"] | None = None
+    convention: Literal["uniform", "end", "middle"] = DEFAULT
     """Position of the instant in its window, for RPE."""
-    shift: float | None = None
+    shift: float = DEFAULT
     """Time from the start of one window to that of the other (s), at least the window, for PDE and PRE."""
-    period: float | None = None
+    period: float = DEFAULT
     """Sampling period of the error (s). Default: the period of the law, else of the sensor, else 1 s. A
     line of sight is sampled with its own period.
     """
-    from_: float | None = None
+    from_: float = DEFAULT
     """Start of the part of the run that counts (s); default: 0."""
-    to: float | None = None
+    to: float = DEFAULT
     """End of the part of the run that counts (s); default: the end of the run."""
-    limit: float | str | None = None
+    limit: float | str = DEFAULT
     """Largest accepted value, in SI units or as a text with a unit that fits the quantity, such as "2
     arcsec".
     """
-    level: float | None = None
+    level: float = DEFAULT
     """Probability at which the value is at most the limit; default: 1, always and in every run."""
-    interpretation: Literal["temporal", "ensemble", "mixed"] | None = None
+    interpretation: Literal["temporal", "ensemble", "mixed"] = DEFAULT
     """Statistical interpretation of the level; an error with a level below 1 needs one."""
-    confidence: float | None = None
+    confidence: float = DEFAULT
     """Confidence at which a campaign shows the level, for the ensemble interpretation; default: none is
     asked for.
     """
@@ -3572,7 +3509,7 @@ class RigidRate(Part):
 
     correction: float
     """Fraction l of the innovation, between 0 and 1, by which each sample corrects the rate."""
-    rate: float | Vector | None = None
+    rate: float | Vector = DEFAULT
     """Estimated rates before the first sample (rad/s). Default: 0.0."""
 
 
@@ -3588,13 +3525,13 @@ class Robustness(Part):
             default: pi/2. Default: 1.5707963267948966.
     """
 
-    weight: float | None = None
+    weight: float = DEFAULT
     """The weight at singular angles; default: 0.01. Default: 0.01."""
-    decay: float | None = None
+    decay: float = DEFAULT
     """Decay of the weight with the square of the singularity measure; default: 10. Default: 10.0."""
-    dither: float | None = None
+    dither: float = DEFAULT
     """Amplitude of the elements of E beside its diagonal, below 0.5; default: 0.1. Default: 0.1."""
-    frequency: float | None = None
+    frequency: float = DEFAULT
     """Angular frequency of these elements (rad/s), whose phases are 0, 90 and 180 degrees; default: pi/2.
     Default: 1.5707963267948966.
     """
@@ -3612,9 +3549,9 @@ class Rotor(Part):
 
     inertia: float
     """Moment of inertia (kg m²)."""
-    speed: float | None = None
+    speed: float = DEFAULT
     """Speed at the start (rad/s). Default: 0.0."""
-    speed_limit: float | None = None
+    speed_limit: float = DEFAULT
     """Largest speed (rad/s), beyond which the motor cannot accelerate it, and with which a `[law.relay]`
     needs a sampled sensor; no limit by default.
     """
@@ -3631,9 +3568,9 @@ class RunFault(Part):
 
     name: str
     """Name."""
-    sensor: PartWithFault | Sequence[PartWithFault] | None = None
+    sensor: PartWithFault | Sequence[PartWithFault] = DEFAULT
     """Failures of a sensor, or a list of several sensors."""
-    actuator: PartWithFailure | Sequence[PartWithFailure] | None = None
+    actuator: PartWithFailure | Sequence[PartWithFailure] = DEFAULT
     """Failures of an actuator, or a list of several actuators."""
 
 
@@ -3656,21 +3593,21 @@ class Sampled(Part):
 
     period: float
     """Period of the samples (s), at which guards of the law are tested."""
-    noise: float | None = None
+    noise: float = DEFAULT
     """Standard deviation of the white noise (rad), on three axes about each of them. Default: 0.0."""
-    bias: float | None = None
+    bias: float = DEFAULT
     """Constant error (rad). Default: 0.0."""
-    resolution: float | None = None
+    resolution: float = DEFAULT
     """Quantum of the output (rad); 0 for none. Default: 0.0."""
-    rate_noise: float | None = None
+    rate_noise: float = DEFAULT
     """Standard deviation of the white noise of a rate gyro (rad/s); default: there is no gyro, and the rate
     is the difference of the last two angles divided by the period.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted, on a body with three axes; default: the first of the
     body's points.
     """
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the sensor fails."""
 
 
@@ -3693,15 +3630,15 @@ class Scaled(Part):
     """Start time (s)."""
     factor: float
     """The fraction; a negative one reverses the output."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
-    about: Literal["roll", "pitch", "yaw"] | None = None
+    about: Literal["roll", "pitch", "yaw"] = DEFAULT
     """Axis that fails, on a body with three; default: all."""
-    wheel: int | None = None
+    wheel: int = DEFAULT
     """Wheel that fails, counted from 1; default: all."""
-    gimbal: int | None = None
+    gimbal: int = DEFAULT
     """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
-    thruster: str | None = None
+    thruster: str = DEFAULT
     """Thruster of `jets` that fails; default: all."""
 
 
@@ -3715,13 +3652,13 @@ class SceneSpec(Part):
         turning: Magnification of the body's rotation; default: chosen so that it is visible.
     """
 
-    period: float | None = None
+    period: float = DEFAULT
     """Period of the frames (s); default: that of the log, and at least 0.04 s."""
-    bending: float | None = None
+    bending: float = DEFAULT
     """Magnification of the elastic motion; default: chosen so that the motion excited by the actuator or
     the initial state is visible.
     """
-    turning: float | None = None
+    turning: float = DEFAULT
     """Magnification of the body's rotation; default: chosen so that it is visible."""
 
 
@@ -3765,7 +3702,7 @@ class Section(Part):
     """Mass per unit length m (kg/m)."""
     hinge_stiffness: float
     """Stiffness c of the hinge at the inner end (N m/rad)."""
-    tip_mass: float | None = None
+    tip_mass: float = DEFAULT
     """Mass mu lumped at the outer end (kg). Default: 0.0."""
 
 
@@ -3777,10 +3714,30 @@ class Shape(Part):
         rotation: Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg))).
     """
 
-    translation: Vector | None = None
+    translation: Vector = DEFAULT
     """Displacement of the point per unit of the modal displacement (1/sqrt(kg))."""
-    rotation: Vector | None = None
+    rotation: Vector = DEFAULT
     """Rotation at the point per unit of the modal displacement (rad/(m sqrt(kg)))."""
+
+
+class ShapedZero(Part):
+    """A zero of the command's spectrum, at a mode or near it.
+
+    Args:
+        mode: Index of the mode.
+        shift: Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0.
+        times: Multiplicity of the zero: each additional one makes one more derivative of the spectrum
+            vanish there. Default: 1.
+    """
+
+    mode: int
+    """Index of the mode."""
+    shift: float = DEFAULT
+    """Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0."""
+    times: int = DEFAULT
+    """Multiplicity of the zero: each additional one makes one more derivative of the spectrum vanish there.
+    Default: 1.
+    """
 
 
 class Silent(Part):
@@ -3795,7 +3752,7 @@ class Silent(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
 
 
@@ -3812,7 +3769,7 @@ class Sine(Part):
     """Amplitude (N m)."""
     frequency: float
     """Frequency (rad/s)."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """Phase at the start of the run (rad); pi/2 makes a cosine. Default: 0.0."""
 
 
@@ -3826,9 +3783,9 @@ class SineCommand(Part):
 
     _tag: ClassVar[str | None] = "sine"
 
-    suppress: int | None = None
+    suppress: int = DEFAULT
     """Number of modes left at rest, lowest frequencies first. Default: 0."""
-    zeros: Sequence[Target] | None = None
+    zeros: Sequence[ShapedZero] = DEFAULT
     """Further zeros."""
 
 
@@ -3848,7 +3805,7 @@ class Sinusoid(Part):
     """Half the difference between the largest and the smallest ratio."""
     period: float
     """Period (s)."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """Time shift of the cosine at the start of the run (s). Default: 0.0."""
 
 
@@ -3869,7 +3826,7 @@ class Site(Part):
     longitude: float
     """Longitude east of Greenwich (rad), whose angle at the start is that of the `epoch`, or 0 without one.
     """
-    height: float | None = None
+    height: float = DEFAULT
     """Height above the ellipsoid of WGS 84 (m). Default: 0.0."""
 
 
@@ -3882,9 +3839,9 @@ class SmallAngles(Part):
         rate: Largest rate about each axis (rad/s). Default: 0.01.
     """
 
-    angle: float | None = None
+    angle: float = DEFAULT
     """Largest rotation from the target about each axis (rad). Default: 0.1."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Largest rate about each axis (rad/s). Default: 0.01."""
 
 
@@ -3904,22 +3861,22 @@ class SolarPressure(Part):
         shadow: Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet.
     """
 
-    force: Vector | None = None
+    force: Vector = DEFAULT
     """The force (N), constant in inertial axes whatever the Sun's distance; required without `plates`."""
-    at: Vector | None = None
+    at: Vector = DEFAULT
     """Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
     """
-    plates: Sequence[LitPlate] | None = None
+    plates: Sequence[LitPlate] = DEFAULT
     """Plates in place of one force: where the normal n faces the Sun s with the cosine c, the force is -P A
     c ((1 - specular) s + 2 (specular c + diffuse/3) n). A plate with two sides is two entries; plates do
     not shade each other, and the force bends nothing.
     """
-    pressure: float | None = None
+    pressure: float = DEFAULT
     """Pressure of sunlight on the plates at 1 au (N/m²); default: that of 1361 W/m². With `sun = "epoch"`
     it falls with the square of the Sun's distance at the date.
     """
-    shadow: Rows | None = None
+    shadow: Rows = DEFAULT
     """Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet."""
 
 
@@ -3955,35 +3912,35 @@ class Spacecraft(Part):
     """Inertia tensor of the hub alone about its centre of mass, with wheels locked in it (kg m²), row by
     row.
     """
-    centre: Vector | None = None
+    centre: Vector = DEFAULT
     """Centre of mass of the hub alone (m)."""
-    attitude: Vector | Literal["target"] | None = None
+    attitude: Vector | Literal["target"] = DEFAULT
     """Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into inertial
     ones, or `"target"` for that of the target.
     """
-    attitude_error: Vector | None = None
+    attitude_error: Vector = DEFAULT
     """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each
     component from -2π to 2π; default: none.
     """
-    rate: Vector | Literal["target"] | None = None
+    rate: Vector | Literal["target"] = DEFAULT
     """Rates of the whole spacecraft at the start (rad/s), in the body's axes, or `"target"` for those of
     the target; without vibration they are the rates of the hub.
     """
-    rate_error: Vector | None = None
+    rate_error: Vector = DEFAULT
     """Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default:
     none.
     """
-    small_angles: SmallAngles | None = None
+    small_angles: SmallAngles = DEFAULT
     """Small rotations about a fixed target, in closed form, in place of any rotation; `{}` takes both
     defaults.
     """
-    whole_damping: bool | None = None
+    whole_damping: bool = DEFAULT
     """Whether runs keep the full damping matrix of the free modes, as linear tools always do; default: if
     its off-diagonal terms are not negligible.
     """
-    frequency_factor: float | None = None
+    frequency_factor: float = DEFAULT
     """Factor on the natural frequencies of all appendages; default: 1."""
-    points: Sequence[NamedPoint] | None = None
+    points: Sequence[NamedPoint] = DEFAULT
     """Named points of the hub, at which jets and sensors are mounted; default: one at O, named `hub`."""
 
 
@@ -4009,27 +3966,27 @@ class Spatial(Part):
 
     inertia: Rows
     """Inertia tensor about the centre of mass (kg m²), row by row: symmetric, positive definite."""
-    attitude: Vector | Literal["target"] | None = None
+    attitude: Vector | Literal["target"] = DEFAULT
     """Attitude at the start, a unit quaternion [w, x, y, z] that turns vectors of the body into inertial
     ones, or `"target"` for that of the target.
     """
-    attitude_error: Vector | None = None
+    attitude_error: Vector = DEFAULT
     """Rotation vector (rad) from `attitude` to the attitude at the start, in the body's axes, each
     component from -2π to 2π; default: none.
     """
-    rate: Vector | Literal["target"] | None = None
+    rate: Vector | Literal["target"] = DEFAULT
     """Rates at the start (rad/s), in the body's axes, or `"target"` for those of the target."""
-    rate_error: Vector | None = None
+    rate_error: Vector = DEFAULT
     """Rates at the start in addition to `rate` (rad/s), in the body's axes, each at most 1000; default:
     none.
     """
-    small_angles: SmallAngles | None = None
+    small_angles: SmallAngles = DEFAULT
     """Small rotations about a fixed target, in closed form, in place of any rotation."""
-    points: Sequence[NamedPoint] | None = None
+    points: Sequence[NamedPoint] = DEFAULT
     """Named points of the structure, at which jets and sensors are mounted."""
-    modes: Sequence[SpatialMode] | str | None = None
+    modes: Sequence[SpatialMode] | str = DEFAULT
     """Elastic modes: a table, or the path of a CSV file. Each mode has a shape at every point."""
-    disturbance: Periodic | None = None
+    disturbance: Periodic = DEFAULT
     """Torque of the environment; none by default."""
 
 
@@ -4046,13 +4003,13 @@ class SpatialMode(Part):
 
     frequency: float
     """Natural frequency w (rad/s)."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta: 0 undamped, 1 critical. Default: 0.0."""
-    displacement: float | None = None
+    displacement: float = DEFAULT
     """Modal displacement at the start (m sqrt(kg)). Default: 0.0."""
-    rate: float | None = None
+    rate: float = DEFAULT
     """Modal rate at the start (m sqrt(kg)/s). Default: 0.0."""
-    shapes: Mapping[str, Shape] | None = None
+    shapes: Mapping[str, Shape] = DEFAULT
     """Shape of the mode at each point, by the name of the point."""
 
 
@@ -4086,7 +4043,7 @@ class Stage(Part):
 
     law: LawKind
     """The law."""
-    from_: float | None = None
+    from_: float = DEFAULT
     """Start time (s), later than that of the stage before; 0 for the first stage. Default: 0.0."""
     actuators: Sequence[Literal[
         "ideal",
@@ -4098,7 +4055,7 @@ class Stage(Part):
         "jets",
         "magnetorquers",
         "own",
-    ]] | None = None
+    ]] = DEFAULT
     """Kinds of the `[[actuator]]` entries that execute the commands of the law, such as `["wheels"]`;
     default: all.
     """
@@ -4139,34 +4096,34 @@ class StarTracker(Part):
 
     period: float
     """Period of the exposures (s)."""
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which the star tracker is mounted; default: the first of the body's points.
     """
-    noise: Vector | None = None
+    noise: Vector = DEFAULT
     """Standard deviation of the white noise about the star tracker's axes (rad): x and y across the
     boresight, z about it.
     """
-    axes: Vector | None = None
+    axes: Vector = DEFAULT
     """Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that transforms
     vectors from its axes to the body's; default: the identity.
     """
-    boresight: Vector | None = None
+    boresight: Vector = DEFAULT
     """Direction of the boresight, its z axis, in the body, of any length, in place of `axes`: x and y are
     those of the body, turned by the smallest angle that takes z to the boresight.
     """
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from the middle of an exposure to its output (s). Default: 0.0."""
-    exposure: float | None = None
+    exposure: float = DEFAULT
     """Exposure time (s), at most `period` and twice `latency`: a reading is the mean attitude over the
     exposure; default: 0, the attitude at an instant.
     """
-    blackout_rate: float | None = None
+    blackout_rate: float = DEFAULT
     """Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit."""
-    exclusion: Exclusion | None = None
+    exclusion: Exclusion = DEFAULT
     """Angles between the boresight, its z axis, and bright bodies below which it gives no measurement;
     default: none.
     """
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the star tracker fails."""
 
 
@@ -4194,29 +4151,29 @@ class StateSpaceLaw(Part):
 
     period: float
     """Period of its samples (s)."""
-    a: Rows | None = None
+    a: Rows = DEFAULT
     """Matrix A, row by row, for at most 64 states; default: there are no states."""
-    b: Rows | None = None
+    b: Rows = DEFAULT
     """Matrix B: one row per state; one column for each input, or for the angle error (rad) and optionally a
     second for the rate error (rad/s).
     """
-    c: Rows | None = None
+    c: Rows = DEFAULT
     """Matrix C: one row, or one for each output."""
-    d: Rows | None = None
+    d: Rows = DEFAULT
     """Matrix D: one row, or one for each output; default: it is zero."""
-    inputs: Sequence[str] | None = None
+    inputs: Sequence[str] = DEFAULT
     """Names of the inputs of one law about three axes together; default: a law about each axis."""
-    outputs: Sequence[str] | None = None
+    outputs: Sequence[str] = DEFAULT
     """Axes of the outputs of one law about three axes together; default: roll, pitch and yaw."""
-    of: Literal["samples", "held", "tustin"] | None = None
+    of: Literal["samples", "held", "tustin"] = DEFAULT
     """Whether the matrices are in discrete or continuous time. Default: "samples"."""
-    command: Literal["torque", "acceleration"] | None = None
+    command: Literal["torque", "acceleration"] = DEFAULT
     """Quantity that it commands. Default: "torque"."""
-    gain: float | None = None
+    gain: float = DEFAULT
     """Factor on the output, which an adaptation may tune; default: 1."""
-    limit: float | None = None
+    limit: float = DEFAULT
     """Largest command, in its unit; no limit by default."""
-    track: bool | None = None
+    track: bool = DEFAULT
     """Whether the law tracks a manoeuvre while it lasts, as with accelerations it always does; otherwise it
     takes over at the end of the manoeuvre.
     """
@@ -4240,17 +4197,17 @@ class StuckFailure(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
-    about: Literal["roll", "pitch", "yaw"] | None = None
+    about: Literal["roll", "pitch", "yaw"] = DEFAULT
     """Axis that fails, on a body with three; default: all."""
-    wheel: int | None = None
+    wheel: int = DEFAULT
     """Wheel that fails, counted from 1; default: all."""
-    gimbal: int | None = None
+    gimbal: int = DEFAULT
     """Gimbal of `control_moment_gyros` that fails, counted from 1; default: all."""
-    thruster: str | None = None
+    thruster: str = DEFAULT
     """Thruster of `jets` that fails; default: all."""
-    at: float | None = None
+    at: float = DEFAULT
     """The output: a torque (N m); for magnetorquers a moment (A m²), for gimbals a rate (rad/s), for jets a
     fraction of their thrust; default: the output when the failure begins.
     """
@@ -4268,7 +4225,7 @@ class StuckFault(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
 
 
@@ -4285,7 +4242,7 @@ class Sum(Part):
     """Name, such as `tip`."""
     weights: Vector | Mapping[str, float]
     """Weight of each coordinate, or a table of weights by the names of coordinates."""
-    unit: str | None = None
+    unit: str = DEFAULT
     """Unit. Default: "rad"."""
 
 
@@ -4300,9 +4257,9 @@ class SunCell(Part):
 
     normal: Vector
     """Outward normal in the body's axes, of any length."""
-    scale: float | None = None
+    scale: float = DEFAULT
     """Relative error of its signal. Default: 0.0."""
-    bias: float | None = None
+    bias: float = DEFAULT
     """Constant error of its signal. Default: 0.0."""
 
 
@@ -4328,19 +4285,19 @@ class SunCells(Part):
     """The cells, three to 64, whose normals are not all in a plane."""
     period: float
     """Period of their samples (s)."""
-    field_of_view: float | None = None
+    field_of_view: float = DEFAULT
     """Half angle within which light reaches a cell (rad), at most pi/2; default: pi/2. Default:
     1.5707963267948966.
     """
-    threshold: float | None = None
+    threshold: float = DEFAULT
     """Signal below which a cell counts as dark; a cell that faces the Sun has the signal 1. Default: 0.1."""
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which they are mounted; default: the first of the body's points."""
-    noise: float | None = None
+    noise: float = DEFAULT
     """Standard deviation of the white noise of each signal. Default: 0.0."""
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which all cells fail."""
 
 
@@ -4367,29 +4324,29 @@ class SunSensor(Part):
 
     period: float
     """Period of its samples (s)."""
-    boresight: Vector | None = None
+    boresight: Vector = DEFAULT
     """Centre of its field of view, a direction in the body's axes, of any length; default: z."""
-    field_of_view: float | None = None
+    field_of_view: float = DEFAULT
     """Half angle of the field of view (rad); default: all directions are visible. Default:
     3.141592653589793.
     """
-    point: str | None = None
+    point: str = DEFAULT
     """Point of the structure at which it is mounted; default: the first of the body's points."""
-    noise: float | Vector | None = None
+    noise: float | Vector = DEFAULT
     """Standard deviation of the white noise along each axis (rad). Default: 0.0."""
-    bias: float | Vector | None = None
+    bias: float | Vector = DEFAULT
     """Constant error along each axis (rad). Default: 0.0."""
-    resolution: float | Vector | None = None
+    resolution: float | Vector = DEFAULT
     """Quantum of the output along each axis (rad); 0 for none. Default: 0.0."""
-    scale: float | Vector | None = None
+    scale: float | Vector = DEFAULT
     """Relative error of the scale along each axis. Default: 0.0."""
-    misalignment: Rows | None = None
+    misalignment: Rows = DEFAULT
     """Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the
     diagonal is 0.
     """
-    latency: float | None = None
+    latency: float = DEFAULT
     """Time from a sample to its output (s). Default: 0.0."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the Sun sensor fails."""
 
 
@@ -4416,33 +4373,77 @@ class Tachometer(Part):
 
     period: float
     """Period of the readings (s)."""
-    pulses: int | None = None
+    pulses: int = DEFAULT
     """Pulses per turn: a reading is the count over a period divided by the period, and the remainder
     carries over to the next one. By default, the speed at the instant is read.
     """
-    noise: float | None = None
+    noise: float = DEFAULT
     """Standard deviation of the white noise of each reading (rad/s). Default: 0.0."""
-    faults: Sequence[FaultKind] | None = None
+    faults: Sequence[FaultKind] = DEFAULT
     """Intervals in which the tachometers fail; the drives then keep the last reading."""
 
 
 class Target(Part):
-    """A zero of the command's spectrum, at a mode or near it.
+    """A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x
+    axis.
 
     Args:
-        mode: Index of the mode.
-        shift: Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0.
-        times: Multiplicity of the zero: each additional one makes one more derivative of the spectrum
-            vanish there. Default: 1.
+        from_: Start time (s), later than that of the target before.
+        frame: Frame relative to which the attitude is given; default: inertial.
+        primary: Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw
+            are relative to the attitude that these two give.
+        secondary: Axis of the body that is as near to a direction as `primary` lets it.
+        roll: Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned
+            axis, then roll. Default: 0.0.
+        pitch: Pitch (rad). Default: 0.0.
+        yaw: Yaw (rad). Default: 0.0.
+        acceleration: Largest acceleration of the slew about one axis to it (rad/s²); default: the reference
+            jumps.
+        rate_limit: Largest rate of the slew (rad/s); no limit by default.
+        profile: How the rate of the slew rises and falls; default: trapezoid.
+        command: Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
+        duration: Duration of the slew by that command (s), without what a shaper adds and without the decay
+            of a rate before it.
+        shaper: Shaper that suppresses modes: the acceleration of the slew is convolved with impulses.
+        table: Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at
+            rest at both ends.
     """
 
-    mode: int
-    """Index of the mode."""
-    shift: float | None = None
-    """Shift of the zero from the mode's frequency, relative to that frequency. Default: 0.0."""
-    times: int | None = None
-    """Multiplicity of the zero: each additional one makes one more derivative of the spectrum vanish there.
-    Default: 1.
+    from_: float
+    """Start time (s), later than that of the target before."""
+    frame: Literal["inertial", "nadir", "sun"] = DEFAULT
+    """Frame relative to which the attitude is given; default: inertial."""
+    primary: PointedAxis = DEFAULT
+    """Axis of the body that is exactly along a direction: with `secondary`, roll, pitch and yaw are
+    relative to the attitude that these two give.
+    """
+    secondary: PointedAxis = DEFAULT
+    """Axis of the body that is as near to a direction as `primary` lets it."""
+    roll: float = DEFAULT
+    """Roll (rad), like pitch and yaw from -2π to 2π: yaw comes first, then pitch about the turned axis,
+    then roll. Default: 0.0.
+    """
+    pitch: float = DEFAULT
+    """Pitch (rad). Default: 0.0."""
+    yaw: float = DEFAULT
+    """Yaw (rad). Default: 0.0."""
+    acceleration: float = DEFAULT
+    """Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps."""
+    rate_limit: float = DEFAULT
+    """Largest rate of the slew (rad/s); no limit by default."""
+    profile: Literal["trapezoid", "versine"] = DEFAULT
+    """How the rate of the slew rises and falls; default: trapezoid."""
+    command: CommandKind = DEFAULT
+    """Command planned for the slew, in place of `acceleration`; it may leave modes at rest."""
+    duration: float = DEFAULT
+    """Duration of the slew by that command (s), without what a shaper adds and without the decay of a rate
+    before it.
+    """
+    shaper: ShaperKind = DEFAULT
+    """Shaper that suppresses modes: the acceleration of the slew is convolved with impulses."""
+    table: Sequence[AttitudeAt] = DEFAULT
+    """Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at
+    both ends.
     """
 
 
@@ -4479,7 +4480,7 @@ class Thruster(Part):
     """Direction of the force on the body, of length 1."""
     thrust: float
     """Thrust (N)."""
-    offset: Vector | None = None
+    offset: Vector = DEFAULT
     """Position of its nozzle relative to that point (m)."""
 
 
@@ -4505,13 +4506,13 @@ class Thrusters(Part):
     """
     period: float
     """Period of the pulses (s)."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """Time of the first period (s); default: 0."""
-    minimum_on: float | None = None
+    minimum_on: float = DEFAULT
     """Shortest pulse (s). Default: 0.0."""
-    quantum: float | None = None
+    quantum: float = DEFAULT
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the thrusters fail."""
 
 
@@ -4527,15 +4528,15 @@ class TitleBlock(Part):
         date: Date of the issue.
     """
 
-    title: str | None = None
+    title: str = DEFAULT
     """Title of the page; default: `about`, or the name of the scenario."""
-    project: str | None = None
+    project: str = DEFAULT
     """Project."""
-    author: str | None = None
+    author: str = DEFAULT
     """Author."""
-    issue: str | None = None
+    issue: str = DEFAULT
     """Issue or revision."""
-    date: str | None = None
+    date: str = DEFAULT
     """Date of the issue."""
 
 
@@ -4556,7 +4557,7 @@ class Tracker(Part):
     """Influence of each input: the jump of the elastic rate in this channel for a unit jump of the rigid
     rate that the input makes about its own axis ([Timakov14], page 41; dimensionless).
     """
-    bounds: Vector | None = None
+    bounds: Vector = DEFAULT
     """Bounds `[low, high]` of the frequency (rad/s); default: the midpoints between it and its neighbours.
     """
 
@@ -4571,7 +4572,7 @@ class TruthEstimator(Part):
 
     _tag: ClassVar[str | None] = "truth"
 
-    feeds: Literal["modes", "hub", "rigid"] | None = None
+    feeds: Literal["modes", "hub", "rigid"] = DEFAULT
     """Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured ones,
     `hub`, or `rigid`; default: `modes` for a law that reads the dominant mode, else `hub`.
     """
@@ -4616,9 +4617,9 @@ class TwoLineOrbit(Part):
     them), in axes of the true equator and mean equinox, without nutation, up to 18 arc seconds. Jumps of
     SDP4 of more than 2 km are refused.
     """
-    gravity: float | None = None
+    gravity: float = DEFAULT
     """Gravitational parameter of the planet (m³/s²); default: the Earth's. Default: 398600441800000.0."""
-    planet_radius: float | None = None
+    planet_radius: float = DEFAULT
     """Radius of the planet (m), for its shadow; default: the Earth's equatorial radius. Default: 6378137.0.
     """
 
@@ -4650,9 +4651,9 @@ class UniformPlate(Part):
     """Width (m)."""
     frequency: float
     """First natural frequency with the root held (rad/s)."""
-    along: Literal["x", "y"] | None = None
+    along: Literal["x", "y"] = DEFAULT
     """Axis along which it extends from the root; it bends out of the plane of x and y. Default: "y"."""
-    damping: float | None = None
+    damping: float = DEFAULT
     """Damping ratio zeta with the root held: 0 undamped, 1 critical. Default: 0.0."""
 
 
@@ -4691,17 +4692,17 @@ class Unloading(Part):
     """Total momentum of the wheels above which unloading begins (N m s)."""
     below: float
     """Total momentum below which unloading ends (N m s)."""
-    torque: float | None = None
+    torque: float = DEFAULT
     """Largest mean torque of the jets about each axis over a cycle (N m), which the wheels counteract."""
-    jets: Jets | None = None
+    jets: Jets = DEFAULT
     """Jets for unloading, with their own period and without a delay."""
-    magnetorquers: Magnetorquers | None = None
+    magnetorquers: Magnetorquers = DEFAULT
     """Magnetorquers for unloading."""
-    gain: float | None = None
+    gain: float = DEFAULT
     """For magnetorquers: the fraction of the momentum perpendicular to the field that they remove per
     second (1/s).
     """
-    period: float | None = None
+    period: float = DEFAULT
     """For magnetorquers: the period of their commands (s)."""
 
 
@@ -4723,15 +4724,15 @@ class Unloads(Part):
     """Total momentum of the wheels above which unloading begins (N m s)."""
     below: float
     """Total momentum below which unloading ends (N m s)."""
-    torque: float | None = None
+    torque: float = DEFAULT
     """For jets: the largest mean torque about each axis over a cycle (N m), which the wheels counteract."""
-    gain: float | None = None
+    gain: float = DEFAULT
     """For magnetorquers: the fraction of the momentum perpendicular to the field that they remove per
     second (1/s).
     """
-    period: float | None = None
+    period: float = DEFAULT
     """For magnetorquers: the period of their commands (s)."""
-    phase: float | None = None
+    phase: float = DEFAULT
     """For magnetorquers: time of their first command (s); default: 0."""
 
 
@@ -4770,48 +4771,48 @@ class UnscentedKalman(Part):
 
     _tag: ClassVar[str | None] = "unscented_kalman"
 
-    modes: Sequence[Mode] | None = None
+    modes: Sequence[Mode] = DEFAULT
     """Modes of the filter's model; default: the body's own at the start of each run."""
-    moment_noise: float | None = None
+    moment_noise: float = DEFAULT
     """Spectral density of the white noise in the reduced moment ((rad/s²)² s). Default: 1e-13."""
-    angle_noise: float | None = None
+    angle_noise: float = DEFAULT
     """Standard deviation of the measured angle (rad), required where the sensor has none, such as a gyro;
     default: that of the sensor, with the square of its `resolution` over 12 added to the variance.
     """
-    initial: Initial | None = None
+    initial: Initial = DEFAULT
     """Standard deviations of the estimate at the start."""
-    prior: Literal["drawn", "true"] | None = None
+    prior: Literal["drawn", "true"] = DEFAULT
     """Initial state estimate of the filter. Default: "drawn"."""
-    dominant: Literal["excitability", "amplitude"] | None = None
+    dominant: Literal["excitability", "amplitude"] = DEFAULT
     """Criterion for the dominant mode. Default: "excitability"."""
-    assess: Vector | None = None
+    assess: Vector = DEFAULT
     """Interval over which the metrics assess the filter (s); default: the whole run."""
-    feeds: Literal["modes", "hub", "rigid"] | None = None
+    feeds: Literal["modes", "hub", "rigid"] = DEFAULT
     """Estimates that the law reads: `modes` for the dominant mode only, with angle and rate as measured;
     `hub` for angle and rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By
     default, `modes` for a law that reads the dominant mode, else `hub`.
     """
-    watch_only: bool | None = None
+    watch_only: bool = DEFAULT
     """Whether the filter runs for assessment only: the law does not read it."""
-    ratios: Literal["common", "each"] | None = None
+    ratios: Literal["common", "each"] = DEFAULT
     """Which frequencies drift together. Default: "common"."""
-    ratio: float | None = None
+    ratio: float = DEFAULT
     """Initial estimate of the frequency ratio: unless `prior` is `true`, the estimate is drawn around it.
     Default: 1.0.
     """
-    ratio_sd: float | None = None
+    ratio_sd: float = DEFAULT
     """Standard deviation of the initial ratio. Default: 0.03."""
-    ratio_rate_sd: float | None = None
+    ratio_rate_sd: float = DEFAULT
     """Standard deviation of the ratio's initial rate, which is estimated as 0 (1/s). Default: 0.003."""
-    ratio_noise: float | None = None
+    ratio_noise: float = DEFAULT
     """Spectral density of the white noise in a ratio (1/s). Default: 1e-08."""
-    ratio_rate_noise: float | None = None
+    ratio_rate_noise: float = DEFAULT
     """Spectral density of the white noise in the rate of a ratio (1/s³). Default: 1e-08."""
-    bounds: Vector | None = None
+    bounds: Vector = DEFAULT
     """Bounds `[low, high]` of a ratio; a filter that reaches them has lost lock."""
-    substeps: int | None = None
+    substeps: int = DEFAULT
     """Number of prediction steps per period, 1 to 100; with a gyro of 1e-6 rad/s use 8. Default: 2."""
-    gate: float | None = None
+    gate: float = DEFAULT
     """Amplitude of the dominant mode, in standard deviations of the angle, below which the ratios are not
     updated. Default: 3.0.
     """
@@ -4838,21 +4839,21 @@ class Wheel(Part):
 
     gain: float
     """Torque per unit of the law's command (N m; k'_u of [Wheel11, Sukhanov] times the body's inertia)."""
-    back_emf: float | None = None
+    back_emf: float = DEFAULT
     """Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia). Default: 0.0."""
-    opposes: Literal["body_rate", "rigid_rate"] | None = None
+    opposes: Literal["body_rate", "rigid_rate"] = DEFAULT
     """The rate that the back-EMF opposes. Default: "body_rate"."""
-    rotor: Rotor | None = None
+    rotor: Rotor = DEFAULT
     """The wheel, whose speed and momentum `/wheel` then logs; it must be the only actuator."""
-    dead_zone: float | None = None
+    dead_zone: float = DEFAULT
     """Commands smaller than this are not executed. Default: 0.0."""
-    quantum: float | None = None
+    quantum: float = DEFAULT
     """Quantum of the command; 0 for none. Default: 0.0."""
-    limit: float | None = None
+    limit: float = DEFAULT
     """Largest command, in units of the command; no limit by default."""
-    delay: float | None = None
+    delay: float = DEFAULT
     """Time from a sample to the execution of the command computed from it (s). Default: 0.0."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the motor fails to execute commands; its back-EMF still acts."""
 
 
@@ -4892,46 +4893,46 @@ class Wheels(Part):
     """Moment of inertia of each wheel about its axis (kg m²). The inertia tensor of a `[body.spatial]`
     excludes it; that of a `[spacecraft]` includes the locked wheels.
     """
-    arrangement: Literal["orthogonal", "pyramid"] | None = None
+    arrangement: Literal["orthogonal", "pyramid"] = DEFAULT
     """Arrangement of the wheels; default: given by `axes`."""
-    cant: float | None = None
+    cant: float = DEFAULT
     """For a pyramid: angle of each axis above the xy plane (rad); default: 0.6155 rad, which gives equal
     torques about all three axes.
     """
-    axes: Rows | None = None
+    axes: Rows = DEFAULT
     """Axis of each wheel in the body's axes, of any length."""
-    torque: float | None = None
+    torque: float = DEFAULT
     """Largest torque of each motor (N m); no limit by default. If a demanded torque exceeds it, the whole
     torque is scaled down and keeps its axis.
     """
-    momentum: float | None = None
+    momentum: float = DEFAULT
     """Largest momentum of each wheel about its axis (N m s), beyond which its motor cannot accelerate it;
     no limit by default.
     """
-    speed_limit: float | None = None
+    speed_limit: float = DEFAULT
     """Largest speed of each wheel (rad/s), beyond which its motor cannot accelerate it; no limit by
     default.
     """
-    delay: float | None = None
+    delay: float = DEFAULT
     """Time from a command of the law to the torques of the motors (s), as computation and data bus take it.
     """
-    speeds: Vector | None = None
+    speeds: Vector = DEFAULT
     """Speed of each wheel at the start, relative to the body (rad/s); default: 0."""
-    friction: Friction | None = None
+    friction: Friction = DEFAULT
     """Friction of the bearings; none by default."""
-    compensation: Compensation | None = None
+    compensation: Compensation = DEFAULT
     """Friction that the drives assume and compensate within `torque`, from the true or measured wheel
     speeds; none by default.
     """
-    imbalance: Imbalance | None = None
+    imbalance: Imbalance = DEFAULT
     """Imbalance of the wheels; none by default."""
-    allocation: Literal["pseudo_inverse", "least_largest"] | None = None
+    allocation: Literal["pseudo_inverse", "least_largest"] = DEFAULT
     """How the demanded torque is distributed over the wheels. Default: "pseudo_inverse"."""
-    speed_bias: SpeedBias | None = None
+    speed_bias: SpeedBias = DEFAULT
     """For four wheels: a bias speed, maintained by torques that cancel each other; none by default."""
-    unloading: Unloading | None = None
+    unloading: Unloading = DEFAULT
     """Unloading by jets or magnetorquers; none by default."""
-    faults: Sequence[FailureKind] | None = None
+    faults: Sequence[FailureKind] = DEFAULT
     """Intervals in which the motors fail: all, or the `wheel` of a number from 1."""
 
 
@@ -4947,7 +4948,7 @@ class Zero(Part):
 
     from_: float
     """Start time (s)."""
-    to: float | None = None
+    to: float = DEFAULT
     """End time (s); default: the end of the run."""
 
 
@@ -4960,7 +4961,7 @@ class Zv(Part):
 
     _tag: ClassVar[str | None] = "zv"
 
-    modes: Sequence[int] | None = None
+    modes: Sequence[int] = DEFAULT
     """Indices of the modes."""
 
 
@@ -4973,7 +4974,7 @@ class Zvd(Part):
 
     _tag: ClassVar[str | None] = "zvd"
 
-    modes: Sequence[int] | None = None
+    modes: Sequence[int] = DEFAULT
     """Indices of the modes."""
 
 
@@ -4986,7 +4987,7 @@ class Zvdd(Part):
 
     _tag: ClassVar[str | None] = "zvdd"
 
-    modes: Sequence[int] | None = None
+    modes: Sequence[int] = DEFAULT
     """Indices of the modes."""
 
 
@@ -5120,7 +5121,7 @@ class Keys(TypedDict, total=False):
     log: LogContents
     """Contents of a full log."""
 
-    target: Sequence[AttitudeTarget]
+    target: Sequence[Target]
     """Target attitudes of a body with three axes, in the order of their times; before the first one, the
     target is the inertial axes. A law `phase_plane` may have targets of its own.
     """
@@ -5148,3 +5149,11 @@ class Keys(TypedDict, total=False):
 
     correlated: Sequence[Correlated]
     """Correlated keys of `uncertain`."""
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        from flexsc import _deprecated
+
+        return _deprecated.of_module(__name__, name)

@@ -2,7 +2,7 @@
 
     >>> model = flexsc.from_state_space(A, B, C)
     >>> scenario = model.scenario(inertia, thrust=130.0, arm=20.0)
-    >>> flexsc.write_scenario(scenario, "station.toml")
+    >>> flexsc.structure.write_scenario(scenario, "station.toml")
 
 `python -m flexsc.structure iss.mat --check` does so for a MATLAB file.
 """

@@ -98,7 +98,7 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     >>> model = flexsc.from_state_space([[0, 1], [-4, -0.02]], [[0], [1]], [[0, 1]])
     >>> scenario = model.scenario(numpy.eye(3), thrust=1.0, arm=2.0, inputs=("yaw",), outputs=("yaw",))
     >>> with tempfile.TemporaryDirectory() as out:
-    ...     modes = flexsc.write_scenario(scenario, pathlib.Path(out) / "station.toml")
+    ...     modes = flexsc.structure.write_scenario(scenario, pathlib.Path(out) / "station.toml")
     >>> modes.name
     'station-modes.csv'
     """
