@@ -1,5 +1,7 @@
 //! Overlay of the figures of several runs, and the difference of two.
 
+use std::borrow::Borrow;
+
 use flexsc_figure::{
     Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, Scale, Strip, colour,
 };
@@ -16,7 +18,8 @@ const OTHERS: f64 = 0.9;
 const LEVEL: usize = 6;
 
 /// Returns the overlay of the named runs' figures, of two runs with their difference below; `None` if their panels differ.
-pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
+pub fn overlaid(subject: &str, runs: &[(String, impl Borrow<Figure>)]) -> Option<Figure> {
+    let runs: Vec<(&str, &Figure)> = runs.iter().map(|(name, figure)| (name.as_str(), figure.borrow())).collect();
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
@@ -30,11 +33,11 @@ pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
         return None;
     }
     let (panel_height, count) = (first.panel_height, first.panels.len());
-    let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = runs.iter().map(|(name, _)| *name).collect();
     let title = format!("{subject}: {}", names.join(", "));
     let panel = |index: usize| -> Panel {
         let panels: Vec<(&str, &Panel)> =
-            runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
+            runs.iter().map(|(name, figure)| (*name, &figure.panels[index])).collect();
         let (x, y) = (axis(&panels, |panel| &panel.x), axis(&panels, |panel| &panel.y));
         let mut layers = layers(&panels, index == 0);
         // Vertical lines are as high as the panel.
@@ -45,8 +48,8 @@ pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
         Panel { notes: notes(&panels), strips: strips(&panels), ..Panel::new(x, y, layers) }
     };
     let mut panels: Vec<Panel> = (0..count).map(panel).collect();
-    if let [(a, one), (b, other)] = runs
-        && let Some(below) = difference((a, one), (b, other))
+    if let [one, other] = runs[..]
+        && let Some(below) = difference(one, other)
     {
         if let Some(last) = panels.last_mut() {
             last.x = last.x.unnamed();

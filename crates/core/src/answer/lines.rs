@@ -89,6 +89,7 @@ impl RunData<'_> {
     /// Returns what else is known of the run.
     pub fn lines(&self) -> Vec<Line> {
         let mut lines = AnswerLines::default();
+        self.own_parts(&mut lines);
         if self.scenario.axis_count() == 3 {
             self.three_axis_lines(&mut lines);
         } else {
@@ -96,6 +97,19 @@ impl RunData<'_> {
         }
         self.adaptation(&mut lines);
         lines.0
+    }
+
+    /// Adds the roles of parts that a program supplied.
+    fn own_parts(&self, lines: &mut AnswerLines) {
+        let parts = self.scenario.custom_parts().each();
+        if parts.is_empty() {
+            return;
+        }
+        let is_continuous = self.scenario.axis_count() == 1
+            && self.scenario.law.has_custom()
+            && !self.scenario.law.is_switching();
+        let judged = if is_continuous { "; a continuous law: it does not say that it switches" } else { "" };
+        lines.main("own parts", format!("{}{judged}", parts.join(", ")));
     }
 
     /// Adds the tuned parameter of an adaptation, and its objective if it is not the envelope.

@@ -26,7 +26,7 @@ class DisturbanceModel(OwnPart):
     >>> run = scenario.with_parts(disturbance=Drag()).simulate()
     """
 
-    period: float | None = None
+    period: float | str | None = None
     """Period (s) of the calls if a load gives no time; None for a disturbance whose loads all give one.
 
     >>> Drag().period
@@ -140,7 +140,7 @@ class CompiledDisturbance(Compiled, DisturbanceModel):
         self,
         function: object,
         *,
-        period: float | None = None,
+        period: float | str | None = None,
         points: Sequence[str] = (),
         states: Sequence[float] = (),
     ) -> None:
