@@ -29,8 +29,8 @@ impl FromStr for Units {
 #[derive(clap::Args, Copy, Clone, Default)]
 #[group(skip)]
 pub struct UnitsArgs {
-    /// Units of texts and figures: `engineering`, which fit the size of the numbers, `si`, or those named where they fit, such as
-    /// "deg, rpm, mN m"; JSON and logs are in SI units always
+    /// Units of texts and figures: `engineering`, which fit the size of the numbers, `si`, or units of choice for what they
+    /// measure, such as "deg, rpm, mN m"; JSON and logs are in SI units always
     #[arg(long, value_name = "UNITS", default_value = "engineering")]
     pub units: Units,
 }

@@ -11,7 +11,8 @@ pub fn key_axis(scenario: Option<&Scenario>, key: &str, values: impl IntoIterato
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let units = ReaderUnits::Engineering;
     let fitting = units.fitting(largest, unit);
-    let own_unit = scenario.map_or_else(|| fitting.clone(), |scenario| scenario.reader_unit(key, largest, units));
+    let own_unit =
+        scenario.map_or_else(|| fitting.clone(), |scenario| scenario.reader_unit(key, largest, units));
     let (name, own) = name_and_unit(key, unit);
     let axis = FigureAxis::around(&name, own, values);
     if own_unit == fitting || own.is_empty() { axis } else { axis.in_unit(own_unit) }

@@ -19,7 +19,8 @@ impl ChosenUnits {
     pub fn measuring(self, unit: &str, usual: &str) -> Option<(&'static str, f64)> {
         let is_alike = |name: &str| {
             // Frequencies, speeds of rotors and other rates have one SI unit, energies and torques one dimension.
-            let is_rate = unit != "rad/s" || [name, usual].contains(&unit) || Rate::named(name) == Rate::named(usual);
+            let is_rate =
+                unit != "rad/s" || [name, usual].contains(&unit) || Rate::named(name) == Rate::named(usual);
             is_rate && name.contains('J') == unit.contains('J')
         };
         let sized = |name: &&'static str| Some((*name, units_ratio(name, unit)?));
@@ -51,7 +52,8 @@ impl FromStr for ChosenUnits {
     /// Reads units that are separated by commas. They are kept for as long as the program runs: it reads them once.
     fn from_str(text: &str) -> Result<Self, String> {
         let text: &'static str = Box::leak(text.to_owned().into_boxed_str());
-        let names: Vec<&'static str> = text.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
+        let names: Vec<&'static str> =
+            text.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
         match names.iter().find(|name| units_ratio(name, name).is_none()) {
             Some(unknown) => Err(format!("`{unknown}` is not a unit{}", unknown_unit(unknown))),
             None if names.is_empty() => Err("names no unit".to_owned()),
@@ -86,7 +88,9 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_is_refused() {
-        for (text, why) in [("deg, arcsecond", "did you mean `arcsec`?"), ("deg, bla", "known are"), (" ,", "names no unit")] {
+        for (text, why) in
+            [("deg, arcsecond", "did you mean `arcsec`?"), ("deg, bla", "known are"), (" ,", "names no unit")]
+        {
             assert!(text.parse::<ChosenUnits>().is_err_and(|error| error.contains(why)), "{text}");
         }
     }

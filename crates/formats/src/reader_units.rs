@@ -448,7 +448,9 @@ mod tests {
 
     #[test]
     fn lengths_of_windows_are_whole_numbers_where_they_can_be() {
-        for (value, text) in [(0.02, "20 ms"), (0.5, "0.5 s"), (300.0, "300 s"), (10_800.0, "3 h"), (2.5e-5, "25 µs")] {
+        for (value, text) in
+            [(0.02, "20 ms"), (0.5, "0.5 s"), (300.0, "300 s"), (10_800.0, "3 h"), (2.5e-5, "25 µs")]
+        {
             assert_eq!(time_span(value), text);
         }
     }
@@ -519,7 +521,10 @@ mod tests {
         ] {
             assert_eq!(units.for_key(key, written, value, unit).quantity(value), text, "{key}");
         }
-        assert_eq!(ReaderUnits::Si.for_key("law.attitude.bandwidth", Some("Hz"), 1.0, "rad/s").quantity(1.0), "1 rad/s");
+        assert_eq!(
+            ReaderUnits::Si.for_key("law.attitude.bandwidth", Some("Hz"), 1.0, "rad/s").quantity(1.0),
+            "1 rad/s"
+        );
         // Metrics are frequencies as people know them.
         assert_eq!(units.for_metric("frequency_error_max_rad_s", 1.0, "rad/s").name, "Hz");
     }
@@ -537,7 +542,11 @@ mod tests {
             assert_eq!(unit.quantity(1e-5 * if unit.name == "mHz" { 1e3 } else { 1.0 }), text);
         }
         assert_eq!("rad".parse::<ReaderUnits>().expect("a unit").quantity(1e-7, "rad"), "1e-7 rad");
-        assert!("engineerin".parse::<ReaderUnits>().is_err_and(|why| why.contains("`engineering`, `si` or units")));
+        assert!(
+            "engineerin"
+                .parse::<ReaderUnits>()
+                .is_err_and(|why| why.contains("`engineering`, `si` or units"))
+        );
     }
 
     #[test]

@@ -74,7 +74,8 @@ mod _native {
     use super::error::{LogError, ScenarioError, SimulationError};
     #[pymodule_export]
     use super::figures::{
-        Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure, overlaid_figure,
+        Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
+        overlaid_figure,
     };
     #[pymodule_export]
     use super::files::{table_ending, write};

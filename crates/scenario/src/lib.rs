@@ -197,7 +197,9 @@ impl Scenario {
         study.requirements =
             requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
         match errors.into_iter().next() {
-            None => Ok(Self { written, model, plan: None, linear: None, study, units: WrittenUnits::default() }),
+            None => {
+                Ok(Self { written, model, plan: None, linear: None, study, units: WrittenUnits::default() })
+            }
             Some(error) => Err(error),
         }
     }

@@ -103,7 +103,12 @@ impl DampingArgs {
                 (row.decay_s, row.thrust_s) = (None, None);
             }
         }
-        Ok(DampingResults { timing, limit: timing.frequency_limit(), rows, units: self.output.choice.units() })
+        Ok(DampingResults {
+            timing,
+            limit: timing.frequency_limit(),
+            rows,
+            units: self.output.choice.units(),
+        })
     }
 }
 

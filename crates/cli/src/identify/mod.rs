@@ -150,7 +150,13 @@ impl IdentifyArgs {
         }
         bar.finish_and_clear();
         let (runs, whole) = (self.runs, CYCLE * f64::from(self.cycles));
-        Ok(IdentifyResults { sets, runs, whole, influence_off: self.influence_off, units: self.drawing.choice.units() })
+        Ok(IdentifyResults {
+            sets,
+            runs,
+            whole,
+            influence_off: self.influence_off,
+            units: self.drawing.choice.units(),
+        })
     }
 }
 

@@ -252,7 +252,9 @@ impl LoopMargins {
     fn print_worst(&self) {
         let row = |(kind, case): &(MarginKind, WorstCase)| {
             let (scale, unit): (fn(f64) -> f64, &str) = match (kind, self.units) {
-                (MarginKind::Gain, Units(units)) if units != ReaderUnits::Si => (|factor| 20.0 * factor.log10(), "dB"),
+                (MarginKind::Gain, Units(units)) if units != ReaderUnits::Si => {
+                    (|factor| 20.0 * factor.log10(), "dB")
+                }
                 _ => (|value| value, kind.unit()),
             };
             let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));

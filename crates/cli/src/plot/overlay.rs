@@ -19,7 +19,8 @@ const LEVEL: usize = 6;
 
 /// Returns the overlay of the named runs' figures, of two runs with their difference below; `None` if their panels differ.
 pub fn overlaid(subject: &str, runs: &[(String, impl Borrow<Figure>)]) -> Option<Figure> {
-    let runs: Vec<(&str, &Figure)> = runs.iter().map(|(name, figure)| (name.as_str(), figure.borrow())).collect();
+    let runs: Vec<(&str, &Figure)> =
+        runs.iter().map(|(name, figure)| (name.as_str(), figure.borrow())).collect();
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
@@ -174,7 +175,13 @@ fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<
     let (first, last) = (one.panels.first()?, one.panels.last()?);
     let pairs = curves(one).into_iter().zip(curves(other)).filter(|(one, other)| one.0 == other.0);
     let lines = pairs.filter_map(|((name, one), (_, other))| Some((name, subtracted(&other, &one)?)));
-    let lines: Vec<(String, Vec<Point>)> = lines.collect();
+    // A panel may show a part of another one again.
+    let lines = lines.fold(Vec::<(String, Vec<Point>)>::new(), |mut lines, line| {
+        if lines.iter().all(|(_, own)| *own != line.1) {
+            lines.push(line);
+        }
+        lines
+    });
     let y = FigureAxis::around(
         &format!("{b} − {a}"),
         first.y.unit,
@@ -261,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_difference_is_over_the_time_that_both_have() {
-        let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
+        let runs = [("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
         let both = overlaid("angle", &runs).expect("alike");
         let below = &both.panels[1];
         assert_eq!((below.y.name.as_str(), below.x.name.as_str()), ("b − a", "time"));
@@ -269,6 +276,14 @@ mod tests {
         let points = &below.layers[0].points;
         assert_eq!(points.len(), 11);
         assert!(points.iter().all(|(x, y)| (y - 0.5 * x).abs() < 1e-12), "{points:?}");
+        // A panel that shows the curve again adds nothing.
+        let twice = |mut figure: Figure| {
+            let (x, y, layers) = (&figure.panels[0].x, &figure.panels[0].y, &figure.panels[0].layers);
+            figure.panels.push(Panel::new(x.clone(), y.clone(), layers.clone()));
+            figure
+        };
+        let again = runs.map(|(name, figure)| (name, twice(figure)));
+        assert_eq!(overlaid("angle", &again).expect("alike").panels[2].layers.len(), 1);
         // Equal runs have none.
         let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(1.0, 10.0))];
         assert_eq!(overlaid("angle", &runs).expect("alike").panels.len(), 1);

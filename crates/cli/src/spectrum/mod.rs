@@ -191,8 +191,9 @@ impl SpectrumResults {
         let windows: Vec<(&OutputNoise, WindowRms)> =
             self.report.outputs.iter().filter_map(|output| Some((output, output.window?))).collect();
         let Some((_, first)) = windows.first() else { return };
-        let apart =
-            first.separation_s.map_or_else(String::new, |separation| format!(", {} apart", time_span(separation)));
+        let apart = first
+            .separation_s
+            .map_or_else(String::new, |separation| format!(", {} apart", time_span(separation)));
         say!("  indices over windows of {}{apart}, rms", time_span(first.window_s));
         let rows: Vec<Json> = windows.iter().map(|(output, window)| index_row(window, output)).collect();
         print_rows(&rows, &INDICES, self.units);

@@ -142,8 +142,7 @@ impl<'a> OutputWaterfall<'a> {
         let (label, unit) = name_and_unit(&readable(&self.output.output), &self.output.unit);
         let mut notes = Vec::new();
         if let (Some(within), Some(window)) = (&within, self.window()) {
-            let name =
-                format!("within windows of {}, rms", time_span(window));
+            let name = format!("within windows of {}, rms", time_span(window));
             layers.push(Layer::new(&name, colour::BLUE, LayerShape::Line(1.6), line(within)));
             values.extend(within);
             notes.extend(self.largest(within, colour::BLUE));

@@ -108,7 +108,12 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
         let search = MarginSearch { kind, opened: args.opened, most_loops: most };
         let case =
             search.run(scenario, stop_requested).map_err(|error| CliError::worst_case(&name, error))?;
-        return Ok(WorstCases { name, cases: vec![(case, None)], bounds: None, units: args.output.choice.units() });
+        return Ok(WorstCases {
+            name,
+            cases: vec![(case, None)],
+            bounds: None,
+            units: args.output.choice.units(),
+        });
     }
     let quantities = args.quantities(scenario)?;
     if quantities.is_empty() {

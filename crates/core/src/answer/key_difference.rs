@@ -42,7 +42,8 @@ impl KeyDifference {
             let values = [&first, &second].map(|leaves| leaves.get(key).cloned());
             let unit = scenarios.iter().find_map(|scenario| scenario.unit_of(key));
             let written = scenarios.iter().find_map(|scenario| scenario.written_unit(key));
-            let largest = values.iter().flatten().filter_map(number).fold(0.0, |most: f64, own| most.max(own.abs()));
+            let largest =
+                values.iter().flatten().filter_map(number).fold(0.0, |most: f64, own| most.max(own.abs()));
             let fitting = units.for_key(key, written, largest, unit.unwrap_or(""));
             Self { texts: texts(&values, &fitting), key: key.clone(), unit, values }
         };

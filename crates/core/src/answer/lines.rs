@@ -119,14 +119,19 @@ impl RunData<'_> {
             let objective = adaptation.objective();
             let unit = objective.unit(self.scenario.torque_unit());
             let both = [self.number("objective_initial"), self.number("objective_final")];
-            lines.main("objective", format!("{} {}", objective.key(), self.units.list(&both, " -> ", unit)));
+            lines.main(
+                "objective",
+                format!("{} {}", objective.key().replace('_', " "), self.units.list(&both, " -> ", unit)),
+            );
         }
         let end = match self.known("gain_frozen_at_s") {
             Some(frozen) => format!("frozen at {}", time(frozen)),
             None => "not frozen".to_owned(),
         };
-        let [first, last] = ["gain_initial", "gain_final"].map(|name| number(self.number(name)));
-        lines.main(adaptation.tunes(), format!("{first} -> {last}, {end}"));
+        let both = ["gain_initial", "gain_final"].map(|name| self.number(name));
+        let key = self.scenario.tuned_key().unwrap_or_default();
+        let unit = self.scenario.reader_unit(&key, both[0].abs().max(both[1].abs()), self.units);
+        lines.main(adaptation.tunes(), format!("{}, {end}", unit.list(&both, " -> ")));
     }
 
     /// Returns the consistency of a filter: NEES and NIS over the assessed time; `None` without a filter that is assessed.

@@ -1,7 +1,9 @@
 //! First screen of an answer: the verdict, requirements, warnings, then modes of operation or what else is known.
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, THIN_SPACE, number, rough_time, time, time_span};
+use flexsc_formats::reader_units::{
+    ReaderUnit, ReaderUnits, THIN_SPACE, number, rough_time, time, time_span,
+};
 use flexsc_formats::text_columns::{columns, widths};
 
 use super::Answer;
