@@ -109,7 +109,9 @@ def test_logs_and_subfigures(run: Result, tmp_path: Path) -> None:
     assert [axes.get_ylabel() for axes in left.axes] == ["gain k_t", "mean envelope (arcsec)"]
 
 
-def test_runs_are_drawn_over_each_other_as_by_the_command(run: Result, command: Command, tmp_path: Path) -> None:
+def test_runs_are_drawn_over_each_other_as_by_the_command(
+    run: Result, command: Command, tmp_path: Path
+) -> None:
     other = run.scenario.with_("law.relay.k_t", 0.34).simulate()
     for name, one in {"first": run, "second": other}.items():
         one.to_mcap(tmp_path / f"{name}.mcap")

@@ -280,7 +280,7 @@ def test_a_period_may_be_a_text() -> None:
     }.items():
         with pytest.raises(ValueError, match=why):
             of(period)
-    with pytest.raises(TypeError, match=r"period must be a time \(s\), such as 0.1 or \"0.1 s\", got list"):
+    with pytest.raises(TypeError, match=r"period must be a time \(s\), such as 0.1 or \"0.1 s\", got shape"):
         of([1.0])
 
 

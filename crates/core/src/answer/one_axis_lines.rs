@@ -62,9 +62,10 @@ impl RunData<'_> {
             return lines.main("limit cycle", format!("{kind}: the run is not periodic at its end"));
         };
         let multiplier = self.known("cycle_multiplier_max").map_or_else(String::new, |largest| {
-            let stability = if largest < 1.0 { "stable: deviations shrink" } else { "unstable: deviations grow" };
-                format!(", {stability} to {} in a period", number(largest))
-            });
+            let stability =
+                if largest < 1.0 { "stable: deviations shrink" } else { "unstable: deviations grow" };
+            format!(", {stability} to {} in a period", number(largest))
+        });
         lines.main("limit cycle", format!("{kind}, period {}{multiplier}", time(period)));
     }
 

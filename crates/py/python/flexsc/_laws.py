@@ -230,8 +230,8 @@ class CompiledLaw(Compiled, Law):
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
-        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a function
-            that always gives one.
+        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a
+            function that always gives one.
         states: Its states at the start of a run.
         promise: The distance from the goal (rad) within which it keeps the angle; None without a promise.
         switches: Whether its torque changes only together with its state, as for a relay.
@@ -290,8 +290,8 @@ class CompiledThreeAxisLaw(Compiled, ThreeAxisLaw):
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
-        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a function
-            that always gives one.
+        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a
+            function that always gives one.
         command: Whether its commands are torques (N m), accelerations (rad/s²) or magnetic moments (A m²).
         states: Its states at the start of a run.
         promise: The distance from the goal (rad) within which it keeps each angle; None without a promise.
