@@ -341,7 +341,7 @@ fn figures_show_what_was_identified_and_damped() {
     let dir = Dir::with(&["iss-ringdown"]);
     dir.run("simulate iss-ringdown.toml --set duration=60 --all").exits(0).says(&[
         "Hz (identified / true)",
-        "active damping   in",
+        "active damping   on in",
         "6 identified",
     ]);
     dir.run("plot iss-ringdown.mcap --format svg -o figures").exits(0);

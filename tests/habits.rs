@@ -185,7 +185,7 @@ fn force_and_units_are_in_every_verb_that_can_have_them() {
         command.get_subcommands().filter(|verb| has(verb, "units")).map(clap::Command::get_name).collect();
     let all = [
         "bound", "budget", "compare", "cycle", "damping", "identify", "map", "margins", "modes", "observer",
-        "plan", "serve", "simulate", "spectrum", "sweep", "tune", "worst",
+        "plan", "plot", "serve", "simulate", "spectrum", "sweep", "tune", "worst",
     ];
     assert_eq!(with, BTreeSet::from(all));
 }

@@ -84,7 +84,7 @@ fn a_log_that_cannot_be_repeated_is_answered_from_its_rows() {
     assert_eq!(from_rows.requirements[0].value, repeated.requirements[0].value);
     assert_eq!(from_rows.verdict, RunVerdict::Missed);
     let screen = from_rows.screen(None, ScreenOptions::default());
-    assert!(screen.contains("10 s, from rows every 0.500 s"), "{screen}");
+    assert!(screen.contains("10 s, from rows every 0.5 s"), "{screen}");
     // The body drifts away from its target: the row at the end has the largest error.
     let columns = log.columns("/pointing").expect("rows");
     let error = |row: usize| {

@@ -358,7 +358,7 @@ fn lines_of_wheels_have_indices_over_speed() {
         agree("RPE", number(&wheels["windows"][0][speed]["rpe_uniform"]), expected.sqrt(), 1e-9);
     }
     let text = dir.run(line).exits(0);
-    text.says(&["indices of these lines over windows of 0.02 s", "887.1 rpm"]);
+    text.says(&["indices of these lines over windows of 20 ms", "887.1 rpm"]);
     dir.run(&format!("{line} -o lines.csv")).exits(0);
     let table = String::from_utf8(dir.read("lines.csv")).expect("text");
     assert!(table.starts_with("speed_rad_s,yaw_rms,yaw_mpe,yaw_rpe_uniform,yaw_rpe_end"), "{table}");

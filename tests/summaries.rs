@@ -40,8 +40,24 @@ fn summaries_hold_what_applies_to_the_run() {
     );
     holds(
         &summary("iss-ringdown", "--all"),
-        &["Hz (identified / true)", "active damping   in"],
+        &["Hz (identified / true)", "active damping   on in"],
         &["as estimated"],
+    );
+    // What an adaptation tunes has the unit of its key.
+    holds(
+        &summary("adaptive-bandwidth", "--set duration=1000"),
+        &["bandwidth   0.0200 -> ", " rad/s, not frozen", "objective   pointing error rms "],
+        &[],
+    );
+    holds(
+        &summary("wheels-and-jets", ""),
+        &["propellant   0.369 g, all yaw; 106 pulses\n"],
+        &["in 106 cycles"],
+    );
+    holds(
+        &summary("relay-fixed", ""),
+        &["period 44.1 s, stable: deviations shrink to 0.795 in a period"],
+        &["largest multiplier"],
     );
 }
 
@@ -52,6 +68,7 @@ fn units_are_those_that_are_asked_for() {
     let dir = Dir::with(&["earth-observer"]);
     dir.run("modes earth-observer.toml").exits(0).says(&["Hz"]);
     dir.run("modes earth-observer.toml --units si").exits(0).says(&["rad/s"]);
+    dir.run("modes earth-observer.toml --units mHz").exits(0).says(&["mHz"]);
     dir.run("modes earth-observer.toml --units feet").exits(2).says(&["feet", "engineering", "si"]);
 }
 

@@ -44,7 +44,10 @@ fn axes_have_the_units_of_readers() {
         assert!(!names.is_empty(), "{line}");
         for name in names {
             for text in Drawing::at(&dir, &format!("figures/{name}")).texts() {
-                let unit = text.split_once('(').map_or("", |(_, unit)| unit);
+                // A frequency that a file has as a number is in rad/s.
+                let is_key =
+                    ["bandwidth (rad/s)", "].frequency (rad/s)"].iter().any(|end| text.ends_with(end));
+                let unit = if is_key { "" } else { &text }.split_once('(').map_or("", |(_, unit)| unit);
                 assert!(!unit.contains("rad"), "{line}, {name}: {text}");
             }
         }
@@ -70,6 +73,31 @@ fn figures_are_chosen_by_name_and_have_a_size_and_a_title() {
             .says(&["no figure is drawn", "-o"]);
     }
     dir.run("margins earth-observer.toml --width 2 -o figures").exits(2).says(&["30 to 400 mm"]);
+}
+
+#[test]
+fn axes_have_the_units_that_are_asked_for() {
+    let dir = Dir::with(&["earth-observer", "relay-fixed"]);
+    dir.run("simulate earth-observer.toml --log full -o run.mcap").exits(0);
+    // A rate of the body is not a speed of a wheel.
+    dir.run("plot run.mcap --what wheel,rates -o figures --format svg --units mrad,rpm,min").exits(0);
+    Drawing::read(&dir, "run-wheel").shows(&["wheel speed (rpm)", "pointing error (mrad)", "time (min)"]);
+    Drawing::read(&dir, "run-rates").shows(&["roll (deg/s)", "time (min)"]);
+    dir.run("plot run.mcap --what rates -o figures --format svg --units si").exits(0);
+    Drawing::read(&dir, "run-rates").shows(&["roll (rad/s)", "time (s)"]);
+    draw(&dir, "margins earth-observer.toml --what singular-values --units mHz");
+    Drawing::read(&dir, "earth-observer-singular-values").shows(&["frequency (mHz)"]);
+    // A text has them too, and a key that of the file.
+    let tune = "tune earth-observer.toml --nominal --vary law.attitude.bandwidth=0.05:0.3";
+    dir.run(tune).exits(0).says(&["law.attitude.bandwidth  0.1 rad/s"]);
+    dir.run(&format!("{tune} --units mHz")).exits(0).says(&["law.attitude.bandwidth  15.92 mHz"]);
+    let written = format!("{tune} --set law.attitude.bandwidth=0.02Hz");
+    dir.run(&written).exits(0).says(&["law.attitude.bandwidth  0.02 Hz"]);
+    dir.run(&format!("{tune} --units parsec"))
+        .exits(2)
+        .says(&["`parsec` is not a unit", "`engineering`, `si` or units"]);
+    let line = "plot run.mcap --what rates -o figures --units deg,mN";
+    dir.run(line).exits(2).says(&["no axis can be in `deg`", "hint: the axes are in s, deg/s"]);
 }
 
 #[test]

@@ -110,6 +110,25 @@ def test_logs_and_subfigures(run: Result, tmp_path: Path) -> None:
     assert [axes.get_ylabel() for axes in left.axes] == ["gain k_t", "mean envelope (arcsec)"]
 
 
+def test_runs_are_drawn_over_each_other_as_by_the_command(
+    run: Result, command: Command, tmp_path: Path
+) -> None:
+    other = run.scenario.with_("law.relay.k_t", 0.34).simulate()
+    for name, one in {"first": run, "second": other}.items():
+        one.to_mcap(tmp_path / f"{name}.mcap")
+    paths = [tmp_path / "first.mcap", tmp_path / "second.mcap"]
+    command("plot", *paths, "--what", "angle", "--format", "svg", "-o", tmp_path / "both")
+    drawn = (tmp_path / "both" / "first-angle.svg").read_text(encoding="utf-8")
+    for several in (paths, {"first": run, "second": other}):
+        assert plot.drawn(several, "angle").svg() == drawn
+    # Runs of one scenario are numbered.
+    figure = plot.figure([run, other], "angle")
+    assert figure.axes[-1].get_ylabel() == "relay-adaptive 2 \N{MINUS SIGN} relay-adaptive 1 (arcsec)"
+    assert plot.figures([run, other]) == plot.figures(run)
+    with pytest.raises(ValueError, match="have other axes"):
+        plot.figure([run, shipped("wheel-ekf").with_("duration", 30.0).simulate()], "angle")
+
+
 def test_campaigns_have_figures(command: Command, tmp_path: Path) -> None:
     sampled = shipped("relay-sampled").with_("duration", 1500.0)
     table = flexsc.campaign(sampled, runs=30, out=tmp_path / "study")

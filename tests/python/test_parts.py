@@ -268,6 +268,32 @@ def test_what_a_part_answers_is_checked() -> None:
         scenario.with_parts(law=Wrong(), adaptation=Descent(0.1))
 
 
+def test_a_period_may_be_a_text() -> None:
+    def of(period: object) -> flexsc.Scenario:
+        law = Pd(period, 4.0, 30.0, Notes())  # type: ignore[arg-type]
+        return flexsc.Scenario.parse(SMALL, "own").with_parts(law=law)
+
+    assert told(of(0.25)) == told(of("250 ms")) == told(of("0.25"))
+    for period, why in {
+        "0 s": "period must be longer than 0 s",
+        "2 deg": "period has the unit `deg`, expected a unit such as `s`",
+    }.items():
+        with pytest.raises(ValueError, match=why):
+            of(period)
+    with pytest.raises(TypeError, match=r"period must be a time \(s\), such as 0.1 or \"0.1 s\", got shape"):
+        of([1.0])
+
+
+def test_an_answer_names_own_parts() -> None:
+    scenario = shipped("relay-fixed").with_("duration", 600.0)
+    switching = scenario.with_parts(law=Relay.of(scenario)).simulate()
+    assert "own parts     law\n" in str(switching.answer)
+    continuous = flexsc.Scenario.parse(SMALL, "own").with_parts(law=Pd(0.25, 4.0, 30.0, Notes()))
+    both = str(flexsc.compare(scenario, continuous))
+    assert "B  law; a continuous law: it does not say that it switches" in both
+    assert "B  not in this run" in both
+
+
 def told(scenario: flexsc.Scenario) -> list[float]:
     """The torques of a run."""
     return list(scenario.simulate(log="full")["torque"]["feedback_nm"])

@@ -9,7 +9,7 @@ use flexsc_core::answer::{Answer, Observed, RunVerdict, ScreenOptions, ScreenSty
 use flexsc_core::metrics::Metrics;
 
 use crate::error::CliError;
-use crate::human::UnitsArgs;
+use crate::human::{Units, UnitsArgs};
 use crate::requirements;
 use crate::say;
 
@@ -33,8 +33,8 @@ pub struct AnswerArgs {
 
 impl AnswerArgs {
     /// Returns the options of a verb that has only units.
-    pub fn from_units(units: UnitsArgs) -> Self {
-        Self { units, ..Self::default() }
+    pub fn from_units(units: Units) -> Self {
+        Self { units: UnitsArgs { units }, ..Self::default() }
     }
 
     /// Returns the answer of a run.

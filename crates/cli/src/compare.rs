@@ -19,7 +19,6 @@ use crate::campaign::part_files;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::human::UnitsArgs;
 use crate::logged_answer::answer_of_log;
 use crate::results::print_lines;
 use crate::stop::stop_flag;
@@ -39,8 +38,6 @@ pub struct CompareArgs {
     /// Print one JSON object to stdout
     #[arg(long)]
     json: bool,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     drawing: FigureOutput,
     #[command(flatten)]
@@ -87,7 +84,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
         args.drawing.save(|| named.collect())?;
     }
     let scenarios = runs.each_ref().map(|run| &run.scenario);
-    let mut keys = KeyDifference::between(scenarios, args.units.units.into());
+    let mut keys = KeyDifference::between(scenarios, args.drawing.choice.units().into());
     for (side, path) in [first, second].into_iter().enumerate() {
         write_as_in_file(&mut keys, side, path, &args.set)?;
     }
@@ -108,7 +105,7 @@ fn campaigns(sides: [&Path; 2], args: &CompareArgs) -> Result<(), CliError> {
     }
     let opened = |path: &Path| Directory::open(path).map_err(part_files::failure);
     let directories = [opened(sides[0])?, opened(sides[1])?];
-    let units: ReaderUnits = args.units.units.into();
+    let units: ReaderUnits = args.drawing.choice.units().into();
     let answered = |directory: &Directory| {
         let work = directory.work();
         let runs = work.campaign_runs(|names| directory.columns(names)).map_err(part_files::failure)?;
@@ -129,7 +126,7 @@ fn campaigns(sides: [&Path; 2], args: &CompareArgs) -> Result<(), CliError> {
 
 impl CompareArgs {
     fn screen(&self) -> ScreenOptions {
-        AnswerArgs { all: self.all, ..AnswerArgs::from_units(self.units) }.screen()
+        AnswerArgs { all: self.all, ..AnswerArgs::from_units(self.drawing.choice.units()) }.screen()
     }
 }
 
@@ -181,7 +178,7 @@ fn source(path: &Path, args: &CompareArgs) -> Result<ComparedSource, CliError> {
 impl ComparedSource {
     /// Runs a scenario, or repeats the run of a log.
     fn compared(self, args: &CompareArgs) -> Result<ComparedRun, CliError> {
-        let units = args.units.units.into();
+        let units = args.drawing.choice.units().into();
         match self {
             Self::Scenario(path, scenario) => {
                 let mut observer = RunObserver::new(&scenario);

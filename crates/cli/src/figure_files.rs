@@ -11,7 +11,9 @@ use flexsc_figure::{Named, Style, is_figure, sheet};
 use rayon::prelude::*;
 use serde_json::json;
 
+use crate::axes_in_units::AxesInUnits;
 use crate::error::CliError;
+use crate::human::{Units, UnitsArgs};
 use crate::out::Out;
 use crate::quantity::in_unit;
 #[cfg(not(feature = "png"))]
@@ -34,6 +36,8 @@ pub struct FigureLook {
     /// Title above each figure
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
+    #[command(flatten)]
+    pub units: UnitsArgs,
 }
 
 impl FigureLook {
@@ -44,14 +48,20 @@ impl FigureLook {
         Ok(if self.title.is_some() { style.titled() } else { style })
     }
 
-    /// Returns the figures with the title that is asked for.
-    pub fn titled(&self, mut figures: Vec<Named>) -> Vec<Named> {
-        if let Some(title) = &self.title {
-            for (_, figure) in &mut figures {
+    /// Returns the figures with the title and the units that are asked for.
+    ///
+    /// # Errors
+    /// A unit in which no axis can be.
+    pub fn finished(&self, mut figures: Vec<Named>) -> Result<Vec<Named>, CliError> {
+        let mut in_units = AxesInUnits::new(self.units.units.0);
+        for (_, figure) in &mut figures {
+            if let Some(title) = &self.title {
                 figure.title.clone_from(title);
             }
+            in_units.show(figure);
         }
-        figures
+        in_units.finish().map_err(CliError::Arguments)?;
+        Ok(figures)
     }
 }
 
@@ -67,12 +77,17 @@ pub struct FigureChoice {
 }
 
 impl FigureChoice {
+    /// Returns the units of the text and of the figures.
+    pub fn units(&self) -> Units {
+        self.look.units.units
+    }
+
     /// Checks the options before there are figures; `is_drawn` is true if a place for them is given.
     ///
     /// # Errors
     /// An option of figures that are not drawn, and a size that no figure has.
     pub fn check(&self, is_drawn: bool) -> Result<(), CliError> {
-        let FigureLook { width, font, title } = &self.look;
+        let FigureLook { width, font, title, .. } = &self.look;
         let options = [
             ("--what", !self.what.is_empty()),
             ("--width", width.is_some()),
@@ -89,7 +104,7 @@ impl FigureChoice {
     /// Returns the figures that are asked for, of all that there are.
     ///
     /// # Errors
-    /// An analysis without figures, and a name that none of them has.
+    /// An analysis without figures, a name that none of them has, and a unit in which no axis can be.
     pub fn chosen(&self, all: Vec<Named>) -> Result<Vec<Named>, CliError> {
         if all.is_empty() {
             return Err(CliError::Arguments("-o: this analysis has no figures".to_owned()));
@@ -103,7 +118,7 @@ impl FigureChoice {
             )));
         }
         let is_asked = |name: &str| self.what.is_empty() || self.what.iter().any(|what| is_named(name, what));
-        Ok(self.look.titled(all.into_iter().filter(|(name, _)| is_asked(name)).collect()))
+        self.look.finished(all.into_iter().filter(|(name, _)| is_asked(name)).collect())
     }
 }
 

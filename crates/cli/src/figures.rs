@@ -12,6 +12,8 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour}
 use crate::memory_log;
 use crate::plot::{self, FigureKind};
 
+pub use crate::plot::overlaid;
+
 /// Returns the log, in memory and of this detail, of a run under these commands up to an instant.
 ///
 /// # Errors

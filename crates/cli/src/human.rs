@@ -1,36 +1,36 @@
 //! Numbers for people: four significant digits, in SI units or in units of a suitable size.
 
-use std::f64::consts::TAU;
+use std::borrow::Cow;
+use std::str::FromStr;
 
-use clap::ValueEnum;
 use flexsc_core::formats::reader_units::ReaderUnits;
 pub use flexsc_core::formats::reader_units::{four_digits as digits, rough_time as seconds};
 use flexsc_core::formats::text_columns;
 
-/// Units of what is printed for people; JSON, tables and logs have SI units always.
-#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Units {
-    /// Units that fit the size of the numbers: deg, arcsec, rpm, mN m, g
-    #[default]
-    Engineering,
-    /// SI units: rad, rad/s, N m, kg
-    Si,
-}
+/// Units of what is printed and drawn for people; JSON, tables and logs have SI units always.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct Units(pub ReaderUnits);
 
 impl From<Units> for ReaderUnits {
     fn from(units: Units) -> Self {
-        match units {
-            Units::Engineering => Self::Engineering,
-            Units::Si => Self::Si,
-        }
+        units.0
     }
 }
 
-/// The option of verbs that print quantities for people.
+impl FromStr for Units {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.parse().map(Self)
+    }
+}
+
+/// The option of verbs that print or draw quantities for people.
 #[derive(clap::Args, Copy, Clone, Default)]
 #[group(skip)]
 pub struct UnitsArgs {
-    /// Units of the text; JSON and logs are in SI units always
+    /// Units of texts and figures: `engineering`, which fit the size of the numbers, `si`, or units of choice for what they
+    /// measure, such as "deg, rpm, mN m"; JSON and logs are in SI units always
     #[arg(long, value_name = "UNITS", default_value = "engineering")]
     pub units: Units,
 }
@@ -58,23 +58,19 @@ impl Units {
 
     /// Returns the speed of a rotor (rad/s) with its unit.
     pub fn speed(self, value: f64) -> String {
-        match self {
-            Self::Engineering => format!("{} rpm", digits(value * 60.0 / TAU)),
-            Self::Si => self.quantity(value, "rad/s"),
-        }
+        let unit = self.0.rotor_speed();
+        format!("{} {}", digits(unit.value(value)), unit.name)
     }
 
     /// Returns the factor from rad/s, and the unit, of natural frequencies.
-    pub fn frequency(self) -> (f64, &'static str) {
-        match self {
-            Self::Engineering => (1.0 / TAU, "Hz"),
-            Self::Si => (1.0, "rad/s"),
-        }
+    pub fn frequency(self) -> (f64, Cow<'static, str>) {
+        let unit = self.0.frequency();
+        (unit.value(1.0), unit.name)
     }
 
     /// Returns the factor from SI for a value of this size, and the unit.
     fn scale(self, value: f64, unit: &str) -> (f64, String) {
-        let fitting = ReaderUnits::from(self).fitting(value, unit);
+        let fitting = self.0.fitting(value, unit);
         (fitting.value(1.0), fitting.name.into_owned())
     }
 }
@@ -104,6 +100,8 @@ pub fn columns(rows: &[Vec<String>], left_aligned: usize) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]
@@ -124,10 +122,10 @@ mod tests {
 
     #[test]
     fn units_are_those_that_are_asked_for() {
-        assert_eq!(Units::Engineering.quantity(1.979e-5, "rad"), "4.082 arcsec");
-        assert_eq!(Units::Si.quantity(1.979e-5, "rad"), "1.979e-5 rad");
-        assert_eq!(Units::Engineering.list(&[0.5e-3, 2.0], " -> ", "N m"), "5e-4 -> 2 N m");
-        assert_eq!(Units::Engineering.speed(TAU), "60 rpm");
-        assert_eq!(Units::Si.speed(TAU), "6.283 rad/s");
+        assert_eq!(Units::default().quantity(1.979e-5, "rad"), "4.082 arcsec");
+        assert_eq!(Units(ReaderUnits::Si).quantity(1.979e-5, "rad"), "1.979e-5 rad");
+        assert_eq!(Units::default().list(&[0.5e-3, 2.0], " -> ", "N m"), "5e-4 -> 2 N m");
+        assert_eq!(Units::default().speed(TAU), "60 rpm");
+        assert_eq!(Units(ReaderUnits::Si).speed(TAU), "6.283 rad/s");
     }
 }

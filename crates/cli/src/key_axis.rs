@@ -9,8 +9,11 @@ pub fn key_axis(scenario: Option<&Scenario>, key: &str, values: impl IntoIterato
     let unit = scenario.and_then(|scenario| scenario.unit_of(key)).unwrap_or_default();
     let values: Vec<f64> = values.into_iter().collect();
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let reader_unit = ReaderUnits::Engineering.for_key(key, largest, unit);
+    let units = ReaderUnits::Engineering;
+    let fitting = units.fitting(largest, unit);
+    let own_unit =
+        scenario.map_or_else(|| fitting.clone(), |scenario| scenario.reader_unit(key, largest, units));
     let (name, own) = name_and_unit(key, unit);
     let axis = FigureAxis::around(&name, own, values);
-    if unit == "rad/s" { axis.in_unit(reader_unit) } else { axis }
+    if own_unit == fitting || own.is_empty() { axis } else { axis.in_unit(own_unit) }
 }

@@ -2,6 +2,7 @@
 
 mod answer;
 mod at_rest;
+mod axes_in_units;
 mod bound;
 mod budget;
 mod campaign;

@@ -50,7 +50,7 @@ pub fn answer_of_log(log: &Log, path: &Path, units: ReaderUnits) -> Result<(Scen
     let mut observer = RunObserver::new(&story.scenario);
     // A run that did not end has no verdict to repeat.
     if log.metadata().get("end").is_some_and(|end| end == "complete") {
-        match story.repeat(log, path, "answer", &mut observer) {
+        match story.repeat(log, path, "rows of every control cycle", &mut observer) {
             Ok(metrics) => {
                 let answer = Answer::new(&story.scenario, &metrics, Some(&observer.finish()), units);
                 return Ok((story.scenario, answer));

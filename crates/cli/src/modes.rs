@@ -9,7 +9,6 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::spacecraft::body::{BodyAxes, Drive};
 use serde_json::{Value as Json, json};
@@ -103,7 +102,7 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
     };
     let largest =
         modes.accelerations_rad_s2.as_flattened().iter().fold(0.0, |most: f64, own| most.max(own.abs()));
-    let unit = ReaderUnits::from(style.units).fitting(largest, "rad/s²");
+    let unit = style.units.0.fitting(largest, "rad/s²");
     let mut rows = vec![texts(&["acceleration of the hub", "positive", "negative", &unit.name])];
     for ((axis, [plus, minus]), jets) in AXES.iter().zip(modes.accelerations_rad_s2).zip(jets) {
         let by = if jets { "by the jets" } else { "by a torque of 1 N m" };
@@ -114,7 +113,7 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
         return;
     }
     say!("  influence: elastic rate at the gyro for each rigid rate that {actuator} about the same axis");
-    let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
+    let mut rows = vec![texts(&["mode", &style.units.frequency().1, "period, s", "damping"])];
     rows[0].extend(AXES.map(str::to_owned));
     for index in 0..modes.dampings.len() {
         let mut row = vec![index.to_string()];
@@ -172,7 +171,7 @@ impl Results for OneAxisTable {
                 "inertia",
                 other.0,
             ]),
-            texts(&["", unit, "s", "", "", "k/w², s²", "", effective, unit]),
+            texts(&["", &unit, "s", "", "", "k/w², s²", "", effective, &unit]),
         ];
         for index in 0..modal.gains.len() {
             let mut row = vec![index.to_string()];

@@ -1,7 +1,6 @@
 //! Text tables of serialisable rows: headers, units and cells follow from the names of the fields, which end in their SI
 //! units.
 
-use std::f64::consts::TAU;
 use std::io::Write;
 
 use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
@@ -36,8 +35,8 @@ enum NumberForm<'a> {
     Named,
     /// Times a factor, in a unit that is given.
     Scaled(f64, &'a str),
-    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row, and its field `key`, or
-    /// else the number.
+    /// In the SI unit that the field `unit` of the row states; each cell has the unit that fits the row, its field `key` and the
+    /// unit in which this key is `written`, or else the number.
     OfRow,
     /// Factor on a gain, in dB, of which there is none for 0; a list of two is a range.
     Gain,
@@ -100,7 +99,7 @@ impl<'a> Column<'a> {
     fn scale(&self, rows: &[Json], units: Units) -> (f64, String) {
         let unit = match self.form {
             NumberForm::Scaled(factor, unit) => return (factor, unit.to_owned()),
-            NumberForm::Gain if units == Units::Engineering => return (1.0, "dB".to_owned()),
+            NumberForm::Gain if is_in_decibels(units) => return (1.0, "dB".to_owned()),
             NumberForm::Percent => return (100.0, "%".to_owned()),
             NumberForm::Gain | NumberForm::Decimals(_) | NumberForm::OfRow => return (1.0, String::new()),
             NumberForm::Named => {
@@ -111,10 +110,11 @@ impl<'a> Column<'a> {
         let is_of = |word: &str| unit == "rad/s" && self.field.contains(word);
         if is_of("frequenc") {
             let (factor, unit) = units.frequency();
-            return (factor, unit.to_owned());
+            return (factor, unit.into_owned());
         }
-        if is_of("speed") && units == Units::Engineering {
-            return (60.0 / TAU, "rpm".to_owned());
+        if is_of("speed") {
+            let unit = units.0.rotor_speed();
+            return (unit.value(1.0), unit.name.into_owned());
         }
         let mut numbers = Vec::new();
         rows.iter().filter_map(|row| self.cell(row)).for_each(|cell| collect(cell, &mut numbers));
@@ -135,12 +135,17 @@ impl<'a> Column<'a> {
             (Some(cell), form) => match (cell.as_f64(), form) {
                 (None, _) => "none".to_owned(),
                 (Some(gain), NumberForm::Gain) if gain <= 0.0 => "none".to_owned(),
-                (Some(gain), NumberForm::Gain) if units == Units::Engineering => digits(20.0 * gain.log10()),
+                (Some(gain), NumberForm::Gain) if is_in_decibels(units) => digits(20.0 * gain.log10()),
                 (Some(number), NumberForm::Decimals(count)) => format!("{number:.count$}"),
                 (Some(number), _) => digits(number * factor),
             },
         }
     }
+}
+
+/// Returns true if factors on a gain are in dB.
+fn is_in_decibels(units: Units) -> bool {
+    units.0 != ReaderUnits::Si
 }
 
 /// Appends the numbers of a cell.
@@ -209,7 +214,8 @@ fn largest_of_row(row: &Json, shown: &[Column<'_>]) -> f64 {
 /// Returns the unit of a row that fits numbers up to a size.
 fn unit_of_row(row: &Json, largest: f64, units: Units) -> ReaderUnit {
     let text = |name: &str| row.get(name).and_then(Json::as_str).unwrap_or_default();
-    ReaderUnits::from(units).for_key(text("key"), largest, text("unit"))
+    let written = row.get("written").and_then(Json::as_str);
+    units.0.for_key(text("key"), written, largest, text("unit"))
 }
 
 /// Returns an SI value as text in a unit.
@@ -219,6 +225,8 @@ fn quantity(si: f64, unit: &ReaderUnit) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]
@@ -241,8 +249,8 @@ mod tests {
             ["1", "90", "-2, 4", "", "roll"],
             ["0.1592", "none", "", "20", "yaw"],
         ];
-        assert_eq!(lines(&rows, &shown, Units::Engineering), expected);
-        let si = lines(&rows, &shown, Units::Si);
+        assert_eq!(lines(&rows, &shown, Units::default()), expected);
+        let si = lines(&rows, &shown, Units(ReaderUnits::Si));
         assert_eq!(si[2], ["rad/s", "rad", "N m", "", ""]);
         assert_eq!(si[3], ["6.283", "1.571", "-0.002, 0.004", "", "roll"]);
     }
@@ -259,12 +267,12 @@ mod tests {
             column("part", "c").decimals(1),
             column("value", "d").unit_of_row(),
         ];
-        let printed = lines(&rows, &shown, Units::Engineering);
+        let printed = lines(&rows, &shown, Units::default());
         assert_eq!(printed[1], ["per minute", "%", "", ""]);
         assert_eq!(printed[2], ["30", "25", "0.2", "0.5 N"]);
         // A number far below the others of its row.
         let rows = [json!({"value": 1e-7, "part": 1e-10, "unit": "rad"})];
         let shown = [column("value", "a").unit_of_row(), column("part", "b").unit_of_row()];
-        assert_eq!(lines(&rows, &shown, Units::Engineering)[1], ["0.02063 arcsec", "0.02063 mas"]);
+        assert_eq!(lines(&rows, &shown, Units::default())[1], ["0.02063 arcsec", "0.02063 mas"]);
     }
 }

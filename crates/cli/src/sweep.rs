@@ -260,7 +260,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        answer: AnswerArgs::from_units(args.units),
+        answer: AnswerArgs::from_units(args.units.units),
         observed: Arc::default(),
         scheduler,
         plain: detail.is_none(),

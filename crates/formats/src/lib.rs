@@ -3,6 +3,7 @@
 
 pub mod calendar_date;
 pub mod celestial_frame;
+pub mod chosen_units;
 pub mod count;
 pub mod csv_table;
 pub mod density_table;

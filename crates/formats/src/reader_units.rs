@@ -3,7 +3,9 @@
 
 use std::borrow::Cow;
 use std::f64::consts::PI;
+use std::str::FromStr;
 
+use crate::chosen_units::ChosenUnits;
 use crate::document::{unit_of_text, units_ratio};
 
 /// Units of what is printed for people; logs, tables and JSON values are in SI units always.
@@ -14,6 +16,23 @@ pub enum ReaderUnits {
     Engineering,
     /// SI units: rad, rad/s, N m, kg.
     Si,
+    /// Units that were asked for, where they measure the quantity, and else units that fit.
+    Chosen(ChosenUnits),
+}
+
+impl FromStr for ReaderUnits {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "engineering" => Ok(Self::Engineering),
+            "si" => Ok(Self::Si),
+            units => units
+                .parse()
+                .map(Self::Chosen)
+                .map_err(|why| format!("must be `engineering`, `si` or units such as `deg, mN m`: {why}")),
+        }
+    }
 }
 
 /// Unit in which a quantity is shown.
@@ -75,12 +94,25 @@ const FREQUENCIES: [&str; 2] = ["frequenc", "bandwidth"];
 const SPEED: &str = "speed";
 
 impl ReaderUnits {
+    /// Returns the unit in place of the usual one of a quantity, whose SI unit is given, if there is another one.
+    pub fn in_place_of(self, usual: &ReaderUnit, unit: &str) -> Option<ReaderUnit> {
+        match self {
+            Self::Engineering => None,
+            Self::Si => Some(ReaderUnit { is_si: true, ..ReaderUnit::plain(unit) }),
+            Self::Chosen(chosen) => {
+                let (name, size) = chosen.measuring(unit, &usual.name)?;
+                Some(ReaderUnit { name: name.into(), size, is_si: name == unit })
+            }
+        }
+    }
+
+    fn instead(self, usual: ReaderUnit, unit: &str) -> ReaderUnit {
+        self.in_place_of(&usual, unit).unwrap_or(usual)
+    }
+
     /// Returns the unit that fits the largest of some values of an SI unit.
     pub fn fitting(self, largest: f64, unit: &str) -> ReaderUnit {
-        match self {
-            Self::Engineering => ReaderUnit::fitting(largest, unit),
-            Self::Si => ReaderUnit { is_si: true, ..ReaderUnit::plain(unit) },
-        }
+        self.instead(ReaderUnit::fitting(largest, unit), unit)
     }
 
     /// Returns a value of an SI unit as text with a unit that fits its size.
@@ -97,42 +129,50 @@ impl ReaderUnits {
 
     /// Returns the unit of the speeds of rotors (rad/s).
     pub fn rotor_speed(self) -> ReaderUnit {
-        match self {
-            Self::Engineering => ReaderUnit { name: "rpm".into(), size: PI / 30.0, is_si: false },
-            Self::Si => self.fitting(1.0, "rad/s"),
-        }
+        self.instead(ReaderUnit { name: "rpm".into(), size: PI / 30.0, is_si: false }, "rad/s")
     }
 
     /// Returns the unit of natural frequencies (rad/s).
     pub fn frequency(self) -> ReaderUnit {
-        match self {
-            Self::Engineering => ReaderUnit { name: "Hz".into(), size: 2.0 * PI, is_si: false },
-            Self::Si => self.fitting(1.0, "rad/s"),
+        self.instead(ReaderUnit { name: "Hz".into(), size: 2.0 * PI, is_si: false }, "rad/s")
+    }
+
+    /// Returns the unit of values of a metric, the largest of which is given: Hz of frequencies, rpm of speeds of rotors, else
+    /// one that fits.
+    pub fn for_metric(self, name: &str, largest: f64, unit: &str) -> ReaderUnit {
+        match unit {
+            "rad/s" if is_frequency(name) => self.frequency(),
+            "rad/s" if last_name(name).contains(SPEED) => self.rotor_speed(),
+            _ => self.fitting(largest, unit),
         }
     }
 
-    /// Returns the unit of values of a scenario's key or of a metric, the largest of which is given: Hz of angular frequencies, rpm of speeds of
-    /// rotors, else one that fits.
-    pub fn for_key(self, key: &str, largest: f64, unit: &str) -> ReaderUnit {
-        let last = key.rsplit('.').next().unwrap_or_default();
-        let name = last.split('[').next().unwrap_or_default();
-        match unit {
-            "rad/s" if FREQUENCIES.iter().any(|own| name.contains(own)) => self.frequency(),
-            "rad/s" if name.contains(SPEED) => self.rotor_speed(),
-            _ => self.fitting(largest, unit),
+    /// Returns the unit of values of a scenario's key, the largest of which is given: that in which the key is `written`, or
+    /// else one that fits. A frequency without a unit is in rad/s, as the number in the file.
+    pub fn for_key(self, key: &str, written: Option<&str>, largest: f64, unit: &str) -> ReaderUnit {
+        match written.and_then(|name| ReaderUnit::written(name, unit)) {
+            Some(written) => self.instead(written, unit),
+            None if unit == "rad/s" && is_frequency(key) => self.instead(ReaderUnit::plain(unit), unit),
+            None => self.for_metric(key, largest, unit),
         }
     }
 
     /// Returns the unit in which a text such as `0.1 deg` is written, if it measures the SI unit, else one that fits the
     /// value.
     pub fn as_written(self, text: Option<&str>, value: f64, unit: &str) -> ReaderUnit {
-        let written = text.filter(|_| self == Self::Engineering).and_then(|text| {
-            // An angle in rad is read as one in deg or arcsec.
-            let name = unit_of_text(text).filter(|name| !name.contains("rad"))?;
-            Some(ReaderUnit { size: units_ratio(name, unit)?, name: name.to_owned().into(), is_si: false })
-        });
-        written.unwrap_or_else(|| self.fitting(value, unit))
+        let written = text.and_then(unit_of_text).and_then(|name| ReaderUnit::written(name, unit));
+        self.instead(written.unwrap_or_else(|| ReaderUnit::fitting(value, unit)), unit)
     }
+}
+
+/// Returns the name at the end of a path, without an index.
+fn last_name(path: &str) -> &str {
+    let last = path.rsplit('.').next().unwrap_or_default();
+    last.split('[').next().unwrap_or_default()
+}
+
+fn is_frequency(path: &str) -> bool {
+    FREQUENCIES.iter().any(|own| last_name(path).contains(own))
 }
 
 /// Units of times on an axis, with their sizes (s) and the longest axis (s) that has each.
@@ -154,6 +194,12 @@ impl ReaderUnit {
     /// Returns the size of the unit in SI.
     pub fn size(&self) -> f64 {
         self.size
+    }
+
+    /// Returns the unit of this name, if it measures the SI unit. An angle in rad is read as one in deg or arcsec.
+    fn written(name: &str, unit: &str) -> Option<Self> {
+        let name = Some(name).filter(|name| !name.contains("rad"))?;
+        Some(Self { size: units_ratio(name, unit)?, name: name.to_owned().into(), is_si: false })
     }
 
     fn plain(unit: &str) -> Self {
@@ -319,6 +365,11 @@ pub fn time(seconds: f64) -> String {
     format!("{} s", number(seconds))
 }
 
+/// Returns the length of a window or a period as text: `20 ms`, `0.5 s`, `300 s`, `3 h`.
+pub fn time_span(seconds: f64) -> String {
+    ReaderUnit::for_time_axis(seconds).exact(seconds)
+}
+
 /// Returns a duration, roughly: `3 ms`, `20 s`, `5 min`, `7 h`.
 pub fn rough_time(seconds: f64) -> String {
     match seconds {
@@ -396,6 +447,15 @@ mod tests {
     }
 
     #[test]
+    fn lengths_of_windows_are_whole_numbers_where_they_can_be() {
+        for (value, text) in
+            [(0.02, "20 ms"), (0.5, "0.5 s"), (300.0, "300 s"), (10_800.0, "3 h"), (2.5e-5, "25 µs")]
+        {
+            assert_eq!(time_span(value), text);
+        }
+    }
+
+    #[test]
     fn durations_are_rough() {
         let cases = [
             (3e-5, "1 ms"),
@@ -447,17 +507,46 @@ mod tests {
     }
 
     #[test]
-    fn keys_have_the_units_of_their_kind() {
+    fn keys_have_the_units_in_which_they_are_written() {
         let units = ReaderUnits::Engineering;
-        for (key, value, unit, text) in [
-            ("law.attitude.bandwidth", 2.0 * PI, "rad/s", "1 Hz"),
-            ("actuator.wheels.speeds[2]", PI, "rad/s", "30 rpm"),
-            ("spacecraft.rate[0]", DEGREE, "rad/s", "1 deg/s"),
-            ("sensor.gyro.frequency", 2.0, "N m", "2 N m"),
+        for (key, written, value, unit, text) in [
+            ("law.attitude.bandwidth", None, 0.1, "rad/s", "0.100 rad/s"),
+            ("law.attitude.bandwidth", Some("rad/s"), 0.1, "rad/s", "0.100 rad/s"),
+            ("law.attitude.bandwidth", Some("Hz"), 2.0 * PI, "rad/s", "1 Hz"),
+            ("actuator.wheels.speeds[2]", None, PI, "rad/s", "30 rpm"),
+            ("spacecraft.rate[0]", None, DEGREE, "rad/s", "1 deg/s"),
+            ("spacecraft.rate[0]", Some("rpm"), PI, "rad/s", "30 rpm"),
+            ("body.planar.angle", Some("arcmin"), DEGREE, "rad", "60 arcmin"),
+            ("sensor.gyro.frequency", None, 2.0, "N m", "2 N m"),
         ] {
-            assert_eq!(units.for_key(key, value, unit).quantity(value), text, "{key}");
+            assert_eq!(units.for_key(key, written, value, unit).quantity(value), text, "{key}");
         }
-        assert_eq!(ReaderUnits::Si.for_key("law.attitude.bandwidth", 1.0, "rad/s").quantity(1.0), "1 rad/s");
+        assert_eq!(
+            ReaderUnits::Si.for_key("law.attitude.bandwidth", Some("Hz"), 1.0, "rad/s").quantity(1.0),
+            "1 rad/s"
+        );
+        // Metrics are frequencies as people know them.
+        assert_eq!(units.for_metric("frequency_error_max_rad_s", 1.0, "rad/s").name, "Hz");
+    }
+
+    #[test]
+    fn units_that_are_asked_for_come_before_others() {
+        let units: ReaderUnits = "deg, mHz, mN m".parse().expect("units");
+        for (unit, text) in [
+            (units.as_written(Some("3 arcsec"), 1e-5, "rad"), "0.000573 deg"),
+            (units.frequency(), "1.59 mHz"),
+            (units.for_key("law.attitude.bandwidth", None, 1.0, "rad/s"), "1.59 mHz"),
+            (units.fitting(1.0, "N m"), "0.0100 mN m"),
+            (units.rotor_speed(), "0.0000955 rpm"),
+        ] {
+            assert_eq!(unit.quantity(1e-5 * if unit.name == "mHz" { 1e3 } else { 1.0 }), text);
+        }
+        assert_eq!("rad".parse::<ReaderUnits>().expect("a unit").quantity(1e-7, "rad"), "1e-7 rad");
+        assert!(
+            "engineerin"
+                .parse::<ReaderUnits>()
+                .is_err_and(|why| why.contains("`engineering`, `si` or units"))
+        );
     }
 
     #[test]

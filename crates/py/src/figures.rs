@@ -211,6 +211,16 @@ pub fn log_figure(py: Python<'_>, log: &Log, name: String, scenario: Option<&Sce
     Ok(Figure(Arc::new(figure.map_err(PyValueError::new_err)?)))
 }
 
+/// The figures of several runs, each with its name, over each other; of two with their difference.
+#[pyfunction]
+pub fn overlaid_figure(subject: &str, runs: Vec<(String, PyRef<'_, Figure>)>) -> PyResult<Figure> {
+    let runs: Vec<_> = runs.into_iter().map(|(name, figure)| (name, Arc::clone(&figure.0))).collect();
+    let why = "the figures of these runs have other axes, and cannot be drawn over each other";
+    figures::overlaid(subject, &runs)
+        .map(|figure| Figure(Arc::new(figure)))
+        .ok_or_else(|| PyValueError::new_err(why))
+}
+
 /// The figures of a campaign's columns: of a kind, or the natural ones.
 #[pyfunction]
 pub fn campaign_figures(

@@ -75,6 +75,7 @@ mod _native {
     #[pymodule_export]
     use super::figures::{
         Figure, campaign_figures, directory_figures, log_figure, log_figures, log_of, modes_figure,
+        overlaid_figure,
     };
     #[pymodule_export]
     use super::files::{table_ending, write};

@@ -1,6 +1,7 @@
 //! Requirement of a scenario as it is assessed: what is sampled, how often, and against which limit.
 
 use flexsc_control::operation::{Comparison, Expression, ModeQuantity, TimeWindow, Timed};
+use flexsc_formats::reader_units::time_span;
 use flexsc_numerics::time::{Instant, Span};
 
 use super::requirement::{ErrorAxis, Interpretation, PointingIndex, WindowConvention};
@@ -255,15 +256,15 @@ impl SampledError {
 
     fn description(&self) -> String {
         let period = self.period.seconds();
-        let seconds = |samples: u64| trimmed(samples as f64 * period);
+        let length = |samples: u64| time_span(samples as f64 * period);
         let index = match self.index {
             IndexWindow::Absolute => "APE".to_owned(),
-            IndexWindow::Mean { window } => format!("MPE over {} s", seconds(window)),
+            IndexWindow::Mean { window } => format!("MPE over {}", length(window)),
             IndexWindow::Relative { window, convention } => {
-                format!("RPE over {} s ({})", seconds(window), convention.word())
+                format!("RPE over {} ({})", length(window), convention.word())
             }
             IndexWindow::Difference { window, shift, index } => {
-                format!("{index} of {} s windows {} s apart", seconds(window), seconds(shift))
+                format!("{index} of windows of {}, {} apart", length(window), length(shift))
             }
         };
         let quantity = match &self.quantity {

@@ -55,8 +55,9 @@ impl Scenario {
     pub fn with(mut self, change: impl FnOnce(&mut ScenarioSpec)) -> Result<Self, ScenarioError> {
         change(&mut self.written);
         let origin = self.name.clone();
-        Self::fitted(self.written, self.model)
-            .map_err(|errors| ScenarioError::without_places(&origin, errors))
+        let fitted = Self::fitted(self.written, self.model)
+            .map_err(|errors| ScenarioError::without_places(&origin, errors))?;
+        Ok(Self { units: self.units, ..fitted })
     }
 
     /// Reads a scenario from a document with custom parts: for roles that the document leaves out, and for sensors and

@@ -69,6 +69,11 @@ impl ScenarioSpec {
         self.law.tunable().into_iter().find(|number| number.key == tunes).map(|number| number.value)
     }
 
+    /// Returns the key of the law's parameter that the adaptation tunes, such as `law.relay.k_t`; `None` without an adaptation.
+    pub fn tuned_key(&self) -> Option<String> {
+        Some(format!("{}.{}", self.law.key(), self.adaptation.as_ref()?.tunes()))
+    }
+
     fn adaptation_state(&self, seed: Seed) -> Option<AdaptationRun> {
         Some(AdaptationRun::new(self.adaptation.as_ref()?, self.tuned_parameter()?, seed))
     }

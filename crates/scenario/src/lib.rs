@@ -44,6 +44,7 @@ mod small_angle_checks;
 mod spec;
 mod title_block;
 pub mod uncertain;
+mod written_units;
 
 use std::ops::Deref;
 use std::path::Path;
@@ -55,6 +56,7 @@ use flexsc_control::sensor::SensorKind;
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
@@ -78,6 +80,7 @@ pub use requirement::{ErrorAxis, Interpretation, Limit, PointingIndex, Requireme
 pub use resolved::ResolvedScenario;
 pub use spec::ScenarioSpec;
 pub use title_block::TitleBlock;
+use written_units::WrittenUnits;
 
 /// A validated scenario: the keys as written, and the data resolved from them.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +95,7 @@ pub struct Scenario {
     pub linear: Option<Arc<LinearFlow>>,
     /// Data resolved from all parts together.
     pub study: ResolvedScenario,
+    units: WrittenUnits,
 }
 
 impl Deref for Scenario {
@@ -125,9 +129,12 @@ impl Scenario {
     }
 
     fn solved(document: &Document, parent: Option<&Self>, own: &CustomParts) -> Result<Self, ScenarioError> {
+        let units_written =
+            parent.map_or_else(|| WrittenUnits::of_table(document.table()), |parent| parent.units.clone());
         let document = &*document.in_si::<ScenarioSpec>(units)?;
         let (written, model) = Self::assembled(document, parent, own)?;
-        Self::fitted(written, model).map_err(|errors| document.at_keys(&errors))
+        let fitted = Self::fitted(written, model).map_err(|errors| document.at_keys(&errors))?;
+        Ok(Self { units: units_written, ..fitted })
     }
 
     /// Returns the keys of a document in SI units, with custom parts, and the model of the body.
@@ -192,7 +199,9 @@ impl Scenario {
         study.requirements =
             requirement_checks::assessed(&written, &model, study.assessment_period, &mut errors);
         match errors.into_iter().next() {
-            None => Ok(Self { written, model, plan: None, linear: None, study }),
+            None => {
+                Ok(Self { written, model, plan: None, linear: None, study, units: WrittenUnits::default() })
+            }
             Some(error) => Err(error),
         }
     }
@@ -361,6 +370,16 @@ impl Scenario {
     pub fn unit_of(&self, key: &str) -> Option<&'static str> {
         let unit = flexsc_formats::document::unit_at(units(), key)?;
         Some(if unit == "N m" && self.model.has_unit_inertia() { "rad/s²" } else { unit })
+    }
+
+    /// Returns the unit in which a key is written, such as Hz; `None` for a plain number.
+    pub fn written_unit(&self, key: &str) -> Option<&str> {
+        self.units.get(key)
+    }
+
+    /// Returns the unit in which people read values of a key, the largest of which is given.
+    pub fn reader_unit(&self, key: &str, largest: f64, units: ReaderUnits) -> ReaderUnit {
+        units.for_key(key, self.written_unit(key), largest, self.unit_of(key).unwrap_or_default())
     }
 }
 

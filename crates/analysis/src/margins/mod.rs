@@ -112,9 +112,12 @@ pub struct SignalMargins {
     /// Loop transfer over frequency: its value, or its eigenvalues for several samples in a period.
     #[serde(skip)]
     pub loci: Vec<LociValues>,
-    /// Loop transfer over the frequencies (rad/s) up to half the rate of the law.
+    /// Loop transfer at each angle of the grid.
     #[serde(skip)]
-    pub response: Vec<(f64, Complex<f64>)>,
+    transfers: Vec<(f64, DMatrix<Complex<f64>>)>,
+    /// Samples of the law in a period.
+    #[serde(skip)]
+    samples: LoopSamples,
 }
 
 /// Margin that is the inverse of a largest value over frequency.
@@ -210,11 +213,16 @@ impl SignalMargins {
             delay_s: delays.min_by(f64::total_cmp),
             modulus: sensitivity.modulus(own),
             disk: sensitivity.disk(own),
-            response: LoopSamples { period: transfer.period, count: transfer.samples }
-                .over_frequency(&transfers, &loci),
+            samples: LoopSamples { period: transfer.period, count: transfer.samples },
             crossings,
             loci,
+            transfers,
         }
+    }
+
+    /// Returns the loop transfer over the frequencies (rad/s) up to half the rate of the law.
+    pub fn response(&self) -> Vec<(f64, Complex<f64>)> {
+        self.samples.over_frequency(&self.transfers, &self.loci)
     }
 }
 

@@ -11,7 +11,7 @@ use super::frequency_response::unit_circle;
 use super::loci::{LociValues, eigenvector};
 
 /// Samples of a loop in a period.
-#[derive(Copy, Clone, Debug)]
+#[derive(Copy, Clone, Debug, PartialEq)]
 pub struct LoopSamples {
     /// Period (s).
     pub period: f64,

@@ -12,7 +12,7 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs, digits, outward_digits};
+use crate::human::{Units, digits, outward_digits};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, show, with_scenario_name};
@@ -25,8 +25,6 @@ const DIGITS: i32 = 6;
 pub struct BoundArgs {
     #[command(flatten)]
     pub scenario: scenario::ScenarioArgs,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     output: ResultOutput,
 }
@@ -41,7 +39,7 @@ pub struct OutputBounds {
 
 /// Computes the ranges of all claims of a scenario, as the command does.
 pub fn results(scenario: &Scenario, args: &BoundArgs) -> Result<OutputBounds, CliError> {
-    claims(scenario, args.units.units)
+    claims(scenario, args.output.choice.units())
 }
 
 /// Computes the ranges of all claims of a scenario.

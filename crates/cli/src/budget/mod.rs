@@ -14,6 +14,7 @@ use flexsc_core::analysis::budget::{
 };
 use flexsc_core::campaign::{Campaign, Design, RunOutcome};
 use flexsc_core::formats::count::counted;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::metrics::IndexRecord;
 use flexsc_core::requirement_verdict::{RequirementRuns, RequirementVerdict};
 use flexsc_core::scenario::{AssessedRequirement, RequirementSource, SampledError, Scenario};
@@ -24,7 +25,7 @@ use self::ensemble::Ensemble;
 use crate::answer::style;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
@@ -47,8 +48,6 @@ pub struct BudgetArgs {
     runs: u64,
     #[command(flatten)]
     runs_with: scenario::RunArgs,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     output: ResultOutput,
     #[command(flatten)]
@@ -87,7 +86,7 @@ pub fn run(args: &BudgetArgs) -> Result<(), CliError> {
 /// A scenario without a requirement on a pointing index, and a run that fails.
 pub fn pointing_budget(scenario: Scenario, runs: u64, jobs: u16) -> Result<PointingBudget, String> {
     let name = scenario.name.clone();
-    let setup = CampaignSetup { origin: name, runs, jobs, units: Units::Si, consent: None };
+    let setup = CampaignSetup { origin: name, runs, jobs, units: Units(ReaderUnits::Si), consent: None };
     let budgets = setup.budgets(scenario, |_, _| ()).map_err(|failure| failure.to_string())?;
     Ok(budgets.report())
 }
@@ -108,7 +107,7 @@ pub fn results(scenario: Scenario, args: &BudgetArgs) -> Result<Budgets, CliErro
         origin: args.scenario.scenario.display().to_string(),
         runs: args.runs,
         jobs: args.runs_with.threads(),
-        units: args.units.units,
+        units: args.output.choice.units(),
         consent: Some(args.consent),
     };
     setup.budgets(scenario, |_, _| ())

@@ -148,7 +148,7 @@ fn statistics_table(shown: &[&Statistics], units: ReaderUnits) -> String {
             .iter()
             .filter(|number| number.is_finite())
             .fold(0.0, |most: f64, own| most.max(own.abs()));
-        let unit = units.for_key(&s.name, largest, s.unit);
+        let unit = units.for_metric(&s.name, largest, s.unit);
         let mut row = vec![s.name.clone(), unit.name.to_string(), s.runs.to_string()];
         row.extend(
             numbers.iter().map(|value| if value.is_nan() { "-".to_owned() } else { unit.number(*value) }),

@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::grid::{PositiveGrid, grid_in};
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
 use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
@@ -46,8 +46,6 @@ pub struct DampingArgs {
     /// Amplitude below which no thruster fires (rad/s)
     #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude", value_parser = in_unit("rad/s"))]
     threshold: f64,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     output: ResultOutput,
     /// Print one JSON object to stdout
@@ -105,7 +103,12 @@ impl DampingArgs {
                 (row.decay_s, row.thrust_s) = (None, None);
             }
         }
-        Ok(DampingResults { timing, limit: timing.frequency_limit(), rows, units: self.units.units })
+        Ok(DampingResults {
+            timing,
+            limit: timing.frequency_limit(),
+            rows,
+            units: self.output.choice.units(),
+        })
     }
 }
 

@@ -16,7 +16,7 @@ use serde_json::{Value as Json, json};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::human::{Units, UnitsArgs};
+use crate::human::Units;
 use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::row_table::{Column, column, print_rows};
@@ -59,8 +59,6 @@ pub struct IdentifyArgs {
     seed: u64,
     #[command(flatten)]
     drawing: FigureOutput,
-    #[command(flatten)]
-    units: UnitsArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -152,7 +150,13 @@ impl IdentifyArgs {
         }
         bar.finish_and_clear();
         let (runs, whole) = (self.runs, CYCLE * f64::from(self.cycles));
-        Ok(IdentifyResults { sets, runs, whole, influence_off: self.influence_off, units: self.units.units })
+        Ok(IdentifyResults {
+            sets,
+            runs,
+            whole,
+            influence_off: self.influence_off,
+            units: self.drawing.choice.units(),
+        })
     }
 }
 

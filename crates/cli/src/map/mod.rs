@@ -15,7 +15,7 @@ use serde_json::{Value as Json, json};
 use crate::error::CliError;
 use crate::figure_files::{FigureChoice, FigureFormat, FigureOutput};
 use crate::grid::{PositiveGrid, grid_in};
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::out::Out;
 use crate::quantity::in_unit;
 use crate::results::{Results, show};
@@ -51,8 +51,6 @@ pub struct MapArgs {
     force: bool,
     #[command(flatten)]
     choice: FigureChoice,
-    #[command(flatten)]
-    units: UnitsArgs,
 }
 
 /// Map of a scenario's sampled loop.
@@ -114,7 +112,7 @@ impl MapArgs {
         };
         let gain = |frequency: f64| family.gain(frequency);
         let cells = map(&family.of, frequencies, periods, family.scaling, gain, window);
-        Ok(MapResults { name, cells, own, units: self.units.units, family })
+        Ok(MapResults { name, cells, own, units: self.choice.units(), family })
     }
 }
 

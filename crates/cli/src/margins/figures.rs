@@ -50,7 +50,7 @@ pub fn figures(name: &str, loops: &[SignalMargins], period: f64, mask: Option<&N
 impl LocusLine {
     fn new(one: &SignalMargins, period: f64, colour: RGBColor) -> Self {
         let mut last: Option<f64> = None;
-        let points = one.response.iter().map(|(frequency, value)| {
+        let points = one.response().into_iter().map(|(frequency, value)| {
             let phase = value.im.atan2(value.re);
             let phase = match last {
                 // The phase at the start is between -360 and 0 degrees.

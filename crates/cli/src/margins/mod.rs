@@ -13,6 +13,7 @@ use flexsc_core::analysis::scenario_margins::{MarginsFault, ScenarioMargins};
 use flexsc_core::analysis::settling_time::SETTLING_BAND;
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::ConfigError;
+use flexsc_core::formats::reader_units::ReaderUnits;
 use flexsc_core::worst_case::{MarginKind, MarginSearch, WorstCase, uncertain_box};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
@@ -23,7 +24,7 @@ use crate::at_rest::hinted;
 use crate::choice::choice;
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::number::number_or_none;
 use crate::results::{Results, show, with_scenario_name};
 use crate::row_table::{Column, column, print_rows};
@@ -48,8 +49,6 @@ pub struct MarginsArgs {
     /// exit code is 3 if a loop is within it
     #[arg(long, value_name = "GAIN,PHASE")]
     mask: Option<NicholsMask>,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     pub drawing: FigureOutput,
 }
@@ -94,7 +93,7 @@ pub fn results(scenario: &Scenario, args: &MarginsArgs) -> Result<LoopMargins, C
         };
         (mask, loops.iter().map(first).collect())
     });
-    Ok(LoopMargins { name, margins, worst, masked, units: args.units.units })
+    Ok(LoopMargins { name, margins, worst, masked, units: args.drawing.choice.units() })
 }
 
 pub fn run(args: &MarginsArgs) -> Result<(), CliError> {
@@ -253,7 +252,9 @@ impl LoopMargins {
     fn print_worst(&self) {
         let row = |(kind, case): &(MarginKind, WorstCase)| {
             let (scale, unit): (fn(f64) -> f64, &str) = match (kind, self.units) {
-                (MarginKind::Gain, Units::Engineering) => (|factor| 20.0 * factor.log10(), "dB"),
+                (MarginKind::Gain, Units(units)) if units != ReaderUnits::Si => {
+                    (|factor| 20.0 * factor.log10(), "dB")
+                }
                 _ => (|value| value, kind.unit()),
             };
             let keys = case.ranges.keys.iter().zip(case.key_values(case.worst));

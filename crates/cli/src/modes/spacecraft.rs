@@ -80,7 +80,7 @@ impl Spacecraft {
         );
         let mut rows = vec![texts(&[
             "mode",
-            style.units.frequency().1,
+            &style.units.frequency().1,
             "period, s",
             "damping",
             "kg x",

@@ -11,7 +11,7 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
-use crate::human::{Units, UnitsArgs};
+use crate::human::Units;
 use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::say;
@@ -43,8 +43,6 @@ pub struct ObserverArgs {
     kappa: Vec<f64>,
     #[command(flatten)]
     drawing: FigureOutput,
-    #[command(flatten)]
-    units: UnitsArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -96,7 +94,7 @@ impl ObserverArgs {
             convergence,
             regions: self.kappa.iter().map(region).collect(),
             margin: convergence.margin(),
-            units: self.units.units,
+            units: self.drawing.choice.units(),
         })
     }
 }

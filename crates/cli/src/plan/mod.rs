@@ -16,7 +16,6 @@ use flexsc_core::{Scenario, ScenarioError};
 
 use crate::error::CliError;
 use crate::figure_files::{FigureChoice, FigureFormat};
-use crate::human::UnitsArgs;
 use crate::quantity::in_unit;
 use crate::result_files::{ResultOutput, ResultTarget};
 use crate::results::{Results, show};
@@ -52,8 +51,6 @@ pub struct PlanArgs {
     /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
     coordinate: Option<String>,
-    #[command(flatten)]
-    units: UnitsArgs,
 }
 
 impl PlanArgs {
@@ -71,7 +68,7 @@ impl PlanArgs {
         let shown = chosen(self.coordinate.as_deref(), &body)?;
         let model = manoeuvre.planned_for(&body).into_owned();
         let name = scenario.written.name;
-        let units = self.units.units;
+        let units = self.choice.units();
         if self.compare {
             let common = ComparisonBasis::from_manoeuvre(&manoeuvre, limit, &plan);
             let rows = compare(&manoeuvre, common, &model, band);

@@ -9,7 +9,7 @@ use super::cycle_data::RowSource;
 use super::figure_spec::{FigureSpec, MotionPart, RunData};
 use super::motion::MotionData;
 use super::run_events::RunEvents;
-use super::{time, title, wheels};
+use super::{swings, time, title, wheels};
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "wheel",
@@ -41,7 +41,7 @@ pub fn speed_limit(story: &RunEvents) -> Option<f64> {
 
 fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
-    let x = time(0.0..story.end);
+    let x = time(swings(story));
     let panel = |x: FigureAxis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {
         let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
         let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();

@@ -6,6 +6,7 @@ use super::envelope::means;
 use super::figure_spec::{FigureSpec, MotionPart};
 use super::run_events::{RunEvents, WindowMean};
 use super::{time, title};
+use crate::key_axis::key_axis;
 
 pub const SPEC: FigureSpec = FigureSpec {
     name: "gain",
@@ -32,7 +33,9 @@ fn figure(story: &RunEvents) -> Figure {
         ("freeze", "frozen", colour::BLUE, LayerShape::Diamond),
     ];
     let tunes = story.tunes();
-    let y = FigureAxis::around(&format!("gain {tunes}"), "", line.iter().map(|(_, gain)| *gain));
+    let key = story.scenario.tuned_key().unwrap_or_default();
+    let mut y = key_axis(Some(&story.scenario), &key, line.iter().map(|(_, gain)| *gain));
+    y.name = if y.unit.is_empty() { format!("gain {tunes}") } else { tunes.to_owned() };
     let mut layers = vec![Layer::new(tunes, colour::BLACK, LayerShape::Line(1.2), line)];
     let marks =
         kinds.map(|(decision, name, colour, shape)| Layer::new(name, colour, shape, decided(decision)));

@@ -66,6 +66,7 @@ pub use figure_name::FigureName;
 use figure_name::FigureNameParser;
 use figure_spec::{FigureSpec, MotionPart, RunData};
 use motion::MotionData;
+pub use overlay::overlaid;
 pub use run_events::RunEvents;
 pub use title::readable;
 use title::title;
@@ -165,7 +166,7 @@ fn in_common(paths: &[&Path], runs: Vec<Vec<(String, Figure)>>) -> Result<Vec<(S
         }
         if same_kind.len() == paths.len() {
             let title = kind.replace('-', " ");
-            figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
+            figures.extend(overlaid(&title, &same_kind).map(|figure| (kind, figure)));
         }
     }
     if figures.is_empty() {
@@ -257,7 +258,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let figures =
         if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{kind}"), figure));
-    target.save(&args.look.titled(named.collect()), args.look.style()?, args.json)
+    target.save(&args.look.finished(named.collect())?, args.look.style()?, args.json)
 }
 
 /// Returns figures of a log over an interval of time, if given: the named ones, or all that it has.

@@ -1,5 +1,7 @@
 //! Overlay of the figures of several runs, and the difference of two.
 
+use std::borrow::Borrow;
+
 use flexsc_figure::{
     Figure, FigureAxis, Layer, LayerShape, Note, Panel, Point, RGBColor, Scale, Strip, colour,
 };
@@ -16,7 +18,9 @@ const OTHERS: f64 = 0.9;
 const LEVEL: usize = 6;
 
 /// Returns the overlay of the named runs' figures, of two runs with their difference below; `None` if their panels differ.
-pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
+pub fn overlaid(subject: &str, runs: &[(String, impl Borrow<Figure>)]) -> Option<Figure> {
+    let runs: Vec<(&str, &Figure)> =
+        runs.iter().map(|(name, figure)| (name.as_str(), figure.borrow())).collect();
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
@@ -30,11 +34,11 @@ pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
         return None;
     }
     let (panel_height, count) = (first.panel_height, first.panels.len());
-    let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
+    let names: Vec<&str> = runs.iter().map(|(name, _)| *name).collect();
     let title = format!("{subject}: {}", names.join(", "));
     let panel = |index: usize| -> Panel {
         let panels: Vec<(&str, &Panel)> =
-            runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
+            runs.iter().map(|(name, figure)| (*name, &figure.panels[index])).collect();
         let (x, y) = (axis(&panels, |panel| &panel.x), axis(&panels, |panel| &panel.y));
         let mut layers = layers(&panels, index == 0);
         // Vertical lines are as high as the panel.
@@ -45,8 +49,8 @@ pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
         Panel { notes: notes(&panels), strips: strips(&panels), ..Panel::new(x, y, layers) }
     };
     let mut panels: Vec<Panel> = (0..count).map(panel).collect();
-    if let [(a, one), (b, other)] = runs
-        && let Some(below) = difference((a, one), (b, other))
+    if let [one, other] = runs[..]
+        && let Some(below) = difference(one, other)
     {
         if let Some(last) = panels.last_mut() {
             last.x = last.x.unnamed();
@@ -171,7 +175,13 @@ fn difference((a, one): (&str, &Figure), (b, other): (&str, &Figure)) -> Option<
     let (first, last) = (one.panels.first()?, one.panels.last()?);
     let pairs = curves(one).into_iter().zip(curves(other)).filter(|(one, other)| one.0 == other.0);
     let lines = pairs.filter_map(|((name, one), (_, other))| Some((name, subtracted(&other, &one)?)));
-    let lines: Vec<(String, Vec<Point>)> = lines.collect();
+    // A panel may show a part of another one again.
+    let lines = lines.fold(Vec::<(String, Vec<Point>)>::new(), |mut lines, line| {
+        if lines.iter().all(|(_, own)| *own != line.1) {
+            lines.push(line);
+        }
+        lines
+    });
     let y = FigureAxis::around(
         &format!("{b} − {a}"),
         first.y.unit,
@@ -258,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_difference_is_over_the_time_that_both_have() {
-        let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
+        let runs = [("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(3.0, 5.0))];
         let both = overlaid("angle", &runs).expect("alike");
         let below = &both.panels[1];
         assert_eq!((below.y.name.as_str(), below.x.name.as_str()), ("b − a", "time"));
@@ -266,6 +276,14 @@ mod tests {
         let points = &below.layers[0].points;
         assert_eq!(points.len(), 11);
         assert!(points.iter().all(|(x, y)| (y - 0.5 * x).abs() < 1e-12), "{points:?}");
+        // A panel that shows the curve again adds nothing.
+        let twice = |mut figure: Figure| {
+            let (x, y, layers) = (&figure.panels[0].x, &figure.panels[0].y, &figure.panels[0].layers);
+            figure.panels.push(Panel::new(x.clone(), y.clone(), layers.clone()));
+            figure
+        };
+        let again = runs.map(|(name, figure)| (name, twice(figure)));
+        assert_eq!(overlaid("angle", &again).expect("alike").panels[2].layers.len(), 1);
         // Equal runs have none.
         let runs = vec![("a".to_owned(), figure(1.0, 10.0)), ("b".to_owned(), figure(1.0, 10.0))];
         assert_eq!(overlaid("angle", &runs).expect("alike").panels.len(), 1);

@@ -35,7 +35,9 @@ pub fn block(study: &Study, run: Option<&StudyRun>) -> String {
     });
     let body = match drawn {
         Some(figure) => format!("<div class=\"cols\">{figure}{table}</div>\n"),
-        None => table,
+        None => format!(
+            "{table}<p>Not drawn: the body is given by its inertia and its modes, without shapes.</p>\n"
+        ),
     };
     let model = run.and_then(|run| model_block::block(study, &run.log)).unwrap_or_default();
     body + &model + &command(&study.command("modes", ""))

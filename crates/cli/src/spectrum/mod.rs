@@ -15,7 +15,7 @@ use flexsc_core::analysis::noise::{
     NoiseError, NoiseReport, NoiseRequest, NoisyLoop, OutputNoise, Window, WindowRms,
 };
 use flexsc_core::formats::count::counted;
-use flexsc_core::formats::reader_units::ReaderUnit;
+use flexsc_core::formats::reader_units::time_span;
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -23,7 +23,7 @@ use serde_json::{Value as Json, json};
 use crate::at_rest::hinted;
 use crate::error::CliError;
 use crate::grid::{PositiveGrid, grid_in};
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
 use crate::quantity::in_unit;
 use crate::result_files::ResultOutput;
@@ -65,8 +65,6 @@ pub struct SpectrumArgs {
     /// Samples of a segment of the log [default: an eighth of the log]
     #[arg(long, value_name = "COUNT", requires = "log")]
     segment: Option<usize>,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     pub drawing: ResultOutput,
 }
@@ -130,7 +128,7 @@ pub fn results(scenario: &Scenario, args: &SpectrumArgs) -> Result<SpectrumResul
         window_s: args.window,
         pixel: args.pixel,
         over_speed: args.speeds.is_some(),
-        units: args.units.units,
+        units: args.drawing.choice.units(),
         name,
         report,
         welch,
@@ -193,9 +191,10 @@ impl SpectrumResults {
         let windows: Vec<(&OutputNoise, WindowRms)> =
             self.report.outputs.iter().filter_map(|output| Some((output, output.window?))).collect();
         let Some((_, first)) = windows.first() else { return };
-        let apart =
-            first.separation_s.map_or_else(String::new, |separation| format!(", {separation} s apart"));
-        say!("  indices over windows of {} s{apart}, rms", first.window_s);
+        let apart = first
+            .separation_s
+            .map_or_else(String::new, |separation| format!(", {} apart", time_span(separation)));
+        say!("  indices over windows of {}{apart}, rms", time_span(first.window_s));
         let rows: Vec<Json> = windows.iter().map(|(output, window)| index_row(window, output)).collect();
         print_rows(&rows, &INDICES, self.units);
     }
@@ -234,7 +233,7 @@ impl SpectrumResults {
         };
         let rows: Vec<Json> = self.report.outputs.iter().enumerate().filter_map(row).collect();
         let exposure = match self.window_s {
-            Some(window) => format!("exposures of {}", ReaderUnit::for_time_axis(window).quantity(window)),
+            Some(window) => format!("exposures of {}", time_span(window)),
             None => "a long exposure".to_owned(),
         };
         say!(

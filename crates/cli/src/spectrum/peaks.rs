@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use flexsc_core::formats::reader_units::time_span;
 use serde_json::{Value as Json, json};
 
 use super::waterfall::OutputWaterfall;
@@ -32,7 +33,8 @@ pub fn print(all: &[OutputWaterfall<'_>], units: Units) {
         return;
     }
     let window = all.iter().find_map(OutputWaterfall::window);
-    let within = window.map_or_else(String::new, |window| format!(", and within windows of {window} s"));
+    let within =
+        window.map_or_else(String::new, |window| format!(", and within windows of {}", time_span(window)));
     say!("  largest peaks over the speed, rms of all frequencies{within}");
     let columns = if window.is_some() { &PEAKS[..] } else { &PEAKS[..PEAKS.len() - 1] };
     print_rows(&rows, columns, units);

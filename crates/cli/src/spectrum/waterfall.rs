@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::noise::{NoiseReport, OutputNoise, SpectralLine, WheelSpectrum};
-use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, number};
+use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits, number, time_span};
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{
     Bar, Figure, FigureAxis, Layer, LayerShape, Named, Note, NoteSide, Panel, Point, colour, name_and_unit,
@@ -142,8 +142,7 @@ impl<'a> OutputWaterfall<'a> {
         let (label, unit) = name_and_unit(&readable(&self.output.output), &self.output.unit);
         let mut notes = Vec::new();
         if let (Some(within), Some(window)) = (&within, self.window()) {
-            let name =
-                format!("within windows of {}, rms", ReaderUnit::for_time_axis(window).quantity(window));
+            let name = format!("within windows of {}, rms", time_span(window));
             layers.push(Layer::new(&name, colour::BLUE, LayerShape::Line(1.6), line(within)));
             values.extend(within);
             notes.extend(self.largest(within, colour::BLUE));

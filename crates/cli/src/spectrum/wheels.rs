@@ -3,6 +3,7 @@
 use std::io::Write;
 
 use flexsc_core::analysis::noise::{NoiseReport, SpectralLine, WheelLines, WheelSpectrum, WindowRms};
+use flexsc_core::formats::reader_units::time_span;
 use serde_json::{Value as Json, json};
 
 use super::{INDICES, index_row};
@@ -71,8 +72,8 @@ fn print_windows(report: &NoiseReport, wheels: &WheelSpectrum, units: Units) {
     let rows: Vec<Json> = rows.collect();
     let Some(window) = wheels.windows.first().and_then(|over_speed| over_speed.first()) else { return };
     say!(
-        "  indices of these lines over windows of {} s, rms, at the speed of the largest RPE uniform",
-        window.window_s
+        "  indices of these lines over windows of {}, rms, at the speed of the largest RPE uniform",
+        time_span(window.window_s)
     );
     print_rows(&rows, &[&INDICES[..], &[column("speed_rad_s", "speed")]].concat(), units);
 }

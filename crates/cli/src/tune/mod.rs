@@ -14,7 +14,6 @@ use flexsc_core::analysis::sampled_loop::{ModelUncertainty, RobustGoal, RobustSe
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::grid::{PositiveGrid, SignedGrid, grid_in};
-use crate::human::UnitsArgs;
 use crate::quantity::in_unit;
 use crate::results::{Results, show};
 use crate::sampled_loop::{SettlingArgs, positive, sampled};
@@ -34,8 +33,6 @@ pub struct TuneArgs {
     structured: structured::StructuredArgs,
     #[command(flatten)]
     single_axis: SingleAxisArgs,
-    #[command(flatten, next_help_heading = "Text and figures")]
-    units: UnitsArgs,
     #[command(flatten, next_help_heading = "Text and figures")]
     drawing: FigureOutput,
 }
@@ -125,7 +122,7 @@ impl TuneArgs {
                 }
             }
         };
-        Ok(TuneResults { tuning, found, units: self.units.units })
+        Ok(TuneResults { tuning, found, units: self.drawing.choice.units() })
     }
 
     /// Returns the search for gains that are admissible with a relative model error.
@@ -161,7 +158,7 @@ pub fn run(args: &TuneArgs) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
     if args.structured.is_asked_for() {
         let scenario = args.scenario.load()?;
-        let tuned = args.structured.results(&scenario, args.units.units)?;
+        let tuned = args.structured.results(&scenario, args.drawing.choice.units())?;
         args.structured.save(&tuned, &args.scenario, args.drawing.force)?;
         return show(&tuned, Some(&args.drawing), args.scenario.json);
     }

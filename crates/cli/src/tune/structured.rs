@@ -11,7 +11,7 @@ use flexsc_core::analysis::structured_tuning::{
 };
 use flexsc_core::formats::count::counted;
 use flexsc_core::formats::document::{ConfigError, is_number};
-use flexsc_core::formats::reader_units::{ReaderUnits, number, time};
+use flexsc_core::formats::reader_units::{number, time};
 use flexsc_core::{Scenario, ScenarioError};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour};
 use serde_json::{Value as Json, json};
@@ -221,7 +221,7 @@ impl StructuredResults {
         let each = self.found.loops.plant(index).into_iter();
         let values: Vec<String> = each
             .map(|(key, value)| {
-                let unit = ReaderUnits::from(self.units).for_key(key, value.abs(), self.unit_of(key));
+                let unit = self.scenario.reader_unit(key, value.abs(), self.units.0);
                 format!("{key} = {}", unit.quantity(value))
             })
             .collect();
@@ -373,6 +373,7 @@ impl Results for StructuredResults {
         let row = |own: &KeyChange| {
             let mut row = json!(own);
             row["unit"] = json!(self.unit_of(&own.key));
+            row["written"] = json!(self.scenario.written_unit(&own.key));
             row
         };
         print_rows(&report.keys.iter().map(row).collect::<Vec<_>>(), &KEYS, self.units);

@@ -21,7 +21,7 @@ use crate::campaign::part_files;
 use crate::choice::choice;
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::{Units, UnitsArgs, digits};
+use crate::human::{Units, digits};
 use crate::number_table::NumberTable;
 use crate::result_files::ResultOutput;
 use crate::results::{Results, print_lines, with_scenario_name};
@@ -56,8 +56,6 @@ pub struct WorstArgs {
     campaign: Option<PathBuf>,
     #[command(flatten)]
     runs: scenario::RunArgs,
-    #[command(flatten)]
-    units: UnitsArgs,
     #[command(flatten)]
     output: ResultOutput,
     #[command(flatten)]
@@ -115,7 +113,12 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
         let search = MarginSearch { kind, opened: args.opened, most_loops: most };
         let case =
             search.run(scenario, stop_requested).map_err(|error| CliError::worst_case(&name, error))?;
-        return Ok(WorstCases { name, cases: vec![(case, None)], bounds: None, units: args.units.units });
+        return Ok(WorstCases {
+            name,
+            cases: vec![(case, None)],
+            bounds: None,
+            units: args.output.choice.units(),
+        });
     }
     let quantities = args.quantities(scenario)?;
     if quantities.is_empty() {
@@ -123,7 +126,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
             name,
             cases: Vec::new(),
             bounds: args.claims(scenario)?,
-            units: args.units.units,
+            units: args.output.choice.units(),
         });
     }
     let origin = args.scenario.scenario.display().to_string();
@@ -161,7 +164,7 @@ pub fn results(scenario: &Scenario, args: &WorstArgs) -> Result<WorstCases, CliE
         cases.push((case, requirement));
     }
     let bounds = args.claims(scenario)?;
-    Ok(WorstCases { name, cases, bounds, units: args.units.units })
+    Ok(WorstCases { name, cases, bounds, units: args.output.choice.units() })
 }
 
 impl WorstArgs {
@@ -193,7 +196,7 @@ impl WorstArgs {
     fn claims(&self, scenario: &Scenario) -> Result<Option<OutputBounds>, CliError> {
         let stands =
             !scenario.written.bound.is_empty() && self.metric.is_none() && self.requirement.is_none();
-        stands.then(|| bound::claims(scenario, self.units.units)).transpose()
+        stands.then(|| bound::claims(scenario, self.output.choice.units())).transpose()
     }
 }
 
@@ -255,6 +258,7 @@ impl WorstCases {
             json!({
                 "key": own.key, "nominal": own.nominal_number(), "worst": value, "range": own.limits(),
                 "unit": case.witness.unit_of(&own.key),
+                "written": case.witness.written_unit(&own.key),
             })
         };
         print_rows(&keys.map(row).collect::<Vec<_>>(), &KEYS, self.units);

@@ -358,7 +358,9 @@ fn requirement(
     let met_share = MetShare::new(*runs_met, verdict.runs);
     let row = runs.requirements.numbers().iter().position(|number| number == run);
     let met: Vec<bool> = (0..values.len()).map(|row| runs.requirements.is_met(index, row)).collect();
-    let driven_by = driving_keys(&runs.keys, values, &met, row.zip(Some(*run)), |key| scenario.unit_of(key));
+    let driven_by = driving_keys(&runs.keys, values, &met, row.zip(Some(*run)), |key, size| {
+        scenario.reader_unit(key, size, units).quantity(size)
+    });
     CampaignRequirement {
         id: requirement_id(index),
         name: requirement.name.clone(),

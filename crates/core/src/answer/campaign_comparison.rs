@@ -45,7 +45,7 @@ impl CampaignComparison {
         for (name, both) in paired(all, |own| own.name).into_iter().take(shown) {
             let largest = both.iter().flatten().map(|own| own.largest.abs().max(own.median.abs()));
             let unit = both.iter().flatten().next().map_or("", |own| own.unit);
-            let unit = options.units.for_key(name, largest.fold(0.0, f64::max), unit);
+            let unit = options.units.for_metric(name, largest.fold(0.0, f64::max), unit);
             for (side, own) in both.into_iter().enumerate() {
                 let head = if side == 0 { name } else { "" };
                 let cells = own.map_or_else(

@@ -1,6 +1,6 @@
 //! Uncertain keys that drive a requirement: rank correlations, and the deviations within which all runs meet it.
 
-use flexsc_formats::reader_units::{ReaderUnits, number, percent};
+use flexsc_formats::reader_units::{number, percent};
 use serde::Serialize;
 
 use crate::campaign::UncertainValues;
@@ -31,13 +31,13 @@ pub struct DrivingKey {
 }
 
 /// Returns the keys that drive a requirement, the one with the largest correlation first, from its value in each run and
-/// whether the run meets it; `worst` is the row of the worst run with its number.
+/// whether the run meets it; `worst` is the row of the worst run with its number, and `quantity` the text of a key's value.
 pub(super) fn driving_keys(
     keys: &[UncertainValues],
     values: &[f64],
     met: &[bool],
     worst: Option<(usize, u64)>,
-    unit: impl Fn(&str) -> Option<&'static str>,
+    quantity: impl Fn(&str, f64) -> String,
 ) -> Vec<DrivingKey> {
     let count = values.iter().filter(|value| !value.is_nan()).count();
     if count < FEWEST {
@@ -47,7 +47,7 @@ pub(super) fn driving_keys(
     let mut found: Vec<DrivingKey> = keys
         .iter()
         .filter(|own| own.values.len() == values.len())
-        .map(|own| driving_key(own, (values, met), worst, unit(&own.key)))
+        .map(|own| driving_key(own, (values, met), worst, |size| quantity(&own.key, size)))
         .filter(|own| own.size() >= least)
         .collect();
     found.sort_by(|a, b| b.size().total_cmp(&a.size()));
@@ -64,7 +64,7 @@ fn driving_key(
     own: &UncertainValues,
     (values, met): (&[f64], &[bool]),
     worst: Option<(usize, u64)>,
-    unit: Option<&'static str>,
+    quantity: impl Fn(f64) -> String,
 ) -> DrivingKey {
     let is_relative = own.design != 0.0;
     let deviation = |value: &f64| if is_relative { (value - own.design) / own.design } else { *value };
@@ -79,11 +79,7 @@ fn driving_key(
     let farthest_met = sizes_where(true).fold(f64::NAN, f64::max);
     let largest = sizes.iter().copied().fold(0.0, f64::max);
     let none_beyond = met_within.and(Some(farthest_met)).filter(|size| *size < largest);
-    let shown = |size: f64| match unit {
-        _ if is_relative => percent_of(size),
-        Some(unit) => ReaderUnits::Engineering.quantity(size, unit),
-        None => number(size),
-    };
+    let shown = |size: f64| if is_relative { percent_of(size) } else { quantity(size) };
     let within = match (met_within, none_beyond) {
         _ if deviation_correlation.abs() < rank_correlation.abs() => None,
         (Some(within), Some(beyond)) if is_relative => Some(format!(
@@ -177,7 +173,7 @@ mod tests {
             key("mass", values.iter().map(|value| 100.0 + value).collect()),
         ];
         let met: Vec<bool> = errors.iter().map(|error| *error <= 20.0).collect();
-        let found = driving_keys(&keys, &errors, &met, Some((0, 40)), |_| None);
+        let found = driving_keys(&keys, &errors, &met, Some((0, 40)), |_, size| size.to_string());
         assert_eq!(found.len(), 1);
         let first = &found[0];
         assert!(first.rank_correlation.abs() < 1e-12 && (first.deviation_correlation - 1.0).abs() < 1e-12);

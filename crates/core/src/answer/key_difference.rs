@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use flexsc_formats::reader_units::ReaderUnits;
+use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits};
 use flexsc_scenario::Scenario;
 use serde::Serialize;
 use toml::Value;
@@ -17,7 +17,7 @@ pub struct KeyDifference {
     pub unit: Option<&'static str>,
     /// Value in each scenario, in SI; null in a scenario that lacks the key.
     pub values: [Option<Value>; 2],
-    /// Values as they are written, or in the reader's units; empty in a scenario that lacks the key.
+    /// Values in the unit in which the key is written, or else in the reader's; empty in a scenario that lacks the key.
     pub texts: [String; 2],
 }
 
@@ -41,7 +41,11 @@ impl KeyDifference {
         let difference = |key: &String| {
             let values = [&first, &second].map(|leaves| leaves.get(key).cloned());
             let unit = scenarios.iter().find_map(|scenario| scenario.unit_of(key));
-            Self { texts: texts(key, &values, unit, units), key: key.clone(), unit, values }
+            let written = scenarios.iter().find_map(|scenario| scenario.written_unit(key));
+            let largest =
+                values.iter().flatten().filter_map(number).fold(0.0, |most: f64, own| most.max(own.abs()));
+            let fitting = units.for_key(key, written, largest, unit.unwrap_or(""));
+            Self { texts: texts(&values, &fitting), key: key.clone(), unit, values }
         };
         keys.into_iter().map(difference).collect()
     }
@@ -67,10 +71,8 @@ fn collect(path: String, value: Value, leaves: &mut BTreeMap<String, Value>) {
 }
 
 /// Returns two values as texts, of numbers with as many digits as show that they differ.
-fn texts(key: &str, values: &[Option<Value>; 2], unit: Option<&str>, units: ReaderUnits) -> [String; 2] {
+fn texts(values: &[Option<Value>; 2], fitting: &ReaderUnit) -> [String; 2] {
     let numbers = values.each_ref().map(|value| value.as_ref().and_then(number));
-    let largest = numbers.iter().flatten().fold(0.0, |most: f64, number| most.max(number.abs()));
-    let fitting = units.for_key(key, largest, unit.unwrap_or(""));
     [0, 1].map(|place| match (&values[place], numbers[place]) {
         (None, _) => String::new(),
         (Some(_), Some(number)) => {

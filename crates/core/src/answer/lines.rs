@@ -89,6 +89,7 @@ impl RunData<'_> {
     /// Returns what else is known of the run.
     pub fn lines(&self) -> Vec<Line> {
         let mut lines = AnswerLines::default();
+        self.own_parts(&mut lines);
         if self.scenario.axis_count() == 3 {
             self.three_axis_lines(&mut lines);
         } else {
@@ -98,6 +99,19 @@ impl RunData<'_> {
         lines.0
     }
 
+    /// Adds the roles of parts that a program supplied.
+    fn own_parts(&self, lines: &mut AnswerLines) {
+        let parts = self.scenario.custom_parts().each();
+        if parts.is_empty() {
+            return;
+        }
+        let is_continuous = self.scenario.axis_count() == 1
+            && self.scenario.law.has_custom()
+            && !self.scenario.law.is_switching();
+        let judged = if is_continuous { "; a continuous law: it does not say that it switches" } else { "" };
+        lines.main("own parts", format!("{}{judged}", parts.join(", ")));
+    }
+
     /// Adds the tuned parameter of an adaptation, and its objective if it is not the envelope.
     fn adaptation(&self, lines: &mut AnswerLines) {
         let Some(adaptation) = &self.scenario.adaptation else { return };
@@ -105,14 +119,19 @@ impl RunData<'_> {
             let objective = adaptation.objective();
             let unit = objective.unit(self.scenario.torque_unit());
             let both = [self.number("objective_initial"), self.number("objective_final")];
-            lines.main("objective", format!("{} {}", objective.key(), self.units.list(&both, " -> ", unit)));
+            lines.main(
+                "objective",
+                format!("{} {}", objective.key().replace('_', " "), self.units.list(&both, " -> ", unit)),
+            );
         }
         let end = match self.known("gain_frozen_at_s") {
             Some(frozen) => format!("frozen at {}", time(frozen)),
             None => "not frozen".to_owned(),
         };
-        let [first, last] = ["gain_initial", "gain_final"].map(|name| number(self.number(name)));
-        lines.main(adaptation.tunes(), format!("{first} -> {last}, {end}"));
+        let both = ["gain_initial", "gain_final"].map(|name| self.number(name));
+        let key = self.scenario.tuned_key().unwrap_or_default();
+        let unit = self.scenario.reader_unit(&key, both[0].abs().max(both[1].abs()), self.units);
+        lines.main(adaptation.tunes(), format!("{}, {end}", unit.list(&both, " -> ")));
     }
 
     /// Returns the consistency of a filter: NEES and NIS over the assessed time; `None` without a filter that is assessed.

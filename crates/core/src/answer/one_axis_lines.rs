@@ -61,9 +61,11 @@ impl RunData<'_> {
         let Some(period) = self.known("cycle_period_s") else {
             return lines.main("limit cycle", format!("{kind}: the run is not periodic at its end"));
         };
-        let multiplier = self
-            .known("cycle_multiplier_max")
-            .map_or_else(String::new, |largest| format!(", largest multiplier {}", number(largest)));
+        let multiplier = self.known("cycle_multiplier_max").map_or_else(String::new, |largest| {
+            let stability =
+                if largest < 1.0 { "stable: deviations shrink" } else { "unstable: deviations grow" };
+            format!(", {stability} to {} in a period", number(largest))
+        });
         lines.main("limit cycle", format!("{kind}, period {}{multiplier}", time(period)));
     }
 

@@ -112,7 +112,7 @@ impl RunComparison {
         for (head, both) in shown {
             for (side, own) in both.into_iter().enumerate() {
                 let head = if side == 0 { head } else { "" };
-                let text = own.map_or("none", |own| own.text.as_str());
+                let text = own.map_or("not in this run", |own| own.text.as_str());
                 let line = format!("  {head:<widest$}  {}  {text}", SIDES[side]);
                 lines.extend(wrapped(&line, options.width, widest + 7));
             }

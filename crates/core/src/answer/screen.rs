@@ -1,7 +1,9 @@
 //! First screen of an answer: the verdict, requirements, warnings, then modes of operation or what else is known.
 
 use flexsc_formats::count::counted;
-use flexsc_formats::reader_units::{ReaderUnit, ReaderUnits, THIN_SPACE, number, rough_time, time};
+use flexsc_formats::reader_units::{
+    ReaderUnit, ReaderUnits, THIN_SPACE, number, rough_time, time, time_span,
+};
 use flexsc_formats::text_columns::{columns, widths};
 
 use super::Answer;
@@ -81,7 +83,7 @@ impl Answer {
         let first = format!("{}   {}", self.scenario, self.verdict_text);
         let duration = time(self.duration_s);
         let took = match (self.from_rows_s, took) {
-            (Some(period), _) => format!("{duration}, from rows every {}", time(period)),
+            (Some(period), _) => format!("{duration}, from rows every {}", time_span(period)),
             (None, Some(took)) => format!("{duration} simulated in {}", rough_time(took)),
             (None, None) => format!("{duration} simulated"),
         };

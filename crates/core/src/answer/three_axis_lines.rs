@@ -106,8 +106,11 @@ impl RunData<'_> {
         };
         if let (Some(slews), Some([from, to])) = (&observed.slews, observed.slewing) {
             let head = if observed.slew_count > 1 { "slews" } else { "slew" };
-            let count =
-                if observed.slew_count > 1 { format!("{}, ", observed.slew_count) } else { String::new() };
+            let count = if observed.slew_count > 1 {
+                format!("{} from ", observed.slew_count)
+            } else {
+                String::new()
+            };
             add(head, format!("{count}{} to {}: {}", number(from), time(to), statistics(slews)));
         }
         if let (Some(settled), Some([_, to])) = (&observed.settled, observed.slewing)
@@ -182,19 +185,25 @@ impl RunData<'_> {
             if parts.len() > THRUSTERS || parts.len() != names.len() || parts.is_empty() {
                 return String::new();
             }
-            let used = names.iter().zip(&parts).filter(|(_, part)| **part > 0.0);
-            let used: Vec<String> =
-                used.map(|(name, part)| format!("{name} {}", unit.number(*part))).collect();
-            format!(": {}", used.join(", "))
+            let used: Vec<(&String, &f64)> =
+                names.iter().zip(&parts).filter(|(_, part)| **part > 0.0).collect();
+            if let [(only, _)] = used[..] {
+                return format!(", all {only}");
+            }
+            let each = used.iter().map(|(name, part)| format!("{name} {}", unit.number(**part)));
+            format!(": {}", each.collect::<Vec<_>>().join(", "))
         };
         let thrusters = self.scenario.actuator.jets().map_or_else(Vec::new, |(jets, _)| jets.names());
+        // A cycle may have several pulses.
+        let [pulses, cycles] = ["firings", "firing_cycles"].map(|name| self.number(name));
+        let within =
+            if pulses == cycles { String::new() } else { format!(" in {}", counted(cycles, "cycle")) };
         let text = format!(
-            "{}{}{}; {} in {}",
+            "{}{}{}; {}{within}",
             unit.quantity(fuel),
             parts("fuel_axes_kg", &AXES.map(str::to_owned)),
             parts("fuel_thrusters_kg", &thrusters),
-            counted(self.number("firings"), "pulse"),
-            counted(self.number("firing_cycles"), "cycle")
+            counted(pulses, "pulse"),
         );
         lines.main("propellant", text);
     }
@@ -249,7 +258,7 @@ impl RunData<'_> {
             let text = if cycles == 0.0 {
                 "never on".to_owned()
             } else {
-                format!("in {}", counted(cycles, "cycle"))
+                format!("on in {}", counted(cycles, "cycle"))
             };
             lines.main("active damping", format!("{text}{paused}"));
         }

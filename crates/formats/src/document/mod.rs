@@ -24,7 +24,7 @@ use toml::{Table, Value};
 pub use fault::ConfigError;
 pub use mismatch::Mismatch;
 pub use mistake::{Diagnostic, TextPlace};
-pub use quantity::{is_number, number_in, unit_at, unit_of_text, units_ratio};
+pub use quantity::{is_number, number_in, unit_at, unit_of_text, units_ratio, unknown_unit};
 pub use reader::{DATE, read_value};
 pub use suggestions::nearest_name as nearest;
 

@@ -197,6 +197,11 @@ pub fn units_ratio(unit: &str, other: &str) -> Option<f64> {
     Unit::parse(unit)?.per(Unit::parse(other)?)
 }
 
+/// Returns the end of a message about an unknown unit: the one that is meant, or all that are known.
+pub fn unknown_unit(unit: &str) -> String {
+    meant(unit).map_or_else(|| format!("; known are {KNOWN}"), |meant| format!("; did you mean `{meant}`?"))
+}
+
 /// Returns true if a text is a finite number, or one with a unit.
 pub fn is_number(text: &str) -> bool {
     text.trim().parse::<f64>().is_ok_and(f64::is_finite) || split(text).is_some()
@@ -211,10 +216,7 @@ fn converted(number: f64, unit: &str, wanted: &[&str]) -> Result<f64, String> {
         return Err(format!("has the unit `{unit}`, but takes a number without a unit"));
     };
     let Some(found) = Unit::parse(unit) else {
-        let hint = match meant(unit) {
-            Some(meant) => format!("; did you mean `{meant}`?"),
-            None => format!("; known are {KNOWN}"),
-        };
+        let hint = unknown_unit(unit);
         return Err(format!(
             "has the unit `{unit}`, which is not known; expected a unit such as `{first}`{hint}"
         ));

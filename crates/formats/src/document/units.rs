@@ -38,6 +38,7 @@ const SYMBOLS: &[(&str, f64, [i16; 5], bool)] = &[
     ("N", 1.0, [1, 1, -2, 0, 0], true),
     ("Nm", 1.0, [2, 1, -2, 0, 0], true),
     ("Nms", 1.0, [2, 1, -1, 0, 0], true),
+    ("J", 1.0, [2, 1, -2, 0, 0], true),
     ("T", 1.0, [0, 1, -2, -1, 0], true),
     ("Hz", 1.0, [0, 0, -1, 0, 0], true),
 ];
@@ -92,7 +93,7 @@ const ARC_SIGNS: [(&str, &str); 6] = [
 ];
 
 /// Accepted parts of a unit, for error messages.
-pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
+pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, J, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
                          rpm, joined as in `N m s/rad` or `deg/sqrt(h)`";
 
 /// The unit that was probably meant by a text that is none.

@@ -43,7 +43,7 @@ class Drawable:
         from flexsc import plot
 
         source: Any = self
-        return plot.figure(source, plot.at_a_glance(source, name), on)
+        return plot.figure(source, name, on)
 
     def svg(self, name: str | None = None) -> str:
         """Return a figure as SVG, drawn by the engine as `flexsc plot` does, without Matplotlib.

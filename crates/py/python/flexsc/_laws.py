@@ -27,8 +27,9 @@ class Law(OwnPart):
     ...         return Hold(-1e-6 if event.angle > 0.0 else 1e-6, after=1.0)
     """
 
-    period: float | None = None
-    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one.
+    period: float | str | None = None
+    """Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a law whose holds
+    all give one.
 
     >>> class Damper(Law):
     ...     period = 0.25
@@ -143,8 +144,9 @@ class ThreeAxisLaw(OwnPart):
     >>> scenario = flexsc.Scenario.example("attitude-hold").with_parts(law=Coupled())
     """
 
-    period: float | None = None
-    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one.
+    period: float | str | None = None
+    """Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a law whose holds
+    all give one.
 
     >>> Coupled().period
     0.25
@@ -232,7 +234,8 @@ class CompiledLaw(Compiled, Law):
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
-        period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
+        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a
+            function that always gives one.
         states: Its states at the start of a run.
         promise: The distance from the goal (rad) within which it keeps the angle; None without a promise.
         switches: Whether its torque changes only together with its state, as for a relay.
@@ -242,7 +245,7 @@ class CompiledLaw(Compiled, Law):
         self,
         function: object,
         *,
-        period: float | None = None,
+        period: float | str | None = None,
         states: Sequence[float] = (),
         promise: float | None = None,
         switches: bool = False,
@@ -291,7 +294,8 @@ class CompiledThreeAxisLaw(Compiled, ThreeAxisLaw):
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
-        period: Period (s) of the calls if a hold gives no time; None for a function that always gives one.
+        period: Period (s, or a text such as "20 ms") of the calls if a hold gives no time; None for a
+            function that always gives one.
         command: Whether its commands are torques (N m), accelerations (rad/s²) or magnetic moments (A m²).
         states: Its states at the start of a run.
         promise: The distance from the goal (rad) within which it keeps each angle; None without a promise.
@@ -308,7 +312,7 @@ class CompiledThreeAxisLaw(Compiled, ThreeAxisLaw):
         self,
         function: object,
         *,
-        period: float | None = None,
+        period: float | str | None = None,
         command: Literal["torque", "acceleration", "moment"] = "torque",
         states: Sequence[float] = (),
         promise: float | None = None,

@@ -26,8 +26,9 @@ class DisturbanceModel(OwnPart):
     >>> run = scenario.with_parts(disturbance=Drag()).simulate()
     """
 
-    period: float | None = None
-    """Period (s) of the calls if a load gives no time; None for a disturbance whose loads all give one.
+    period: float | str | None = None
+    """Period (s, or a text such as "20 ms") of the calls if a load gives no time; None for a disturbance
+    whose loads all give one.
 
     >>> Drag().period
     0.1
@@ -131,7 +132,8 @@ class CompiledDisturbance(Compiled, DisturbanceModel):
     Args:
         function: A `cfunc` of numba, a function of `ctypes`, or an address. A wrong address crashes the
             process.
-        period: Period (s) of the calls if a load gives no time; None for a function that always gives one.
+        period: Period (s, or a text such as "20 ms") of the calls if a load gives no time; None for a
+            function that always gives one.
         points: Names of the points at which it acts, as `DisturbanceModel.points`.
         states: Its states at the start of a run.
     """
@@ -140,7 +142,7 @@ class CompiledDisturbance(Compiled, DisturbanceModel):
         self,
         function: object,
         *,
-        period: float | None = None,
+        period: float | str | None = None,
         points: Sequence[str] = (),
         states: Sequence[float] = (),
     ) -> None:

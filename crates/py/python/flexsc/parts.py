@@ -230,8 +230,8 @@ class Sensor(OwnPart):
     ...         return Reading(angle=round(truth.angle / 1e-6) * 1e-6)
     """
 
-    period: float
-    """Period of its samples (s).
+    period: float | str
+    """Period of its samples (s, or a text such as "250 ms").
 
     >>> Encoder().period
     0.25
@@ -347,7 +347,7 @@ class Adaptation(OwnPart):
     >>> Quiet().objective
     'pointing_error_rms'
     """
-    window: float | None = None
+    window: float | str | None = None
     """Length of the windows (s); None for `envelope_mean`, which has those of the `[estimator.envelope]`.
 
     >>> Descent().window is None                                        # windows of the envelope

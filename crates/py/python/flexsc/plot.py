@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, overload
@@ -45,8 +46,10 @@ if TYPE_CHECKING:
 
 __all__ = ["Source", "bode", "draw", "figure", "figures", "nichols", "poles"]
 
-Source: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
+Single: TypeAlias = "Result | Log | Table | str | os.PathLike[str]"
 """A run, a log, a campaign or a sweep, or the path of a log file or of a campaign's directory."""
+Source: TypeAlias = "Single | Sequence[Single] | Mapping[str, Single]"
+"""A single source, or several runs or logs, which are drawn over each other; a dict gives them names."""
 
 if TYPE_CHECKING:
     _On = TypeVar("_On", Figure, SubFigure)
@@ -83,10 +86,14 @@ def figures(source: Source, metrics: Sequence[str] = ()) -> list[str]:
         ValueError: There is nothing to draw, or no such metric.
         LogError: The log file cannot be read.
     """
-    log = _log(source)
+    first, *others = _each(source).values()
+    if others:
+        each = [figures(single) for single in others]
+        return [name for name in figures(first) if all(name in names for names in each)]
+    log = _log(first)
     if log is not None:
-        return engine.log_figures(log, _known(source))
-    return list(_of_campaign(source, None, metrics))
+        return engine.log_figures(log, _known(first))
+    return list(_of_campaign(first, None, metrics))
 
 
 def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> Axes:
@@ -129,17 +136,19 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
 
 
 @overload
-def figure(source: Source, name: str, on: None = None) -> Figure: ...
+def figure(source: Source, name: str | None = None, on: None = None) -> Figure: ...
 @overload
-def figure(source: Source, name: str, on: _On) -> _On: ...
+def figure(source: Source, name: str | None, on: _On) -> _On: ...
 @overload
-def figure(source: Source, name: str, on: Figure | SubFigure | None) -> Figure | SubFigure: ...
-def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> Figure | SubFigure:
+def figure(source: Source, name: str | None, on: Figure | SubFigure | None) -> Figure | SubFigure: ...
+def figure(
+    source: Source, name: str | None = None, on: Figure | SubFigure | None = None
+) -> Figure | SubFigure:
     """Draw a figure with all of its panels.
 
     Args:
-        source: The source of the figure.
-        name: One of `figures(source)`.
+        source: The source of the figure; several runs have a colour each, and two their difference below.
+        name: One of `figures(source)`; if omitted, the one that shows the source at a glance.
         on: An empty figure or subfigure; if omitted, a new one of the same size as that of the command.
 
     Returns:
@@ -149,13 +158,17 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
     >>> figure = flexsc.plot.figure(run, "angle")
     >>> len(figure.axes)
     1
+    >>> longer = run.scenario.with_("law.relay.k_t", 0.34).simulate()
+    >>> both = flexsc.plot.figure({"k_t 0.31": run, "k_t 0.34": longer}, "angle")
+    >>> len(both.axes)                                 # the difference is below
+    2
 
     Raises:
         ValueError: There is no such figure.
         ImportError: Matplotlib is not installed.
     """
     need_matplotlib()
-    found = drawn(source, name)
+    found = drawn(source, at_a_glance(source, name))
     panels = found.panels()
     is_own = on is None
     if on is None:
@@ -187,7 +200,27 @@ def _height(panel: dict[str, Any], plot: int) -> int:
     return plot + 22 + 24 + below + (30 if panel["bar"] else 0) + 14 * len(panel["strips"])
 
 
-def _log(source: Source) -> engine.Log | None:
+def _each(source: Source) -> dict[str, Single]:
+    """The single sources by their names."""
+    if isinstance(source, (Result, Log, Table, str, os.PathLike)):
+        return {"": source}
+    if not source:
+        raise ValueError("a figure needs a run, a log or a campaign")
+    if isinstance(source, Mapping):
+        named: Any = source
+        return dict(named)
+    names = [_name(single) for single in source]
+    numbered = [f"{name} {place}" for place, name in enumerate(names, 1)]
+    return dict(zip(names if len(set(names)) == len(names) else numbered, source, strict=True))
+
+
+def _name(single: Single) -> str:
+    if isinstance(single, Log):
+        return single.scenario.name if single.scenario else "log"
+    return single.scenario.name if isinstance(single, (Result, Table)) else Path(single).stem
+
+
+def _log(source: Single) -> engine.Log | None:
     """The log of a run, if the source is one."""
     if isinstance(source, Result):
         return source._native_log()
@@ -198,12 +231,12 @@ def _log(source: Source) -> engine.Log | None:
     return reading(source, engine.Log.open)
 
 
-def _known(source: Source) -> engine.Scenario | None:
+def _known(source: Single) -> engine.Scenario | None:
     """The scenario of a run, with its parts in Python, which repeat it if a figure needs that."""
     return source.scenario._native if isinstance(source, Result) else None
 
 
-def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> dict[str, engine.Figure]:
+def _of_campaign(source: Single, kind: str | None, metrics: Sequence[str]) -> dict[str, engine.Figure]:
     """The figures of a campaign, by names without that of the scenario if there is one only."""
     if isinstance(source, Table):
         drawn = source._figures(kind, metrics)
@@ -216,13 +249,18 @@ def _of_campaign(source: Source, kind: str | None, metrics: Sequence[str]) -> di
 
 def drawn(source: Source, name: str) -> engine.Figure:
     """Return the figure of this name as the engine draws it."""
-    log = _log(source)
+    each = _each(source)
+    if len(each) > 1:
+        several = [(own, drawn(single, name)) for own, single in each.items()]
+        return engine.overlaid_figure(name.replace("-", " "), several)
+    (single,) = each.values()
+    log = _log(single)
     if log is not None:
-        return engine.log_figure(log, name, _known(source))
-    there = _of_campaign(source, None, ())
-    if name not in there and isinstance(source, Table):
+        return engine.log_figure(log, name, _known(single))
+    there = _of_campaign(single, None, ())
+    if name not in there and isinstance(single, Table):
         kind, _, metric = name.partition("-")
-        there = _of_campaign(source, kind, [metric] if metric else [])
+        there = _of_campaign(single, kind, [metric] if metric else [])
     if name not in there:
         raise ValueError(f"there is no figure {name!r} for it; it has {', '.join(there)}")
     return there[name]

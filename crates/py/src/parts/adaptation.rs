@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
-use super::law::positive;
+use super::law::own_time;
 use super::object::{Method, Object};
 use super::signals::Signals;
 
@@ -32,12 +32,11 @@ impl PythonAdaptation {
             let all = Objective::ALL.map(|objective| format!("'{}'", objective.key())).join(", ");
             PyValueError::new_err(format!("objective must be one of {all}, got {word:?}"))
         })?;
-        let window: Option<f64> = part.getattr("window")?.extract()?;
         Ok(Self {
             object: Object::new(part),
             tunes: part.getattr("tunes")?.extract()?,
             objective,
-            window: window.map(|window| positive(window, "window")).transpose()?,
+            window: own_time(part, "window")?,
             signals: Signals::from_python(part, "adaptation", false)?,
         })
     }

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use super::compiled_arrays::address;
 use super::hold::{PHASES, never};
-use super::law::positive;
+use super::law::own_time;
 
 /// The function: now and the time since its last call (s), the cause, angle and rate, those of the goal, its states, its hold.
 type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64, *mut f64);
@@ -34,10 +34,9 @@ impl CompiledLaw {
     /// Reads what a compiled law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let address = address(part, "law")?;
-        let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {
             function: from_address(address),
-            period: period.map(|period| positive(period, "period")).transpose()?,
+            period: own_time(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
             switches: part.getattr("switches")?.extract()?,
             states: part.getattr("states")?.extract()?,

@@ -25,7 +25,7 @@ use pyo3::prelude::*;
 
 use super::disturbance::{no_next_call, points_and_period};
 use super::hold::{PHASES, never};
-use super::law::positive;
+use super::law::own_time;
 
 /// The function: now and the time since its last call (s), its input, its states, its output.
 type Function = unsafe extern "C" fn(f64, f64, *const f64, *mut f64, *mut f64);
@@ -102,7 +102,6 @@ pub struct CompiledThreeAxisLaw {
 
 impl CompiledThreeAxisLaw {
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let period: Option<f64> = part.getattr("period")?.extract()?;
         let command: String = part.getattr("command")?.extract()?;
         let command = match &*command {
             "torque" => Command::Torque,
@@ -116,7 +115,7 @@ impl CompiledThreeAxisLaw {
         Ok(Self {
             compiled: Compiled::from_python(part, "law")?,
             command,
-            period: period.map(|period| positive(period, "period")).transpose()?,
+            period: own_time(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
         })
     }

@@ -11,6 +11,7 @@ use flexsc_core::control::law::{
 use flexsc_core::control::offers::LawOffers;
 use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
+use flexsc_core::formats::document::number_in;
 use flexsc_core::numerics::time::{Instant as Exact, Span};
 use flexsc_core::record::Report;
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -126,7 +127,6 @@ pub fn kept(key: &str) -> &'static str {
 impl PythonLaw {
     /// Reads what a law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
-        let period: Option<f64> = part.getattr("period")?.extract()?;
         let reads: String = part.getattr("reads")?.extract()?;
         let tunable = part.getattr("tunable")?.call_method0("items")?;
         let number = |pair: PyResult<Bound<'_, PyAny>>| -> PyResult<(&'static str, f64)> {
@@ -135,7 +135,7 @@ impl PythonLaw {
         };
         Ok(Self {
             object: Object::new(part),
-            period: period.map(|period| positive(period, "period")).transpose()?,
+            period: own_time(part, "period")?,
             reads: match reads.as_str() {
                 "nothing" => EstimateNeeds::Nothing,
                 "field" => EstimateNeeds::Field,
@@ -154,6 +154,23 @@ impl PythonLaw {
             signals: Signals::from_python(part, role, true)?,
         })
     }
+}
+
+/// Returns the time that a part has as an attribute: a number (s), a text such as `0.1 s`, or none.
+pub fn own_time(part: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Span>> {
+    let given = part.getattr(name)?;
+    if given.is_none() {
+        return Ok(None);
+    }
+    let why = |why: String| PyValueError::new_err(format!("{name} {why}"));
+    let seconds = match given.extract::<String>() {
+        Ok(text) => number_in(&text, "s").map_err(why)?,
+        Err(_) => given.extract().map_err(|_| {
+            let found = shape(&given);
+            PyTypeError::new_err(format!("{name} must be a time (s), such as 0.1 or \"0.1 s\", got {found}"))
+        })?,
+    };
+    positive(seconds, name).map(Some)
 }
 
 /// Returns a period of more than 0 s, or an error that names it.

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
-use super::law::positive;
+use super::law::own_time;
 use super::object::{Method, Object, shape};
 use super::reading::{Reading, Truth};
 use super::signals::Signals;
@@ -30,7 +30,7 @@ impl PythonSensor {
     pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         Ok(Self {
             object: Object::new(part),
-            period: positive(period(part)?, "period")?,
+            period: period(part)?,
             angle_noise: part.getattr("angle_noise")?.extract()?,
             rate_noise: part.getattr("rate_noise")?.extract()?,
             signals: Signals::from_python(part, role, false)?,
@@ -38,10 +38,11 @@ impl PythonSensor {
     }
 }
 
-/// Returns the period of a sensor (s).
-fn period(part: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let found = part.getattr("period").and_then(|period| period.extract());
-    found.map_err(|_| PyTypeError::new_err("sensor: period, the time (s) between samples, must be a number"))
+/// Returns the period of a sensor.
+fn period(part: &Bound<'_, PyAny>) -> PyResult<Span> {
+    let why = "sensor: period, the time (s) between samples, must be given";
+    let found = if part.hasattr("period")? { own_time(part, "period")? } else { None };
+    found.ok_or_else(|| PyTypeError::new_err(why))
 }
 
 impl SensorSpec for PythonSensor {

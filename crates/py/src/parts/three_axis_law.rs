@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use super::hold::{never, phase};
 use super::instant::{Instant, span};
-use super::law::{Authority, kept, positive};
+use super::law::{Authority, kept, own_time};
 use super::object::{Method, Object, numbers, shape};
 use super::reading::{Four, Three};
 use super::signals::Signals;
@@ -217,7 +217,6 @@ pub struct PythonThreeAxisLaw {
 impl PythonThreeAxisLaw {
     /// Reads what a law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
-        let period: Option<f64> = part.getattr("period")?.extract()?;
         let tunable = part.getattr("tunable")?.call_method0("items")?;
         let number = |pair: PyResult<Bound<'_, PyAny>>| -> PyResult<(&'static str, f64)> {
             let (key, value): (String, f64) = pair?.extract()?;
@@ -225,7 +224,7 @@ impl PythonThreeAxisLaw {
         };
         Ok(Self {
             object: Object::new(part),
-            period: period.map(|period| positive(period, "period")).transpose()?,
+            period: own_time(part, "period")?,
             promise: part.getattr("promise")?.extract()?,
             tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
             signals: Signals::from_python(part, role, false)?,

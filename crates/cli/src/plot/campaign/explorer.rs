@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use flexsc_core::Scenario;
 use flexsc_core::formats::reader_units::{ReaderUnit, ReaderUnits};
 use serde_json::{Value as Json, json};
 
@@ -19,7 +20,7 @@ const MOST_RUNS: usize = 50_000;
 ///
 /// # Errors
 /// Too many runs for a page, or no metric.
-pub fn page(runs: &CampaignRuns, directory: &Path) -> Result<String, CliError> {
+pub fn page(runs: &CampaignRuns, directory: &Path, units: ReaderUnits) -> Result<String, CliError> {
     let wrong = |why: String| CliError::Arguments(format!("{}: {why}", directory.display()));
     let count = runs.numbers.len();
     if count > MOST_RUNS {
@@ -27,11 +28,11 @@ pub fn page(runs: &CampaignRuns, directory: &Path) -> Result<String, CliError> {
     }
     let varying = |metric: &&MetricColumn| metric.varies() || metric.requirement.is_some();
     let metrics: Vec<Json> =
-        runs.metrics.iter().filter(varying).map(|metric| metric_data(runs, metric)).collect();
+        runs.metrics.iter().filter(varying).map(|metric| metric_data(runs, metric, units)).collect();
     if metrics.is_empty() {
         return Err(wrong("no metric varies from run to run".to_owned()));
     }
-    let columns: Vec<Json> = runs.keys.iter().map(|key| key_data(runs, key)).chain(metrics).collect();
+    let columns: Vec<Json> = runs.keys.iter().map(|key| key_data(runs, key, units)).chain(metrics).collect();
     let run = |index: usize| {
         json!({
             "number": runs.numbers[index], "error": runs.errors[index],
@@ -62,21 +63,24 @@ fn column_data(name: &str, label: &str, unit: &ReaderUnit, values: &[f64]) -> Js
 }
 
 /// Returns a key in the unit of readers.
-fn key_data(runs: &CampaignRuns, key: &CampaignKey) -> Json {
-    let si = runs.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name)).unwrap_or_default();
-    let unit = ReaderUnits::Engineering.for_key(&key.name, largest(&key.values), si);
+fn key_data(runs: &CampaignRuns, key: &CampaignKey, units: ReaderUnits) -> Json {
+    let most = largest(&key.values);
+    let of_key = |(scenario, _): &(Scenario, _)| scenario.reader_unit(&key.name, most, units);
+    let unit = runs.scenario.as_ref().map_or_else(|| units.fitting(most, ""), of_key);
     let mut data = column_data(&key.name, &key.name, &unit, &key.values);
     data["isKey"] = json!(true);
     data
 }
 
 /// Returns a metric in the unit of its limit, or else in that of readers, with the order of its values from good to bad.
-fn metric_data(runs: &CampaignRuns, metric: &MetricColumn) -> Json {
+fn metric_data(runs: &CampaignRuns, metric: &MetricColumn, units: ReaderUnits) -> Json {
     let (label, si) = metric.label();
     let required = runs.required(metric);
     let unit = match &required {
-        Some(own) if !own.unit.name.is_empty() => own.unit.clone(),
-        _ => ReaderUnits::Engineering.for_key(&metric.name, largest(&metric.values), si),
+        Some(own) if !own.unit.name.is_empty() => {
+            units.in_place_of(&own.unit, si).unwrap_or_else(|| own.unit.clone())
+        }
+        _ => units.for_metric(&metric.name, largest(&metric.values), si),
     };
     let mut data = column_data(&metric.name, &label, &unit, &metric.values);
     data["limit"] = json!(required.map(|own| unit.value(own.limit)));

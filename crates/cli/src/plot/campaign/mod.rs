@@ -94,7 +94,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
             directory.display()
         )));
     }
-    target.save(&args.look.titled(figures), args.look.style()?, args.json)
+    target.save(&args.look.finished(figures)?, args.look.style()?, args.json)
 }
 
 /// Returns the campaigns of a directory: those of tables, then those of parts.
@@ -112,7 +112,7 @@ fn explore(args: &PlotArgs, out: &Path) -> Result<(), CliError> {
         let why = format!("has {} campaigns, and an explorer shows one", tables.len());
         return Err(CliError::Arguments(format!("{}: {why}", directory.display())));
     };
-    let page = explorer::page(runs, directory)?;
+    let page = explorer::page(runs, directory, args.look.units.units.0)?;
     crate::files::write(out, page.as_bytes(), args.force)?;
     say!("{} ({:.0} kB)", out.display(), page.len() as f64 / 1e3);
     Ok(())
