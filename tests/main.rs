@@ -134,6 +134,7 @@ mod flight_analysis;
 #[cfg(feature = "flight-code")]
 mod flight_code;
 #[cfg(feature = "flight-code")]
+mod flight_cubesat;
 mod flight_exports;
 #[cfg(feature = "flight-code")]
 mod flight_guests;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, compensator_calls, estimator_calls, kalman_calls};
+use super::{Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
@@ -62,13 +62,22 @@ fn trace(plan: &Plan<'_>) -> String {
     )
 }
 
-/// Returns the lines of a comment that list the parts of the control loop that are not in the code.
+/// Returns the lines of a comment that list the parts of the control loop that are not in the code, and its inputs from elsewhere.
 fn excluded_parts(plan: &Plan<'_>) -> String {
-    if plan.excluded_parts.is_empty() {
-        return " *\n * Every part of the scenario's control loop is in this code.".to_owned();
+    let list = |is_supplied: bool| -> String {
+        let parts = plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied);
+        parts.map(|part| format!("\n *   {}: {}", part.key, part.duty)).collect()
+    };
+    let (left_out, supplied) = (list(false), list(true));
+    let mut text = if left_out.is_empty() {
+        " *\n * Every part of the scenario's control loop is in this code.".to_owned()
+    } else {
+        format!(" *\n * Not part of this code; the caller must:{left_out}")
+    };
+    if !supplied.is_empty() {
+        let _ = write!(text, "\n * Inputs from guidance and ephemerides; the caller must:{supplied}");
     }
-    let parts = plan.excluded_parts.iter().map(|part| format!("\n *   {}: {}", part.key, part.duty));
-    format!(" *\n * Not part of this code; the caller must:{}", parts.collect::<String>())
+    text
 }
 
 /// Returns the C struct that holds the state of the control system between its calls.
@@ -119,9 +128,7 @@ pub fn state(plan: &Plan<'_>) -> String {
                     &format!("rate_filter{axes}"),
                 );
             }
-            if let Some(own) = &laws.wheels {
-                member("Reaction wheels.", "AllocatedWheel", &format!("wheels[{}]", own.wheels.len()));
-            }
+            actuation_calls::members(plan, &laws.actuation, &mut text);
             if let Some(unit) = &laws.filter {
                 kalman_calls::members(plan, unit, &mut text);
             }

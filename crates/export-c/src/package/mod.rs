@@ -1,5 +1,6 @@
 //! Files of an exported control system: header, source, driver, start-up code of boards, Makefile, vectors and a description.
 
+mod actuation_calls;
 mod b_dot_calls;
 mod calls;
 mod compensator_calls;

@@ -8,8 +8,10 @@ use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
 use super::initialiser::initialiser;
 use super::signature::{has_time, init_signature, signature};
-use super::{Plan, calls, estimator_calls, header};
-use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula};
+use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header};
+use crate::control_system::{
+    CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula, SampledLaws,
+};
 
 /// Laws of one mode as a control system of their own.
 struct ModePart {
@@ -21,17 +23,17 @@ struct ModePart {
     layout: CallLayout,
 }
 
-/// Returns the laws of all modes but open loops.
+/// Returns the laws of all modes that read estimates.
 fn mode_parts(modes: &ModeSystem) -> Vec<ModePart> {
     let each = modes.modes.iter().enumerate().filter_map(|(index, mode)| {
-        let laws = mode.start.clone()?;
+        let laws = mode.start.on_estimates()?.clone();
         let (name, layout) = (mode.name.clone(), laws.layout());
         Some(ModePart { index, name, system: ControlSystem::Sampled(Box::new(laws)), layout })
     });
     each.collect()
 }
 
-/// Returns the control systems of the laws of all modes but open loops.
+/// Returns the control systems of the laws of all modes that read estimates.
 pub fn systems(modes: &ModeSystem) -> Vec<ControlSystem> {
     mode_parts(modes).into_iter().map(|part| part.system).collect()
 }
@@ -63,11 +65,16 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     for (about, name, declared) in modes.estimator.iter().flat_map(estimator_calls::members) {
         member(about, name, &declared);
     }
-    if modes.estimator.is_some() {
+    if modes.field.is_some() {
+        member("Rate of change of the magnetic field.", "FieldRate", "field");
+        member("Moment of the magnetorquers (A m^2).", "Vector3", "moment");
+    }
+    if modes.moves_angles {
         member("Angle from the target of the mode before, at a change.", "Vector3", "moved_angle");
         member("Target of the mode before.", "Quaternion", "moved_from");
         text.push_str("    /* True from a change on to the next step. */\n    bool has_moved;\n");
     }
+    actuation_calls::members(plan, &modes.actuation, &mut text);
     for ModePart { name, .. } in &parts {
         let _ =
             writeln!(text, "    /* Laws of the mode `{name}`. */\n    {prefix}_law_{name}_state law_{name};");
@@ -91,6 +98,7 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
         text.push_str("\n\n");
     }
     lists(plan, modes, &mut text);
+    actuation_calls::constants(plan, &modes.actuation, &mut text);
     if let Some(unit) = &modes.estimator {
         estimator_calls::start(plan, unit, &mut text);
     }
@@ -98,8 +106,15 @@ pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     if let Some(unit) = &modes.estimator {
         estimator_calls::functions(plan, unit, &mut text);
     }
+    b_dot_calls::sample(plan, &mut text);
     enter(plan, modes, &mut text);
     supervise(plan, modes, &mut text);
+    let detumbling = modes.modes.iter().enumerate().filter(|(_, mode)| mode.start.b_dot().is_some());
+    let detumbling: Vec<String> =
+        detumbling.map(|(mode, _)| format!("state->supervisor.active == {mode}")).collect();
+    let held = detumbling.join(" || ");
+    let held = Some(held.as_str()).filter(|held| !held.is_empty());
+    actuation_calls::unload(plan, &modes.actuation, held, held.is_some(), &mut text);
     step(plan, modes, &parts, &mut text);
     text
 }
@@ -152,6 +167,7 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
     }
     let _ = writeln!(text, "    state->supervisor = mode_supervisor_start(now, {});", mode_arguments(modes));
+    actuation_calls::init(plan, &modes.actuation, text);
     for ModePart { name, .. } in parts {
         let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name});");
     }
@@ -179,7 +195,7 @@ fn enter(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
          mode_supervisor_enter(&state->supervisor, now, mode, {});\n    start_laws(state);\n{}    output->mode = (int64_t)mode;\n}}\n",
         signature(plan, &plan.calls[modes.call_index("enter")]),
         mode_arguments(modes),
-        if modes.estimator.is_some() { "    state->has_moved = false;\n" } else { "" },
+        if modes.moves_angles { "    state->has_moved = false;\n" } else { "" },
     );
 }
 
@@ -206,7 +222,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
             _ => false,
         })
     };
-    if let Some(entries) = entries {
+    if let Some(entries) = entries.filter(|_| modes.moves_angles) {
         let _ = writeln!(
             text,
             "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
@@ -260,7 +276,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
         let _ = writeln!(text, "    readings[{index}] = {value};");
     }
     let arguments = mode_arguments(modes);
-    let moved = if modes.estimator.is_some() {
+    let moved = if modes.moves_angles {
         "        state->moved_angle = rotation;\n        state->moved_from = target;\n        state->has_moved = true;\n"
     } else {
         ""
@@ -286,15 +302,21 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     let _ = writeln!(text, "{}\n{{", signature(plan, &plan.calls[modes.call_index("step")]));
     let filter = modes.estimator.as_ref();
     if let Some(unit) = filter {
+        let moved = if modes.moves_angles {
+            format!(
+                "    if (state->has_moved) {{\n        /* at a change the angles move from one target to the other */\n        \
+                 const {prefix}_vector3 shift = quaternion_rotation_to(&target, &state->moved_from);\n        \
+                 angle.x = state->moved_angle.x + shift.x;\n        angle.y = state->moved_angle.y + shift.y;\n        \
+                 angle.z = state->moved_angle.z + shift.z;\n        state->has_moved = false;\n    }}\n"
+            )
+        } else {
+            String::new()
+        };
         let _ = writeln!(
             text,
             "    const {prefix}_quaternion target = {{ .w = input->target_attitude[0], .x = input->target_attitude[1], .y = input->target_attitude[2], .z = input->target_attitude[3] }};\n    \
              const {prefix}_quaternion attitude = attitude_estimator_attitude(&state->estimator, now, state->entries, {entries});\n    \
-             {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n    \
-             if (state->has_moved) {{\n        /* at a change the angles move from one target to the other */\n        \
-             const {prefix}_vector3 shift = quaternion_rotation_to(&target, &state->moved_from);\n        \
-             angle.x = state->moved_angle.x + shift.x;\n        angle.y = state->moved_angle.y + shift.y;\n        \
-             angle.z = state->moved_angle.z + shift.z;\n        state->has_moved = false;\n    }}\n    \
+             {prefix}_vector3 angle = quaternion_rotation_to(&target, &attitude);\n{moved}    \
              const {prefix}_vector3 rate = attitude_estimator_rate(&state->estimator, state->entries, {entries});",
             entries = unit.entries.len()
         );
@@ -306,7 +328,32 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     if parts.is_empty() {
         text.push_str("    (void)input;\n");
     }
-    text.push_str("    memset(output, 0, sizeof *output);\n    switch (state->supervisor.active) {\n");
+    text.push_str("    memset(output, 0, sizeof *output);\n");
+    if modes.actuation.wheels.is_some() {
+        let _ = writeln!(
+            text,
+            "    {prefix}_vector3 torque = {{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
+        );
+    }
+    if modes.field.is_some() && modes.clears_moment {
+        let _ = writeln!(text, "    state->moment = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
+    }
+    text.push_str("    switch (state->supervisor.active) {\n");
+    for (index, laws) in modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
+    {
+        let _ = writeln!(text, "    case {index}:");
+        for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
+            let moment = b_dot_calls::moment(plan, laws, axis);
+            let _ = writeln!(text, "        state->moment.{component} = {moment};");
+        }
+        if modes.actuation.unloading.is_some() {
+            let _ = writeln!(
+                text,
+                "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
+            );
+        }
+        text.push_str("        break;\n");
+    }
     for part in parts {
         let name = &part.name;
         let _ = writeln!(
@@ -340,11 +387,25 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
                 writeln!(text, "        memcpy(output->{output}, decided.{output}, sizeof decided.{output});")
             };
         }
+        let mode = &modes.modes[part.index];
+        let is_change = mode.start.on_estimates().is_some_and(SampledLaws::commands_changes);
+        if mode.drives_wheels && modes.actuation.wheels.is_some() {
+            for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
+                let _ = writeln!(text, "        torque.{component} = decided.torque[{axis}];");
+            }
+        }
+        if mode.fires_jets {
+            actuation_calls::jets(&modes.actuation, is_change, "        ", "decided.", text);
+        }
         text.push_str("        break;\n    }\n");
     }
-    text.push_str(
-        "    default:\n        break;\n    }\n    output->mode = (int64_t)state->supervisor.active;\n}\n",
-    );
+    text.push_str("    default:\n        break;\n    }\n");
+    let components = ["torque.x", "torque.y", "torque.z"];
+    actuation_calls::wheels(plan, &modes.actuation, |axis| components[axis].to_owned(), text);
+    if modes.field.is_some() {
+        actuation_calls::moment_output("state->moment", text);
+    }
+    text.push_str("    output->mode = (int64_t)state->supervisor.active;\n}\n");
 }
 
 /// Returns text in which the names of a control system's own are those of the laws of a mode.

@@ -155,6 +155,9 @@ fn app_header(plan: &Plan<'_>) -> String {
         let name = camel(call.name);
         let _ = writeln!(outputs, "    UPPER_APP_{name}_Output_t {name}_Output;");
     }
+    if inits_at_time(plan) {
+        outputs.push_str("    /* True from the first inputs on, at whose time the control system starts. */\n    bool HasStarted;\n");
+    }
     include_str!("../files/cfs/app.h").replace("LAW", &camel(law(plan).name)).replace("OUTPUTS", &outputs)
 }
 
@@ -188,11 +191,12 @@ fn app_source(plan: &Plan<'_>) -> String {
     }
     let subscribed: Vec<String> =
         names(plan, "INPUT").iter().map(|name| format!("UPPER_APP_{name}_MID")).collect();
-    // The last inputs have the time of a restart; before them it is 0.
-    let input = "UPPER_APP_Data.LAW_Input.Payload";
-    let time = format!(", (LOWER_ticks){{ .whole = {input}.now_whole, .part = {input}.now_part }}");
+    // Modes begin at the time of the first inputs.
+    let is_later = inits_at_time(plan);
+    let start =
+        if is_later { "UPPER_APP_Data.HasStarted = false;" } else { "LOWER_init(&UPPER_APP_Data.State);" };
     include_str!("../files/cfs/app.c")
-        .replace("INIT_TIME", if inits_at_time(plan) { &time } else { "" })
+        .replace("BEGIN_STATE", start)
         .replace("LOWER_LAW", &format!("LOWER_{}", law(plan).name))
         .replace("LAW", &camel(law(plan).name))
         .replace("MEASURED", &measured)
@@ -210,11 +214,20 @@ fn function(plan: &Plan<'_>, index: usize, call: &CallLayout) -> String {
          LOWER_{lower}_output Output;\n    UPPER_APP_{name}_Output_Payload_t *Out = &UPPER_APP_Data.{name}_Output.Payload;\n\n",
         call.about
     );
+    if call.inputs.is_empty() {
+        text.push_str("    Input.unused = false;\n");
+    }
     for channel in &call.inputs {
         copy(channel, "Input.", "In->", " != 0", &mut text);
     }
-    let now =
-        if has_time(plan) { "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }, " } else { "" };
+    let time = "(LOWER_ticks){ .whole = In->now_whole, .part = In->now_part }";
+    if inits_at_time(plan) {
+        let _ = writeln!(
+            text,
+            "    if (!UPPER_APP_Data.HasStarted) {{\n        LOWER_init(&UPPER_APP_Data.State, {time});\n        UPPER_APP_Data.HasStarted = true;\n    }}"
+        );
+    }
+    let now = if has_time(plan) { format!("{time}, ") } else { String::new() };
     let _ = writeln!(text, "    LOWER_{lower}(&UPPER_APP_Data.State, {now}&Input, &Output);");
     if has_time(plan) {
         text.push_str("    Out->now_whole = In->now_whole;\n    Out->now_part = In->now_part;\n");

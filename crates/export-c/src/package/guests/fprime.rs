@@ -155,6 +155,9 @@ fn class(plan: &Plan<'_>) -> String {
         );
         let _ = writeln!(members, "    U32 m_{name}Calls;");
     }
+    if inits_at_time(plan) {
+        members.push_str("    bool m_hasStarted;\n");
+    }
     include_str!("../files/fprime/component.hpp")
         .replace("HANDLERS", &handlers)
         .replace("FUNCTIONS", &functions)
@@ -177,9 +180,16 @@ fn implementation(plan: &Plan<'_>) -> String {
             camel(call.name)
         );
     }
+    // Modes begin at the time of the first inputs.
+    let start = if inits_at_time(plan) {
+        zeros.push_str(", m_hasStarted(false)");
+        "this->m_hasStarted = false;"
+    } else {
+        "LOWER_init(&this->m_state);"
+    };
     let (initial, given) = if has_time(plan) { ("m_now(), ", "this->m_now, ") } else { ("", "") };
     include_str!("../files/fprime/component.cpp")
-        .replace("INIT_TIME", if inits_at_time(plan) { ", this->m_now" } else { "" })
+        .replace("BEGIN_STATE", start)
         .replace("LAW(GIVEN", &format!("{law}({given}"))
         .replace("INITIAL", initial)
         .replace("ZEROS", &zeros)
@@ -191,7 +201,7 @@ fn implementation(plan: &Plan<'_>) -> String {
 fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
     let name = call.name;
     let mut text = format!(
-        "void COMPONENT ::{name}Input_handler(FwIndexType portNum{}) {{\n    (void)portNum;\n    LOWER_{name}_input input;\n",
+        "void COMPONENT ::{name}Input_handler(FwIndexType portNum{}) {{\n    (void)portNum;\n    LOWER_{name}_input input{{}};\n",
         handled(plan, call)
     );
     for channel in &call.inputs {
@@ -216,8 +226,13 @@ fn handler(plan: &Plan<'_>, call: &CallLayout, is_law: bool) -> String {
 fn function(plan: &Plan<'_>, call: &CallLayout) -> String {
     let name = call.name;
     let given = if has_time(plan) { "now, " } else { "" };
+    let start = if inits_at_time(plan) {
+        "    if (!this->m_hasStarted) {\n        LOWER_init(&this->m_state, now);\n        this->m_hasStarted = true;\n    }\n"
+    } else {
+        ""
+    };
     let mut text = format!(
-        "void COMPONENT ::{name}({}const LOWER_{name}_input& input) {{\n    LOWER_{name}_output output;\n    \
+        "void COMPONENT ::{name}({}const LOWER_{name}_input& input) {{\n    LOWER_{name}_output output;\n{start}    \
          LOWER_{name}(&this->m_state, {given}&input, &output);\n",
         now(plan)
     );
