@@ -81,7 +81,6 @@ const KINDS: [Kind; 14] = [
             "export-c/src/control_system/actuation.rs",
             "export-c/src/control_system/excluded_parts.rs",
             "export-c/src/flight_sources.rs",
-            "export-c/src/package/actuation_calls.rs",
             "formats/src/document/suggestions.rs",
             "scenario/src/actuator_checks.rs",
         ],

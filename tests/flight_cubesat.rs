@@ -1,7 +1,7 @@
 //! Flight code of whole CubeSats: B-dot and attitude laws under one supervisor, wheels, and the magnetorquers that unload them.
 
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Magnetorquers, Record, RecordError, Sample, Wheels};
+use flexsc_core::record::{Magnetorquers, Pointing, Record, RecordError, Sample, Wheels};
 use flexsc_core::{Scenario, Simulation};
 use flexsc_export_c::control_system::ControlSystem;
 use flexsc_export_c::vectors;
@@ -15,7 +15,10 @@ const WHOLE: [(&str, &[(&str, &str)]); 3] = [
     ("cubesat-day", &SHORT),
     (
         "detumble-and-point",
-        &[("duration = 12000.0", "duration = 7000.0"), ("assess = [600.0, 12000.0]", "assess = [600.0, 7000.0]")],
+        &[
+            ("duration = 12000.0", "duration = 7000.0"),
+            ("assess = [600.0, 12000.0]", "assess = [600.0, 7000.0]"),
+        ],
     ),
     ("safe-mode", &[("period = 5.0\n\n[reference]", "period = 0.5\n\n[reference]")]),
 ];
@@ -38,11 +41,17 @@ fn shortened(name: &str, changes: &[(&str, &str)]) -> Dir {
 struct Rows(Vec<(Instant, [f64; 3], [f64; 3])>);
 
 impl Record for Rows {
+    fn wants_motion(&self) -> bool {
+        true
+    }
+
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         let Sample::Report(report) = sample else { return Ok(()) };
-        let (Some(wheels), Some(torquers)) = (report.row::<Wheels>(), report.row::<Magnetorquers>()) else {
+        if report.get::<Pointing>().is_none() {
             return Ok(());
-        };
+        }
+        let wheels = report.get::<Wheels>().expect("wheels");
+        let torquers = report.get::<Magnetorquers>().expect("magnetorquers");
         let torques = [0, 1, 2].map(|wheel: usize| wheels.wheels[wheel].torque_nm);
         let moments = [0, 1, 2].map(|axis: usize| torquers.axes[axis].moment_am2);
         self.0.push((now, torques, moments));
@@ -100,7 +109,9 @@ fn exports_of_whole_cubesats_are_complete_and_replay_their_run() {
         let hash = format!("HASH={}", hashes(&dir, "out")[&20_000]);
         let said = text(&make(&dir, "out", &["check-gcc", "LEVELS=-O3", "CYCLES=20000", &hash]));
         assert!(said.contains(" calls equal") && said.contains("20000 cycles"), "{name}: {said}");
-        for (guest, words) in [("cfs", "calls equal through messages"), ("fprime", "calls equal through ports")] {
+        for (guest, words) in
+            [("cfs", "calls equal through messages"), ("fprime", "calls equal through ports")]
+        {
             let said = text(&make(&dir, &format!("out/{guest}"), &["check"]));
             assert!(said.contains(words), "{name}: {said}");
         }
@@ -110,8 +121,10 @@ fn exports_of_whole_cubesats_are_complete_and_replay_their_run() {
 #[test]
 fn what_is_left_out_of_an_unloaded_wheel_is_said() {
     let dir = Dir::with(&["orbit-correction"]);
-    dir.run("export-c orbit-correction.toml -o out --calls 10 --complete")
-        .exits(2)
-        .says(&["actuator", "jets", "is not part of the exported code"]);
+    dir.run("export-c orbit-correction.toml -o out --calls 10 --complete").exits(2).says(&[
+        "actuator",
+        "jets",
+        "is not part of the exported code",
+    ]);
     assert!(!dir.has("out"));
 }

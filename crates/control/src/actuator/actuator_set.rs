@@ -257,7 +257,8 @@ impl MomentumStorage for ActuatorSet {
     }
 
     fn commanded_torques(&self) -> Vec<f64> {
-        let keepers = self.keepers.iter().filter_map(|index| self.executing[*index].0.capabilities().momentum);
+        let keepers =
+            self.keepers.iter().filter_map(|index| self.executing[*index].0.capabilities().momentum);
         keepers.flat_map(MomentumStorage::commanded_torques).collect()
     }
 

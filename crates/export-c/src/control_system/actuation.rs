@@ -229,12 +229,7 @@ impl UnloadingUnit {
             }
             _ => return None,
         };
-        Some(Self {
-            law: task.flight_law(kind),
-            device,
-            period: period.seconds(),
-            counter: Vector3::ZERO,
-        })
+        Some(Self { law: task.flight_law(kind), device, period: period.seconds(), counter: Vector3::ZERO })
     }
 
     /// Begins a cycle, and returns the words of the moments or on-times.
@@ -267,7 +262,8 @@ fn wheel_channel(own: &WheelDistribution) -> Channel {
 }
 
 fn on_time_channel(pairs: &[JetPair]) -> Channel {
-    let about = "Time for which the jets about each axis fire (s), negative for those of the negative direction";
+    let about =
+        "Time for which the jets about each axis fire (s), negative for those of the negative direction";
     let longest = pairs.first().map_or(f64::INFINITY, |pair| pair.period);
     Channel::real("on_time", about, pairs.len(), 1.0).within(longest)
 }
@@ -303,7 +299,9 @@ fn jets(
     executing: &[Executing<'_>],
 ) -> Option<Vec<JetPair>> {
     let kinds = members.iter().filter(|member| member.executes()).map(|member| &*member.kind);
-    let jets = kinds.filter_map(|kind| if let ActuatorKind::Jets(jets) = kind { Some(jets) } else { None }).next()?;
+    let jets = kinds
+        .filter_map(|kind| if let ActuatorKind::Jets(jets) = kind { Some(jets) } else { None })
+        .next()?;
     let groups = scenario.study.groups.as_ref()?;
     let is_own = jets.allocation == FiringMethod::Groups && jets.period.is_none();
     let mut with_jets = executing.iter().filter(|own| own.has(are_jets));

@@ -55,7 +55,8 @@ impl Channel {
         let FlightDeclaration { channel, unit, meaning, .. } = quantity.declaration();
         let mut about = if unit.is_empty() { meaning.to_owned() } else { format!("{meaning} ({unit})") };
         about[..1].make_ascii_uppercase();
-        Self { quantity: Some(quantity), ..Self::real(channel, &about, count, scale) }
+        let is_unit = quantity == FlightQuantity::TargetAttitude;
+        Self { quantity: Some(quantity), is_unit, ..Self::real(channel, &about, count, scale) }
     }
 
     /// Returns the channel with a limit of the size of its numbers.

@@ -55,7 +55,8 @@ impl ControlSystem {
         self.actuators_left_out(scenario, &mut |key, duty| add(key, duty, false));
         let references = self.estimator().map_or(&[][..], |unit| &unit.correctors);
         for corrector in references.iter().filter(|corrector| corrector.is_of_vector()) {
-            let duty = "supply the reference of its vector at each exposure, in inertial axes, from an ephemeris";
+            let duty =
+                "supply the reference of its vector at each exposure, in inertial axes, from an ephemeris";
             add(scenario.sensor_key(corrector.sensor), duty, true);
         }
         if !scenario.target.is_empty() || scenario.mode.iter().any(|mode| mode.target.is_some()) {

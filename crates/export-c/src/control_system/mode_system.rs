@@ -427,11 +427,7 @@ impl ModeSystem {
 }
 
 /// Returns the laws of a mode or stage.
-fn laws_of_mode(
-    scenario: &Scenario,
-    index: usize,
-    has_modes: bool,
-) -> Result<ModeLaws, NotExportable> {
+fn laws_of_mode(scenario: &Scenario, index: usize, has_modes: bool) -> Result<ModeLaws, NotExportable> {
     let written = if has_modes {
         scenario.mode.get(index).map(|mode| &mode.law)
     } else {
@@ -460,21 +456,20 @@ fn laws_of_mode(
     Ok(ModeLaws::OnEstimates(Box::new(laws)))
 }
 
-/// Returns the scenario in which a mode or stage acts throughout. A filter that its law does not read goes on unread.
+/// Returns the scenario in which a mode or stage acts throughout, without requirements, which may name other modes. A filter that its
+/// law does not read goes on unread.
 fn alone(
     scenario: &Scenario,
     index: usize,
     has_modes: bool,
     reads_motion: bool,
 ) -> Result<Scenario, ScenarioError> {
-    let mut whole = scenario.clone();
-    if !reads_motion && matches!(scenario.estimator, Some(EstimatorKind::Attitude(_))) {
-        whole = whole.with(|written| {
-            if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
-                filter.watch_only = true;
-            }
-        })?;
-    }
+    let whole = scenario.clone().with(|written| {
+        written.requirement.clear();
+        if let Some(EstimatorKind::Attitude(filter)) = &mut written.estimator {
+            filter.watch_only |= !reads_motion;
+        }
+    })?;
     match scenario.mode.get(index).filter(|_| has_modes) {
         Some(mode) => whole.in_mode(&mode.name),
         None => whole.in_stage(index),

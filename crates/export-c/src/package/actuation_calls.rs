@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
 use super::initialiser::initialiser;
 use super::signature::signature;
+use super::{Plan, parameters};
 use crate::control_system::{Actuation, UnloadingDevice};
 
 /// Returns the paths of the functions of the flight code that the actuators call; `are_changes` are the kinds of commands that jets
@@ -113,7 +113,15 @@ pub fn init(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
         let _ = writeln!(
             text,
             "    state->unloading = ({prefix}_momentum_unloading){};\n    state->counter = {zero};\n    state->demanded = {zero};",
-            initialiser(&unit.law, prefix)
+            [("above", "above"), ("below", "below"), ("gain", "gain"), ("most", "torque")].into_iter().fold(
+                initialiser(&unit.law, prefix),
+                |text, (member, name)| {
+                    let name = format!("unload_{name}");
+                    let is_tuned = plan.parameters.iter().any(|own| own.name == name);
+                    let value = format!("parameters->{name}");
+                    if is_tuned { parameters::replaced(&text, member, &value) } else { text }
+                }
+            )
         );
     }
 }
@@ -121,7 +129,7 @@ pub fn init(plan: &Plan<'_>, own: &Actuation, text: &mut String) {
 /// Returns the allocation of a torque `demanded` to the wheels.
 fn allocation(plan: &Plan<'_>, own: &Actuation, indent: &str, output: &str) -> String {
     let Some(wheels) = &own.wheels else { return String::new() };
-    let (count, limit) = (wheels.wheels.len(), initialiser(&wheels.limit, plan.prefix));
+    let (count, limit) = (wheels.wheels.len(), parameters::expression(plan, "wheel_torque", wheels.limit));
     format!(
         "{indent}    wheel_allocation_allocate(state->wheels, {count}, &demanded, {});\n\
          {indent}    wheel_allocation_limit_torques(state->wheels, {count}, {limit});\n\
@@ -172,9 +180,7 @@ pub fn unload(plan: &Plan<'_>, own: &Actuation, held: Option<&str>, keeps_moment
     let Some(call) = plan.calls.iter().find(|call| call.name == "unload") else { return };
     let prefix = plan.prefix;
     let vector = |from: &str| {
-        format!(
-            "({prefix}_vector3){{ .x = input->{from}[0], .y = input->{from}[1], .z = input->{from}[2] }}"
-        )
+        format!("({prefix}_vector3){{ .x = input->{from}[0], .y = input->{from}[1], .z = input->{from}[2] }}")
     };
     let _ = writeln!(text, "{}\n{{", signature(plan, call));
     if super::signature::has_time(plan) {

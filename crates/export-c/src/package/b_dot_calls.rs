@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use super::Plan;
 use super::initialiser::initialiser;
 use super::signature::signature;
+use super::{Plan, parameters};
 use crate::control_system::{BDotLaws, BDotSystem};
 
 /// Functions of the flight code that the exported functions call.
@@ -16,12 +16,14 @@ pub fn functions(plan: &Plan<'_>, own: &BDotSystem, text: &mut String) {
     let field = initialiser(&own.field.field, prefix);
     let _ = writeln!(
         text,
-        "void {prefix}_init({prefix}_state *state)\n{{\n    state->field = ({prefix}_field_rate){field};\n}}\n"
+        "void {prefix}_init({prefix}_state *state)\n{{\n    state->field = ({prefix}_field_rate){field};"
     );
+    parameters::init(plan, false, text);
+    text.push_str("}\n\n");
     sample(plan, text);
     let _ = writeln!(text, "{}\n{{\n    (void)now;\n    (void)input;", signature(plan, &plan.calls[1]));
     for axis in 0..3 {
-        let _ = writeln!(text, "    output->moment[{axis}] = {};", moment(plan, &own.laws, axis));
+        let _ = writeln!(text, "    output->moment[{axis}] = {};", moment(plan, &own.laws, None, axis));
     }
     text.push_str("}\n");
 }
@@ -39,11 +41,11 @@ pub fn sample(plan: &Plan<'_>, text: &mut String) {
     );
 }
 
-/// Returns the moment along an axis for the present rate of change of the field.
-pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, axis: usize) -> String {
-    let [gain, limit] = [laws.gains[axis], laws.limits[axis]].map(|value| initialiser(&value, plan.prefix));
+/// Returns the moment along an axis for the present rate of change of the field, in a mode or without modes.
+pub fn moment(plan: &Plan<'_>, laws: &BDotLaws, mode: Option<&str>, axis: usize) -> String {
+    let [gain, limit] = parameters::b_dot_names(mode, axis);
+    let gain = parameters::expression(plan, &gain, laws.gains[axis]);
+    let limit = parameters::expression(plan, &limit, laws.limits[axis]);
     let component = ["x", "y", "z"][axis];
-    format!(
-        "b_dot_limited_moment(b_dot_opposing_moment({gain}, state->field.rate.{component}), {limit})"
-    )
+    format!("b_dot_limited_moment(b_dot_opposing_moment({gain}, state->field.rate.{component}), {limit})")
 }

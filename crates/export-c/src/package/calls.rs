@@ -7,7 +7,8 @@ use flexsc_flight::gain_schedule::SchedulePoint;
 use super::initialiser::initialiser;
 use super::signature::{about, signature};
 use super::{
-    Plan, actuation_calls, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, rate_calls,
+    Plan, actuation_calls, b_dot_calls, compensator_calls, estimator_calls, kalman_calls, parameters,
+    rate_calls,
 };
 use crate::control_system::{ControlSystem, LawsOfAxes, Relays, SampledLaws};
 
@@ -76,16 +77,25 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
     if let Some(unit) = &laws.filter {
         kalman_calls::start(plan, unit, text);
     }
-    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state)\n{{");
+    let has_parameters = parameters::has_law_parameters(laws);
+    let given = if has_parameters && plan.mode.is_some() {
+        format!(", const {prefix}_parameters *parameters")
+    } else {
+        String::new()
+    };
+    let _ = writeln!(text, "void {prefix}_init({prefix}_state *state{given})\n{{");
+    let is_zeroed = laws.estimator.is_some() || matches!(laws.laws, LawsOfAxes::StateSpace(_));
+    if is_zeroed {
+        text.push_str("    memset(state, 0, sizeof *state);\n");
+    }
+    parameters::init(plan, has_parameters || laws.actuation.unloading.is_some(), text);
     if laws.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let _ = writeln!(
             text,
-            "    memset(state, 0, sizeof *state);\n    start_filter(state, ({prefix}_ticks){{ .whole = 0, .part = 0 }}, {identity}, {zero});"
+            "    start_filter(state, ({prefix}_ticks){{ .whole = 0, .part = 0 }}, {identity}, {zero});"
         );
-    } else if let LawsOfAxes::StateSpace(_) = &laws.laws {
-        text.push_str("    memset(state, 0, sizeof *state);\n");
     }
     if let Some(unit) = &laws.filter {
         kalman_calls::init(unit, text);
@@ -97,10 +107,14 @@ fn of_laws(plan: &Plan<'_>, laws: &SampledLaws, text: &mut String) {
         let member = about("law", axis, axes);
         match &laws.laws {
             LawsOfAxes::StateSpace(_) => {}
-            LawsOfAxes::Pd(own) => set(member, "pd_law", initialiser(&own[axis].0, prefix)),
+            LawsOfAxes::Pd(own) => {
+                let value = initialiser(&own[axis].0, prefix);
+                set(member, "pd_law", parameters::tuned(plan, laws, axis, value));
+            }
             LawsOfAxes::PhasePlane(own, _) => set(member, "phase_plane_law", initialiser(&own[axis], prefix)),
             LawsOfAxes::Attitude(own) => {
-                set(member, "attitude_feedback", initialiser(&own[axis].0, prefix));
+                let value = initialiser(&own[axis].0, prefix);
+                set(member, "attitude_feedback", parameters::tuned(plan, laws, axis, value));
                 for (index, filter) in own[axis].1.iter().enumerate() {
                     set(format!("filters[{axis}][{index}]"), "biquad_filter", initialiser(filter, prefix));
                 }

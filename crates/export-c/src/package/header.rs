@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls};
+use super::{Plan, actuation_calls, compensator_calls, estimator_calls, kalman_calls, parameters};
 use crate::control_system::{Channel, ControlSystem, LawsOfAxes, NumberKind};
 use crate::translate::Translation;
 
@@ -23,6 +23,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
     text.push_str("\n\n");
     text.push_str(translation.declarations.trim());
     text.push_str("\n\n");
+    text.push_str(&parameters::definition(plan));
     text.push_str(state);
     for call in plan.calls {
         let _ = writeln!(text, "/* Inputs of `{prefix}_{}`. */", call.name);
@@ -40,6 +41,7 @@ pub fn header(plan: &Plan<'_>, translation: &Translation, state: &str) -> String
         "/* Sets the state before the first call. */\n{};\n",
         super::signature::init_signature(plan)
     );
+    text.push_str(&parameters::declarations(plan));
     for call in plan.calls {
         let _ = writeln!(text, "/* {} */\n{};\n", call.about, super::signature::signature(plan, call));
     }
@@ -137,8 +139,20 @@ pub fn state(plan: &Plan<'_>) -> String {
             }
         }
     }
+    member_of_parameters(plan, &mut text);
     let _ = writeln!(text, "}} {}_state;\n", plan.prefix);
     text
+}
+
+/// Writes the member of the state with the parameters.
+pub fn member_of_parameters(plan: &Plan<'_>, text: &mut String) {
+    if !plan.parameters.is_empty() && plan.mode.is_none() {
+        let _ = writeln!(
+            text,
+            "    /* Numbers that are tuned in flight. */\n    {}_parameters parameters;",
+            plan.prefix
+        );
+    }
 }
 
 /// Writes a struct with a member for each channel.

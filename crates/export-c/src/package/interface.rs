@@ -21,8 +21,11 @@ pub fn interface(plan: &Plan<'_>, scenario: &Scenario) -> String {
         std::iter::once(gyro).chain(others).map(row).collect()
     });
     let order: Vec<String> = main_loop::order(plan).map(|call| format!("{prefix}_{}", call.name)).collect();
-    let excluded_parts: Vec<Value> =
-        plan.excluded_parts.iter().map(|part| json!({ "key": part.key, "caller": part.duty, "is_input": part.is_supplied })).collect();
+    let excluded_parts: Vec<Value> = plan
+        .excluded_parts
+        .iter()
+        .map(|part| json!({ "key": part.key, "caller": part.duty, "is_input": part.is_supplied }))
+        .collect();
     let functions: Vec<Value> = plan.calls.iter().map(|call| function(plan, call)).collect();
     let written = json!({
         "name": prefix,

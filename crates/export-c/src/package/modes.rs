@@ -8,10 +8,8 @@ use flexsc_core::control::operation::{ModeFormula, ModeQuantity};
 
 use super::initialiser::initialiser;
 use super::signature::{has_time, init_signature, signature};
-use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header};
-use crate::control_system::{
-    CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula, SampledLaws,
-};
+use super::{Plan, actuation_calls, b_dot_calls, calls, estimator_calls, header, parameters};
+use crate::control_system::{CallLayout, Channel, ControlSystem, ModeSystem, ReadingFormula, SampledLaws};
 
 /// Laws of one mode as a control system of their own.
 struct ModePart {
@@ -43,7 +41,12 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     let (prefix, mut text) = (plan.prefix, String::new());
     let parts = mode_parts(modes);
     for part in &parts {
-        let own = Plan { system: &part.system, calls: std::slice::from_ref(&part.layout), ..*plan };
+        let own = Plan {
+            system: &part.system,
+            calls: std::slice::from_ref(&part.layout),
+            mode: Some(&part.name),
+            ..*plan
+        };
         let written = header::state(&own);
         let head = "/* State of the control system, which its functions change. */";
         let written = written.replace(head, &format!("/* Laws of the mode `{}`. */", part.name));
@@ -62,6 +65,13 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     if !modes.tables.exits.is_empty() {
         member("Ends of the modes.", "SupervisedExit", &format!("exits[{}]", modes.tables.exits.len()));
     }
+    if !parameters::thresholds(modes).is_empty() {
+        member(
+            "Comparisons of their conditions.",
+            "ConditionStep",
+            &format!("steps[{}]", modes.tables.steps.len()),
+        );
+    }
     for (about, name, declared) in modes.estimator.iter().flat_map(estimator_calls::members) {
         member(about, name, &declared);
     }
@@ -75,6 +85,7 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
         text.push_str("    /* True from a change on to the next step. */\n    bool has_moved;\n");
     }
     actuation_calls::members(plan, &modes.actuation, &mut text);
+    header::member_of_parameters(plan, &mut text);
     for ModePart { name, .. } in &parts {
         let _ =
             writeln!(text, "    /* Laws of the mode `{name}`. */\n    {prefix}_law_{name}_state law_{name};");
@@ -87,7 +98,12 @@ pub fn state(plan: &Plan<'_>, modes: &ModeSystem) -> String {
 pub fn functions(plan: &Plan<'_>, modes: &ModeSystem) -> String {
     let (parts, mut text) = (mode_parts(modes), String::new());
     for part in &parts {
-        let own = Plan { system: &part.system, calls: std::slice::from_ref(&part.layout), ..*plan };
+        let own = Plan {
+            system: &part.system,
+            calls: std::slice::from_ref(&part.layout),
+            mode: Some(&part.name),
+            ..*plan
+        };
         let written = calls::functions(&own);
         let static_ones: Vec<String> = written
             .lines()
@@ -147,6 +163,19 @@ fn list_argument(name: &str, count: usize) -> String {
     if count == 0 { "NULL, 0".to_owned() } else { format!("{name}, {count}") }
 }
 
+/// Returns the list of comparisons: that of the state if their limits are parameters.
+fn step_list(modes: &ModeSystem) -> &'static str {
+    if parameters::thresholds(modes).is_empty() { "step_list" } else { "state->steps" }
+}
+
+/// Returns the further argument with which the laws of a mode start: their parameters, if they have any.
+fn law_argument(part: &ModePart) -> &'static str {
+    match &part.system {
+        ControlSystem::Sampled(laws) if parameters::has_law_parameters(laws) => ", &state->parameters",
+        _ => "",
+    }
+}
+
 /// Returns the modes and the ends as arguments.
 fn mode_arguments(modes: &ModeSystem) -> String {
     let exits = list_argument("state->exits", modes.tables.exits.len());
@@ -157,6 +186,7 @@ fn mode_arguments(modes: &ModeSystem) -> String {
 fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut String) {
     let prefix = plan.prefix;
     let _ = writeln!(text, "{}\n{{\n    memset(state, 0, sizeof *state);", init_signature(plan));
+    parameters::init(plan, modes.actuation.unloading.is_some(), text);
     if modes.estimator.is_some() {
         let identity = format!("({prefix}_quaternion){{ .w = 1.0, .x = 0.0, .y = 0.0, .z = 0.0 }}");
         let zero = format!("({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }}");
@@ -166,10 +196,18 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     if !modes.tables.exits.is_empty() {
         text.push_str("    memcpy(state->exits, exit_list, sizeof state->exits);\n");
     }
+    let thresholds = parameters::thresholds(modes);
+    if !thresholds.is_empty() {
+        text.push_str("    memcpy(state->steps, step_list, sizeof state->steps);\n");
+    }
+    for (step, name) in thresholds {
+        let _ = writeln!(text, "    state->steps[{step}].limit = state->parameters.{name};");
+    }
     let _ = writeln!(text, "    state->supervisor = mode_supervisor_start(now, {});", mode_arguments(modes));
     actuation_calls::init(plan, &modes.actuation, text);
-    for ModePart { name, .. } in parts {
-        let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name});");
+    for part in parts {
+        let (name, argument) = (&part.name, law_argument(part));
+        let _ = writeln!(text, "    {prefix}_law_{name}_init(&state->law_{name}{argument});");
     }
     text.push_str("}\n\n");
     let _ = writeln!(
@@ -177,10 +215,11 @@ fn init(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         "/* Starts the laws of the present mode without a past. */\nstatic void start_laws({prefix}_state *state)\n{{\n    \
          switch (state->supervisor.active) {{"
     );
-    for ModePart { index, name, .. } in parts {
+    for part in parts {
+        let (index, name, argument) = (part.index, &part.name, law_argument(part));
         let _ = writeln!(
             text,
-            "    case {index}:\n        {prefix}_law_{name}_init(&state->law_{name});\n        break;"
+            "    case {index}:\n        {prefix}_law_{name}_init(&state->law_{name}{argument});\n        break;"
         );
     }
     text.push_str("    default:\n        break;\n    }\n}\n\n");
@@ -292,7 +331,7 @@ fn supervise(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
          output->next_whole = due.time.whole;\n    output->next_part = due.time.part;\n    \
          output->period_whole = period.whole;\n    output->period_part = period.part;\n}}\n",
         list_argument("readings", formulas.len()),
-        list_argument("step_list", modes.tables.steps.len()),
+        list_argument(step_list(modes), modes.tables.steps.len()),
     );
 }
 
@@ -330,20 +369,18 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
     }
     text.push_str("    memset(output, 0, sizeof *output);\n");
     if modes.actuation.wheels.is_some() {
-        let _ = writeln!(
-            text,
-            "    {prefix}_vector3 torque = {{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
-        );
+        let _ = writeln!(text, "    {prefix}_vector3 torque = {{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
     }
     if modes.field.is_some() && modes.clears_moment {
         let _ = writeln!(text, "    state->moment = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
     }
     text.push_str("    switch (state->supervisor.active) {\n");
-    for (index, laws) in modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
+    for (index, laws) in
+        modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
     {
         let _ = writeln!(text, "    case {index}:");
         for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
-            let moment = b_dot_calls::moment(plan, laws, axis);
+            let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
             let _ = writeln!(text, "        state->moment.{component} = {moment};");
         }
         if modes.actuation.unloading.is_some() {

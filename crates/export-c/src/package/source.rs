@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Plan, actuation_calls, b_dot_calls, compensator_calls, kalman_calls, rate_calls};
+use super::{Plan, actuation_calls, b_dot_calls, compensator_calls, kalman_calls, parameters, rate_calls};
 use crate::control_system::{ControlSystem, LawsOfAxes, LawsOfMode};
 use crate::translate::Translation;
 
@@ -113,6 +113,7 @@ pub fn source(plan: &Plan<'_>, translation: &Translation, functions: &str) -> St
         plan.version().len() + 1,
         plan.version()
     );
+    parameters::defaults(plan, &mut text);
     text.push_str(functions);
     text
 }

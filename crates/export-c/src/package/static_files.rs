@@ -48,8 +48,11 @@ pub fn readme(plan: &Plan<'_>, hashes: &[(u64, u64)], vectors: usize) -> String 
     if plan.excluded_parts.iter().all(|part| part.is_supplied) {
         text.push_str("\nEvery part of the scenario's control loop is in this code.\n");
     }
-    for (is_supplied, head) in [(false, "Not part of this code"), (true, "Inputs from guidance and ephemerides")] {
-        let parts: Vec<_> = plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied).collect();
+    for (is_supplied, head) in
+        [(false, "Not part of this code"), (true, "Inputs from guidance and ephemerides")]
+    {
+        let parts: Vec<_> =
+            plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied).collect();
         if !parts.is_empty() {
             let _ = writeln!(text, "\n{head}:\n\n| part of the scenario | the caller must |\n|---|---|");
         }

@@ -31,7 +31,7 @@ static void UPPER_APP_WakeUp(void)
 /* Sends the counters. */
 static void UPPER_APP_SendHk(void)
 {
-    CFE_SB_TimeStampMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader));
+MANAGED    CFE_SB_TimeStampMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader));
     CFE_SB_TransmitMsg(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader), true);
 }
 
@@ -133,7 +133,7 @@ static CFE_Status_t UPPER_APP_Init(void)
 
     memset(&UPPER_APP_Data, 0, sizeof(UPPER_APP_Data));
     UPPER_APP_Data.RunStatus = CFE_ES_RunStatus_APP_RUN;
-    BEGIN_STATE
+DEFAULTS    BEGIN_STATE
 INITIALISED    CFE_MSG_Init(CFE_MSG_PTR(UPPER_APP_Data.HkTlm.TelemetryHeader), CFE_SB_ValueToMsgId(UPPER_APP_HK_TLM_MID),
         sizeof(UPPER_APP_Data.HkTlm));
     Status = CFE_EVS_Register(Filters, sizeof(Filters) / sizeof(Filters[0]), CFE_EVS_EventFilter_BINARY);

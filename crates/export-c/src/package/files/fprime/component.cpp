@@ -24,7 +24,7 @@ void COMPONENT ::run_handler(FwIndexType portNum, U32 context) {
     }
 }
 
-FUNCTIONSvoid COMPONENT ::NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) {
+PARAMETERSFUNCTIONSvoid COMPONENT ::NOOP_cmdHandler(FwOpcodeType opCode, U32 cmdSeq) {
     this->log_ACTIVITY_HI_Exported();
     this->cmdResponse_out(opCode, cmdSeq, Fw::CmdResponse::OK);
 }
