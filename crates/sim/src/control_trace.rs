@@ -1,6 +1,6 @@
 //! Inputs and outputs of the control system at each of its calls, for replays by flight code.
 
-use flexsc_control::actuator::PulsedActuator;
+use flexsc_control::actuator::{MomentumStorage, PulsedActuator};
 use flexsc_control::flight_quantity::FlightQuantity;
 use flexsc_control::law::AxisDecision;
 use flexsc_control::operation::ModeQuantity;
@@ -161,7 +161,7 @@ impl Simulation {
             origin: *self.estimation.origin(),
             stored_momentum: abilities.stored_momentum(now),
             demanded_torque,
-            wheel_torques: abilities.momentum.map(|storage| storage.commanded_torques()).unwrap_or_default(),
+            wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
             on_times: abilities.pulses.and_then(PulsedActuator::commanded_on_times),
             shift,
         };
@@ -180,7 +180,7 @@ impl Simulation {
             stored_momentum: cycle.stored.into(),
             field: self.sensors.magnetic_field(self.plant.truth()).map(Into::into),
             counter_torque: cycle.counter.into(),
-            wheel_torques: abilities.momentum.map(|storage| storage.commanded_torques()).unwrap_or_default(),
+            wheel_torques: abilities.momentum.map(MomentumStorage::commanded_torques).unwrap_or_default(),
         }));
     }
 }

@@ -298,10 +298,8 @@ fn jets(
     members: &[AssignedMember<'_>],
     executing: &[Executing<'_>],
 ) -> Option<Vec<JetPair>> {
-    let kinds = members.iter().filter(|member| member.executes()).map(|member| &*member.kind);
-    let jets = kinds
-        .filter_map(|kind| if let ActuatorKind::Jets(jets) = kind { Some(jets) } else { None })
-        .next()?;
+    let mut kinds = members.iter().filter(|member| member.executes()).map(|member| &*member.kind);
+    let jets = kinds.find_map(|kind| if let ActuatorKind::Jets(jets) = kind { Some(jets) } else { None })?;
     let groups = scenario.study.groups.as_ref()?;
     let is_own = jets.allocation == FiringMethod::Groups && jets.period.is_none();
     let mut with_jets = executing.iter().filter(|own| own.has(are_jets));

@@ -47,10 +47,11 @@ impl ControlSystem {
         let mut add = |key: String, duty: &str, is_supplied: bool| {
             parts.push(ExcludedPart { key, duty: duty.to_owned(), is_supplied });
         };
-        if let Some(estimator) = &scenario.estimator {
-            if !estimator.offers().is_assessed_only && !self.has_estimator() {
-                add(format!("estimator.{}", estimator.kind()), "supply its estimates as inputs", false);
-            }
+        if let Some(estimator) = &scenario.estimator
+            && !estimator.offers().is_assessed_only
+            && !self.has_estimator()
+        {
+            add(format!("estimator.{}", estimator.kind()), "supply its estimates as inputs", false);
         }
         self.actuators_left_out(scenario, &mut |key, duty| add(key, duty, false));
         let references = self.estimator().map_or(&[][..], |unit| &unit.correctors);

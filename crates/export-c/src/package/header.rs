@@ -68,7 +68,7 @@ fn trace(plan: &Plan<'_>) -> String {
 fn excluded_parts(plan: &Plan<'_>) -> String {
     let list = |is_supplied: bool| -> String {
         let parts = plan.excluded_parts.iter().filter(|part| part.is_supplied == is_supplied);
-        parts.map(|part| format!("\n *   {}: {}", part.key, part.duty)).collect()
+        parts.fold(String::new(), |all, part| all + &format!("\n *   {}: {}", part.key, part.duty))
     };
     let (left_out, supplied) = (list(false), list(true));
     let mut text = if left_out.is_empty() {

@@ -375,22 +375,7 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         let _ = writeln!(text, "    state->moment = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};");
     }
     text.push_str("    switch (state->supervisor.active) {\n");
-    for (index, laws) in
-        modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
-    {
-        let _ = writeln!(text, "    case {index}:");
-        for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
-            let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
-            let _ = writeln!(text, "        state->moment.{component} = {moment};");
-        }
-        if modes.actuation.unloading.is_some() {
-            let _ = writeln!(
-                text,
-                "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
-            );
-        }
-        text.push_str("        break;\n");
-    }
+    b_dot_cases(plan, modes, text);
     for part in parts {
         let name = &part.name;
         let _ = writeln!(
@@ -443,6 +428,27 @@ fn step(plan: &Plan<'_>, modes: &ModeSystem, parts: &[ModePart], text: &mut Stri
         actuation_calls::moment_output("state->moment", text);
     }
     text.push_str("    output->mode = (int64_t)state->supervisor.active;\n}\n");
+}
+
+/// Writes the decisions of B-dot laws, which end the unloading.
+fn b_dot_cases(plan: &Plan<'_>, modes: &ModeSystem, text: &mut String) {
+    let prefix = plan.prefix;
+    for (index, laws) in
+        modes.modes.iter().enumerate().filter_map(|(index, mode)| Some((index, mode.start.b_dot()?)))
+    {
+        let _ = writeln!(text, "    case {index}:");
+        for (axis, component) in ["x", "y", "z"].into_iter().enumerate() {
+            let moment = b_dot_calls::moment(plan, laws, Some(&modes.modes[index].name), axis);
+            let _ = writeln!(text, "        state->moment.{component} = {moment};");
+        }
+        if modes.actuation.unloading.is_some() {
+            let _ = writeln!(
+                text,
+                "        state->unloading.is_active = false;\n        state->counter = ({prefix}_vector3){{ .x = 0.0, .y = 0.0, .z = 0.0 }};"
+            );
+        }
+        text.push_str("        break;\n");
+    }
 }
 
 /// Returns text in which the names of a control system's own are those of the laws of a mode.
