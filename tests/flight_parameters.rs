@@ -12,16 +12,9 @@ fn tuned_driver(driver: &str, parameters: &str) -> String {
         "static void tune(sat_state *state)\n{{\n    sat_parameters p = sat_default_parameters;\n{parameters}    \
          if (sat_parameters_check(&p) != 0) {{\n        abort();\n    }}\n    sat_set_parameters(state, &p);\n}}\n\n"
     );
-    let mut text = String::new();
-    for line in driver.lines() {
-        if let Some(init) = line.strip_prefix("#define INIT(state, time) ") {
-            text += &tune;
-            text += &format!("#define INIT(state, time) ({init}, tune(state))\n");
-        } else {
-            text += &format!("{line}\n");
-        }
-    }
-    text
+    let (before, rest) = driver.split_once("#define INIT(state, time) ").expect("the start of the state");
+    let (init, after) = rest.split_once('\n').expect("a line");
+    format!("{before}{tune}#define INIT(state, time) ({init}, tune(state))\n{after}")
 }
 
 /// Compiles a driver, and returns what it says about the calls in a file.
